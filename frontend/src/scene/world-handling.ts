@@ -64,7 +64,7 @@ export class WorldHandling {
       return true;
     }
     const { simulation, modeling, tools } = this.session;
-    if (!simulation.isPresent || modeling.active || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return false;
+    if (!simulation.isPresent || modeling.isActive || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return false;
     if (event.type === "down" && event.button === "left" && event.ctrl) return this.grab(event);
     if (event.type === "up" && event.button === "right" && event.click) this.openMenu(event);
     return false;

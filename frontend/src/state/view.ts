@@ -3,9 +3,9 @@ import type { Property, PropertyValue, SavedView, View, ViewClass } from "../pro
 import { Signal } from "../signal";
 import type { FrameStore } from "./frames";
 import type { PageMemory } from "./page-memory";
-import { cameraInFixed, cameraInTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
+import { cameraToFixed, cameraToTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
-import { contains, spanInTarget } from "./views/fit";
+import { contains, spanToTarget } from "./views/fit";
 import { distanceBetween, type Span, type Vector } from "./views/vector";
 import type { Drag, ViewController, ViewValues } from "./views/view-controller";
 
@@ -93,7 +93,7 @@ export class ViewState {
 
   /** The camera in the fixed frame. */
   get camera(): Camera {
-    return cameraInFixed(this.controller.camera(this.view.values), this.target);
+    return cameraToFixed(this.controller.computeCamera(this.view.values), this.target);
   }
 
   propertiesOf(cls: string): readonly Property[] {
@@ -192,7 +192,7 @@ export class ViewState {
 
   /** Handles the wheel; `delta` is 120 per notch, positive away from the user. */
   wheel(delta: number, isShiftDown: boolean): void {
-    this.update(this.controller.wheel(this.view.values, delta, isShiftDown));
+    this.update(this.controller.applyWheel(this.view.values, delta, isShiftDown));
   }
 
   /** Moves the focal point, given in the fixed frame. */
@@ -208,7 +208,7 @@ export class ViewState {
     const defaults = this.defaultsOf(cls);
     const targetFrame = previousView.values[TARGET_FRAME];
     this.view = { ...previousView, cls, values: targetFrame === undefined ? defaults : { ...defaults, [TARGET_FRAME]: targetFrame } };
-    const camera = cameraInTarget(inFixed, this.target);
+    const camera = cameraToTarget(inFixed, this.target);
     this.update(this.controller.mimic({ cls: previousView.cls, values: previousView.values, camera }));
   }
 
@@ -288,7 +288,7 @@ export class ViewState {
   }
 
   private fitValues(box: Span, size: ViewSize): ViewValues {
-    return this.controller.fit(this.view.values, spanInTarget(box, this.target), size);
+    return this.controller.fit(this.view.values, spanToTarget(box, this.target), size);
   }
 
   private change(view: View): void {

@@ -38,7 +38,7 @@ export class EditOutcome {
   private show(): void {
     const { editing } = this;
     const texts = strings.editing;
-    const { preview, refusal, isOpen, written } = editing;
+    const { preview, refusal, isOpen, writtenFiles } = editing;
     const writtenWords = editing.isWrittenToText ? texts.writtenToText : texts.written;
     this.apply.disabled = !isOpen || (preview?.files.length ?? 0) === 0;
     this.discard.disabled = !isOpen;
@@ -49,7 +49,7 @@ export class EditOutcome {
     else if (preview?.refusal) this.text.replaceChildren(refusalElement(preview.refusal));
     else if (preview) this.text.replaceChildren(...alsoElement(preview.also), ...preview.files.map(diff));
     else if (isOpen) this.text.replaceChildren(h("p", { class: "hint" }, texts.looking));
-    else if (written.length > 0) this.text.replaceChildren(h("p", { class: "hint" }, writtenWords(written.map((file) => shortPath(file)).join(", "))));
+    else if (writtenFiles.length > 0) this.text.replaceChildren(h("p", { class: "hint" }, writtenWords(writtenFiles.map((file) => shortPath(file)).join(", "))));
     else this.text.replaceChildren(h("p", { class: "hint" }, texts.idle));
     this.element.classList.toggle("refused", refusal !== null || (preview?.refusal ?? null) !== null);
   }

@@ -68,25 +68,25 @@ export class EditingPanel implements Panel {
   private update(): void {
     const { editing } = this.session;
     const texts = strings.editing;
-    const { chosen, parts, whyNot, current } = editing;
-    const why = current === null ? texts.selectLink : whyNot !== "" ? whyNot : "";
+    const { chosenPart, parts, unavailableReason: refusal, current } = editing;
+    const why = current === null ? texts.selectLink : refusal !== "" ? refusal : "";
     this.hint.hidden = why === "";
     this.hint.textContent = why;
     this.work.hidden = this.list.hidden = current === null || parts.length === 0;
     this.list.replaceChildren(...parts.map((part) => this.partRow(part)));
-    if (chosen !== this.shown) this.build(chosen);
+    if (chosenPart !== this.shown) this.build(chosenPart);
     for (const { input, value, isTyped } of this.inputs) {
-      input.disabled = whyNot !== "";
+      input.disabled = refusal !== "";
       if (!isTyped) input.value = formatNumber(value());
     }
-    for (const control of this.poseControls) control.hidden = chosen?.part === "axis";
+    for (const control of this.poseControls) control.hidden = chosenPart?.part === "axis";
     this.showModes();
   }
 
   private partRow(part: EditablePart): HTMLElement {
     const texts = strings.editing;
     const { editing } = this.session;
-    const isChosen = part === editing.chosen;
+    const isChosen = part === editing.chosenPart;
     const what = texts.kinds[part.part];
     const row = button(texts.choose(what, part.title), () => editing.choose(part), "editing-part", h("strong", {}, what), " ", h("span", {}, part.part === "joint" || part.part === "axis" ? part.name : part.title));
     row.setAttribute("aria-pressed", String(isChosen));
@@ -171,13 +171,13 @@ export class EditingPanel implements Panel {
   }
 
   private currentValue(kind: "xyz" | "rpy", index: number): number {
-    const { draft, chosen } = this.session.editing;
-    return (draft ?? chosen)?.[kind][index] ?? 0;
+    const { draft, chosenPart } = this.session.editing;
+    return (draft ?? chosenPart)?.[kind][index] ?? 0;
   }
 
   private set(kind: "xyz" | "rpy", index: number, value: number): void {
     const { editing } = this.session;
-    const now = editing.draft ?? editing.chosen;
+    const now = editing.draft ?? editing.chosenPart;
     if (!now) return;
     // Converting typed degrees must not add digits to the file.
     const rounded = Number(value.toPrecision(12));
@@ -196,10 +196,10 @@ export class EditingPanel implements Panel {
     const { snapping } = editing;
     const length = choice(strings.modeling.lengthStep, steps(LENGTH_STEPS_M, " m"), (value) => (snapping.meters = Number(value)));
     const angle = choice(strings.modeling.angleStep, steps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
-    const snap = button(texts.snap, () => (snapping.enabled = !snapping.enabled), "tool bare", icon("magnet"));
+    const snap = button(texts.snap, () => (snapping.isEnabled = !snapping.isEnabled), "tool bare", icon("magnet"));
     const show = (): void => {
-      snap.setAttribute("aria-pressed", String(snapping.enabled));
-      snap.classList.toggle("active", snapping.enabled);
+      snap.setAttribute("aria-pressed", String(snapping.isEnabled));
+      snap.classList.toggle("active", snapping.isEnabled);
       length.value = String(snapping.meters);
       angle.value = String(snapping.degrees);
       frame.value = editing.frame;

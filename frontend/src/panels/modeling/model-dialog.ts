@@ -86,7 +86,7 @@ export class ModelDialog {
 
   private accept(): boolean {
     if (!this.chosen) return false;
-    this.modeling.place({ kind: "model", address: this.chosen.address });
+    this.modeling.startPlacing({ kind: "model", address: this.chosen.address });
     return true;
   }
 }

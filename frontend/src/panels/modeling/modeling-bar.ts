@@ -44,7 +44,7 @@ export class ModelingBar {
     for (const [mode, name] of MODES) {
       this.modes.set(mode, tool(withKeys(texts.modes[mode], WORLD_KEYS[mode]), name, () => (modeling.gizmo = mode)));
     }
-    this.snap = tool(texts.snap, "magnet", () => (modeling.snapping.enabled = !modeling.snapping.enabled));
+    this.snap = tool(texts.snap, "magnet", () => (modeling.snapping.isEnabled = !modeling.snapping.isEnabled));
     this.undo = tool(withKeys(texts.undo, WORLD_KEYS.undo), "undo", () => modeling.undo());
     this.redo = tool(withKeys(texts.redo, WORLD_KEYS.redo), "redo", () => modeling.redo());
     this.save = tool(withKeys(texts.save, WORLD_KEYS.save), "save", () => commands.save());
@@ -59,15 +59,15 @@ export class ModelingBar {
 
   private show(): void {
     const { modeling } = this;
-    this.element.hidden = !modeling.active;
+    this.element.hidden = !modeling.isActive;
     for (const [kind, each] of this.palette) setPressed(each, modeling.placing?.kind === kind);
     for (const [mode, each] of this.modes) setPressed(each, modeling.gizmo === mode);
     const scale = this.modes.get("scale");
-    if (scale) scale.disabled = modeling.selected.length > 0 && !modeling.canScale;
-    setPressed(this.snap, modeling.snapping.enabled);
+    if (scale) scale.disabled = modeling.selectedNames.length > 0 && !modeling.canScale;
+    setPressed(this.snap, modeling.snapping.isEnabled);
     this.undo.disabled = !modeling.canUndo;
     this.redo.disabled = !modeling.canRedo;
-    this.save.classList.toggle("unsaved", modeling.unsaved);
+    this.save.classList.toggle("unsaved", modeling.isUnsaved);
   }
 
   /**
@@ -83,14 +83,14 @@ export class ModelingBar {
     let wasDropped = false;
     toolButton.addEventListener("click", (event) => {
       if (wasDropped) return;
-      if (event.detail === 0) modeling.drop({ placing, at: null });
-      else modeling.place(modeling.placing?.kind === kind ? null : placing);
+      if (event.detail === 0) modeling.drop({ placing, position: null });
+      else modeling.startPlacing(modeling.placing?.kind === kind ? null : placing);
     });
     toolButton.addEventListener("pointerup", ({ clientX: x, clientY: y }) => {
       if (!(document.elementFromPoint(x, y) instanceof HTMLCanvasElement)) return;
       wasDropped = true; // a click follows
       setTimeout(() => (wasDropped = false));
-      modeling.drop({ placing, at: { x, y } });
+      modeling.drop({ placing, position: { x, y } });
     });
     // Without the capture, dragging a finger would scroll the page, and the button would receive no further events.
     toolButton.addEventListener("pointerdown", ({ pointerId }) => toolButton.setPointerCapture(pointerId));

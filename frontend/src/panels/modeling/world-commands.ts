@@ -48,8 +48,8 @@ export class WorldCommands {
       copy: () => modeling.copy(),
       paste: () => modeling.paste(),
       duplicate: () => modeling.duplicate(),
-      group: () => modeling.group(),
-      ungroup: () => modeling.ungroup(),
+      group: () => modeling.groupSelected(),
+      ungroup: () => modeling.ungroupSelected(),
       save: () => this.save(),
       saveAs: () => this.saveAs(),
       escape,
@@ -72,7 +72,7 @@ export class WorldCommands {
     document.addEventListener(
       "keydown",
       (event) => {
-        if (!this.modeling.active || !this.runKey(event)) return;
+        if (!this.modeling.isActive || !this.runKey(event)) return;
         event.preventDefault();
         event.stopImmediatePropagation();
       },

@@ -34,12 +34,12 @@ export class WorldPanel implements Panel {
     const texts = strings.modeling;
     const begin = button(texts.begin, () => modeling.setActive(true), "tool framed", texts.start);
     this.inactiveView = h("div", { class: "world-off" }, h("p", { class: "hint" }, texts.off), begin);
-    const any = (): boolean => modeling.selected.length > 0;
+    const any = (): boolean => modeling.selectedNames.length > 0;
     this.actions = [
       [action(texts.duplicate, WORLD_KEYS.duplicate, "duplicate", () => modeling.duplicate()), any],
       [action(texts.remove, WORLD_KEYS.remove, "remove", () => modeling.remove()), any],
-      [action(texts.group, WORLD_KEYS.group, "group", () => modeling.group()), () => modeling.canGroup],
-      [action(texts.ungroup, WORLD_KEYS.ungroup, "ungroup", () => modeling.ungroup()), () => modeling.canUngroup],
+      [action(texts.group, WORLD_KEYS.group, "group", () => modeling.groupSelected()), () => modeling.canGroup],
+      [action(texts.ungroup, WORLD_KEYS.ungroup, "ungroup", () => modeling.ungroupSelected()), () => modeling.canUngroup],
     ];
     const toolbar = h("div", { class: "toolbar", role: "toolbar", aria: { label: texts.panel } }, ...this.actions.map(([made]) => made));
     const saveAs = action(texts.saveAs, WORLD_KEYS.saveAs, "download", () => commands.saveAs());
@@ -54,12 +54,12 @@ export class WorldPanel implements Panel {
   }
 
   private show(): void {
-    const { active, file, unsaved, entities } = this.modeling;
-    this.inactiveView.hidden = active;
-    this.activeView.hidden = !active;
+    const { isActive, file, isUnsaved, entities } = this.modeling;
+    this.inactiveView.hidden = isActive;
+    this.activeView.hidden = !isActive;
     this.file.textContent = file === null ? strings.modeling.untitled : shortPath(file);
     this.file.title = file ?? "";
-    this.mark.hidden = !unsaved;
+    this.mark.hidden = !isUnsaved;
     this.empty.hidden = entities.length > 0;
     for (const [made, possible] of this.actions) made.disabled = !possible();
   }

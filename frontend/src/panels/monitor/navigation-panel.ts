@@ -31,7 +31,7 @@ export class NavigationPanel implements Panel {
       recoveries: value(),
     };
     const make = (command: NavigationCommand): HTMLButtonElement =>
-      button(texts.hints[command], () => state.command(command), "tool", texts.commands[command]);
+      button(texts.hints[command], () => state.sendCommand(command), "tool", texts.commands[command]);
     this.buttons = {
       startup: make("startup"),
       pause: make("pause"),

@@ -1,6 +1,6 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
-import { drawnGraph, type GraphMode, type GraphOptions, type GraphVertex } from "../../state/monitor/graph-model";
+import { buildGraph, type GraphMode, type GraphOptions, type GraphVertex } from "../../state/monitor/graph-model";
 import type { NodeGraphState } from "../../state/monitor/node-graph";
 import { strings } from "../../strings";
 import { choice, tickBox } from "../../widgets/controls";
@@ -66,7 +66,7 @@ export class NodeGraphPanel implements Panel {
   }
 
   private show(): void {
-    const graph = drawnGraph(this.state.graph, this.options);
+    const graph = buildGraph(this.state.graph, this.options);
     this.empty.hidden = graph.vertices.length > 0;
     this.drawing.show(graph);
     if (!graph.vertices.some(({ id }) => id === this.chosen)) this.chosen = null;

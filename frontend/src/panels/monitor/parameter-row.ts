@@ -1,6 +1,6 @@
 import { h } from "../../dom";
 import type { ParameterKind, ParameterRow } from "../../protocol";
-import { parameterText, parameterValues } from "../../state/monitor/parameter-text";
+import { formatParameter, parseParameter } from "../../state/monitor/parameter-text";
 import { strings } from "../../strings";
 
 /**
@@ -72,7 +72,7 @@ export class ParameterLine {
   }
 
   private editorText(): string {
-    return this.row.kind === "not_set" ? strings.monitor.parameters.notSet : parameterText(this.row.kind, this.row.values);
+    return this.row.kind === "not_set" ? strings.monitor.parameters.notSet : formatParameter(this.row.kind, this.row.values);
   }
 
   private makeSlider(): HTMLInputElement | null {
@@ -106,7 +106,7 @@ export class ParameterLine {
 
   private sendText(): void {
     if (this.editor.value === this.editorText()) return;
-    const values = parameterValues(this.row.kind, this.editor.value);
+    const values = parseParameter(this.row.kind, this.editor.value);
     if (values === null) this.showResult(false, strings.monitor.parameters.unreadable);
     else this.send(values);
   }

@@ -1,7 +1,7 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
-import { fieldText, valueText } from "../../state/monitor/field-text";
-import { csvText } from "../../state/monitor/plot-table";
+import { formatField, formatValue } from "../../state/monitor/field-text";
+import { formatCsv } from "../../state/monitor/plot-table";
 import type { Plot, PlotsState, Series } from "../../state/monitor/plots";
 import type { TopicsState } from "../../state/monitor/topics";
 import { strings } from "../../strings";
@@ -52,7 +52,7 @@ export class PlotBox {
     const chips = this.plot.series.map((series, index) => {
       const value = h("output", { class: "plot-value" });
       this.values.set(series, value);
-      const name = fieldText(series);
+      const name = formatField(series);
       const mark = h("span", { class: "plot-mark" });
       mark.style.background = seriesColor(index);
       const remove = button(texts.removeSeries(name), () => this.state.removeSeries(this.plot, series), "tool bare", icon("close"));
@@ -98,7 +98,7 @@ export class PlotBox {
       const output = this.values.get(series);
       const { atCursor } = this.chart;
       const value = atCursor ? (atCursor[index] ?? null) : series.buffer.lastValue;
-      const text = series.error ?? valueText(value);
+      const text = series.error ?? formatValue(value);
       if (output && output.textContent !== text) output.textContent = text;
     });
   }
@@ -139,7 +139,7 @@ export class PlotBox {
     const { window: shown, source } = this.state;
     const { series } = this.plot;
     if (!shown) return;
-    const text = csvText(series.map(fieldText), series.map((each) => each.buffer), source, ...shown);
+    const text = formatCsv(series.map(formatField), series.map((each) => each.buffer), source, ...shown);
     saveText("plot.csv", text, "text/csv");
   }
 }

@@ -26,7 +26,7 @@ export class PlotPanel implements Panel {
     private readonly topics: TopicsState,
   ) {
     const texts = strings.monitor.plot;
-    this.pause = button(texts.pauseHint, () => state.setPaused(!state.paused), "tool", strings.monitor.pause);
+    this.pause = button(texts.pauseHint, () => state.setPaused(!state.isPaused), "tool", strings.monitor.pause);
     const seconds = WINDOWS.map((count) => [String(count), texts.seconds(count)] as const);
     this.seconds = choice(texts.windowHint, seconds, (count) => state.setSeconds(Number(count)));
     const sources: [TimeSource, string][] = [
@@ -68,7 +68,7 @@ export class PlotPanel implements Panel {
   }
 
   private show(): void {
-    const { plots, paused } = this.state;
+    const { plots, isPaused } = this.state;
     for (const [plot, box] of this.boxes) {
       if (plots.includes(plot)) {
         box.show();
@@ -85,9 +85,9 @@ export class PlotPanel implements Panel {
       this.list.append(box.element);
     }
     const texts = strings.monitor;
-    this.pause.replaceChildren(icon(paused ? "play" : "pause"), paused ? texts.resume : texts.pause);
-    this.pause.title = paused ? texts.plot.resumeHint : texts.plot.pauseHint;
-    this.pause.classList.toggle("on", paused);
+    this.pause.replaceChildren(icon(isPaused ? "play" : "pause"), isPaused ? texts.resume : texts.pause);
+    this.pause.title = isPaused ? texts.plot.resumeHint : texts.plot.pauseHint;
+    this.pause.classList.toggle("on", isPaused);
     this.seconds.value = String(this.state.seconds);
     this.source.value = this.state.source;
   }

@@ -1,6 +1,6 @@
 import { h } from "../../dom";
 import type { TopicFields } from "../../protocol";
-import { fieldText, parseField, type FieldName } from "../../state/monitor/field-text";
+import { formatField, parseField, type FieldName } from "../../state/monitor/field-text";
 import type { PlotsState } from "../../state/monitor/plots";
 import type { TopicsState } from "../../state/monitor/topics";
 import { strings } from "../../strings";
@@ -92,7 +92,7 @@ export class PlotPicker {
       this.asked === null
         ? this.topics.topics.map(({ name, types }) => ({ text: name, note: types.join(", "), isField: false }))
         : (this.fields?.fields ?? []).map(({ path, kind }) => ({
-            text: fieldText({ topic: this.asked ?? "", path }),
+            text: formatField({ topic: this.asked ?? "", path }),
             note: kind,
             isField: true,
           }));
@@ -110,7 +110,7 @@ export class PlotPicker {
       row.addEventListener("click", () => this.choose(offer));
       return row;
     });
-    const nothing = this.asked === null ? (this.topics.known ? texts.noTopics : texts.asking) : this.fields ? (this.fields.error ?? texts.noFields) : texts.waiting;
+    const nothing = this.asked === null ? (this.topics.isKnown ? texts.noTopics : texts.asking) : this.fields ? (this.fields.error ?? texts.noFields) : texts.waiting;
     this.list.replaceChildren(...(rows.length > 0 ? rows : [h("li", { class: "note", role: "option", aria: { disabled: "true" } }, nothing)]));
     this.input.setAttribute("aria-activedescendant", rows.length > 0 ? `picker-${this.active}` : "");
     rows[this.active]?.scrollIntoView({ block: "nearest" });

@@ -1,7 +1,7 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
 import type { TwistKind } from "../../protocol";
-import { valueText } from "../../state/monitor/field-text";
+import { formatValue } from "../../state/monitor/field-text";
 import type { TeleopState } from "../../state/monitor/teleop";
 import { strings } from "../../strings";
 import { choice, numberField, tickBox } from "../../widgets/controls";
@@ -61,7 +61,7 @@ export class TeleopPanel implements Panel {
       this.isVisible = seen;
       if (!seen) this.pad.letGo();
       state.setOpen(seen);
-      this.gamepad.run(seen && state.settings.gamepad);
+      this.gamepad.run(seen && state.settings.usesGamepad);
     });
     this.show();
     this.showFocus();
@@ -83,11 +83,11 @@ export class TeleopPanel implements Panel {
     const rate = choice(texts.rateHint, rates, (chosen) => this.state.configure({ rate: Number(chosen) }));
     rate.value = String(settings.rate);
     const gamepad = tickBox(texts.gamepad, texts.gamepadHint, (ticked) => {
-      this.state.configure({ gamepad: ticked });
+      this.state.configure({ usesGamepad: ticked });
       this.gamepad.run(ticked && this.isVisible);
       if (!ticked) this.gamepadName.textContent = "";
     });
-    gamepad.box.checked = settings.gamepad;
+    gamepad.box.checked = settings.usesGamepad;
     const row = (text: string, ...parts: readonly (HTMLElement | string)[]): HTMLElement =>
       h("label", { class: "teleop-row" }, h("span", { class: "toolbar-label" }, text), h("span", {}, ...parts));
     return h(
@@ -111,10 +111,10 @@ export class TeleopPanel implements Panel {
     if (document.activeElement !== this.limits.angular) this.limits.angular.value = String(angular);
     this.aim.textContent = aim === null ? "" : (aim.error ?? `${aim.topic}: ${texts.listeners(aim.subscribers, aim.kind)}`);
     this.aim.classList.toggle("wrong", (aim?.error ?? null) !== null);
-    const parts = [`${valueText(motion.x * linear)} m/s`];
-    if (motion.y !== 0) parts.push(`y ${valueText(motion.y * linear)} m/s`);
-    if (motion.z !== 0) parts.push(`z ${valueText(motion.z * linear)} m/s`);
-    this.velocity.replaceChildren(...[...parts, `${valueText(motion.turn * angular)} rad/s`].map((text) => h("div", {}, text)));
+    const parts = [`${formatValue(motion.x * linear)} m/s`];
+    if (motion.y !== 0) parts.push(`y ${formatValue(motion.y * linear)} m/s`);
+    if (motion.z !== 0) parts.push(`z ${formatValue(motion.z * linear)} m/s`);
+    this.velocity.replaceChildren(...[...parts, `${formatValue(motion.turn * angular)} rad/s`].map((text) => h("div", {}, text)));
   }
 
   private showFocus(): void {

@@ -1,7 +1,7 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
 import type { TopicMessage, TopicRow, TopicTraffic } from "../../protocol";
-import { bandwidthText, clockText, rateText } from "../../state/monitor/figure-text";
+import { formatBandwidth, formatClock, formatRate } from "../../state/monitor/figure-text";
 import { strings } from "../../strings";
 import { MessageTree } from "./message-tree";
 
@@ -68,14 +68,14 @@ export class TopicLine {
   showTraffic(traffic: TopicTraffic | undefined): void {
     const { rate, bandwidth } = this.cells;
     const error = traffic?.error ?? null;
-    rate.textContent = typeof traffic?.rate !== "number" ? "" : strings.monitor.topics.hertz(rateText(traffic.rate));
-    bandwidth.textContent = typeof traffic?.bandwidth !== "number" ? "" : bandwidthText(traffic.bandwidth);
+    rate.textContent = typeof traffic?.rate !== "number" ? "" : strings.monitor.topics.hertz(formatRate(traffic.rate));
+    bandwidth.textContent = typeof traffic?.bandwidth !== "number" ? "" : formatBandwidth(traffic.bandwidth);
     this.head.classList.toggle("wrong", error !== null);
     if (error !== null) this.received.textContent = error;
   }
 
   showMessage({ received, fields }: TopicMessage): void {
-    this.received.textContent = strings.monitor.topics.ago(clockText(received));
+    this.received.textContent = strings.monitor.topics.ago(formatClock(received));
     this.tree.show(fields);
   }
 }

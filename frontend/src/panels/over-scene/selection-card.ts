@@ -31,8 +31,8 @@ export class SelectionCard {
     const { selectedLink } = this.session.selection;
     const wasHidden = this.element.hidden;
     // While the link is edited, the Editing panel shows it, and its handles need the space.
-    this.element.hidden = !selectedLink || this.session.editing.active;
-    if (!selectedLink || this.session.editing.active) {
+    this.element.hidden = !selectedLink || this.session.editing.isActive;
+    if (!selectedLink || this.session.editing.isActive) {
       if (!wasHidden && !this.folded) this.column.changed();
       return;
     }

@@ -31,7 +31,7 @@ export class SimulationBar {
     this.step = button(texts.step, () => simulation.sendControl("step"), "scene-tool small", icon("step"));
     const reset = button(texts.reset, () => simulation.sendControl("reset"), "scene-tool small", icon("reset"));
     const add = button(texts.spawn, () => this.askSpawn(simulation.freePlace()), "scene-tool small", icon("plus"));
-    this.modelButton = button(strings.modeling.begin, () => modeling.setActive(!modeling.active), "scene-tool small", icon("build"));
+    this.modelButton = button(strings.modeling.begin, () => modeling.setActive(!modeling.isActive), "scene-tool small", icon("build"));
     const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: texts.label } }, this.play, this.step, reset, add, this.modelButton, this.factor, this.time);
     this.element = h("div", { class: "simulation-bar" }, bar, new ModelingBar(modeling, commands).element, this.notice);
     simulation.changed.on(() => this.show());
@@ -58,13 +58,13 @@ export class SimulationBar {
   }
 
   private showModeling(): void {
-    const { available, active } = this.modeling;
-    const label = active ? strings.modeling.end : strings.modeling.begin;
-    this.modelButton.hidden = !available;
+    const { isAvailable, isActive } = this.modeling;
+    const label = isActive ? strings.modeling.end : strings.modeling.begin;
+    this.modelButton.hidden = !isAvailable;
     this.modelButton.title = label;
     this.modelButton.setAttribute("aria-label", label);
-    this.modelButton.setAttribute("aria-pressed", String(active));
-    this.modelButton.classList.toggle("active", active);
+    this.modelButton.setAttribute("aria-pressed", String(isActive));
+    this.modelButton.classList.toggle("active", isActive);
   }
 
   private showNotice(text: string): void {

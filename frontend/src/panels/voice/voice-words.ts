@@ -4,13 +4,13 @@ import { strings } from "../../strings";
 /** Returns the obstacle to talking and its remedy; null if there is none. */
 export function obstacle(voice: VoiceState): string | null {
   const texts = strings.voice;
-  const { microphone, serverState, held, open } = voice;
+  const { microphone, serverState, isHeld, isPanelOpen } = voice;
   if (microphone.problem === "insecure") return texts.insecure(location.hostname, location.port || "80");
   if (microphone.problem === "failed") return texts.failed(microphone.detail);
   if (microphone.problem !== null) return texts.problems[microphone.problem];
   if (serverState?.cut === true) return texts.cut;
-  if (voice.hasGaps && !voice.answered) return texts.gaps;
-  if (!held && !open) return null;
+  if (voice.hasGaps && !voice.hasAnswer) return texts.gaps;
+  if (!isHeld && !isPanelOpen) return null;
   if (serverState?.talking === "another") return texts.another;
   if (serverState?.sound_listeners === 0) return texts.nobody;
   return null;
@@ -20,6 +20,6 @@ export function obstacle(voice: VoiceState): string | null {
 export function activity(voice: VoiceState): string {
   const texts = strings.voice;
   if (voice.microphone.isOpening) return texts.opening;
-  if (voice.held) return texts.listening;
-  return voice.open ? texts.openListening : texts.idle;
+  if (voice.isHeld) return texts.listening;
+  return voice.isPanelOpen ? texts.openListening : texts.idle;
 }
