@@ -110,17 +110,17 @@ export function publishInspection(
       return robot && { name: robot.name, links: robot.links.length, visuals: stage?.visualsDrawn ?? 0 };
     },
     get displays() {
-      return session.displays.displays.map(({ id, name, cls, enabled, level, status }) => ({
+      return session.displays.displays.map(({ id, name, cls, isEnabled, level, status }) => ({
         name,
         class: cls,
-        enabled,
+        enabled: isEnabled,
         level,
         status: status.map((row) => ({ ...row })),
         drawn: stage?.inspect(id) ?? null,
       }));
     },
     get view(): Inspection["view"] {
-      const { current, values, camera, saved } = session.view;
+      const { current, values, camera, savedViews } = session.view;
       const [x, y, z] = vector(values, "Focal Point", [0, 0, 0]);
       return {
         type: shortName(current.cls),
@@ -130,7 +130,7 @@ export function publishInspection(
         focalPoint: [x, y, z],
         values: { ...values },
         camera,
-        saved: saved.map(({ view }) => view.name),
+        saved: savedViews.map(({ view }) => view.name),
       };
     },
     get tool() {
@@ -145,27 +145,27 @@ export function publishInspection(
       return session.selection.items.map((item) => ({ ...item }));
     },
     get timeline() {
-      const { timeline, position, playing, problem, live, extent } = session.timeline;
+      const { timeline, position, isPlaying, problem, isLive, extent } = session.timeline;
       if (!timeline) return null;
       const { name, start, end } = timeline;
-      return { name, position: position - start, length: end - start, playing, problem, live, kept: extent?.size ?? 0 };
+      return { name, position: position - start, length: end - start, playing: isPlaying, problem, live: isLive, kept: extent?.size ?? 0 };
     },
     get recording() {
-      const { path, length, saved, problem, files } = session.recording;
+      const { path, length, savedBytes, problem, files } = session.recording;
       const { mark, timeline } = session.timeline;
       const start = timeline?.start ?? 0;
-      return { path, length, saved, problem, files: files.map((file) => file.path), mark: mark && [mark.start - start, mark.end - start] };
+      return { path, length, saved: savedBytes, problem, files: files.map((file) => file.path), mark: mark && [mark.start - start, mark.end - start] };
     },
     get time() {
-      const { paused, mode, source, sources } = session.time;
-      return { paused, mode, source, sources: [...sources] };
+      const { isPaused, mode, source, sources } = session.time;
+      return { paused: isPaused, mode, source, sources: [...sources] };
     },
     get joints() {
       return { ...session.joints.positions };
     },
     get description() {
       const display = session.robot?.display ?? "";
-      const model = session.description.of(display);
+      const model = session.description.modelOf(display);
       const { current } = session.focus;
       return {
         revision: model?.description.revision ?? 0,
@@ -183,7 +183,7 @@ export function publishInspection(
       return stage?.inspected ?? null;
     },
     get selected() {
-      const link = session.selection.selected?.link;
+      const link = session.selection.selectedLink?.link;
       if (!link) return null;
       const { file = null, line = null, column = null } = link.place ?? {};
       return { link: link.name, file, line, column };

@@ -228,7 +228,7 @@ function addressBar(): AddressBar {
 /** Opens and closes the panels that depend on available data, in whichever arrangement is shown. */
 function followAvailability(dock: Dock, session: Session): void {
   const followJoints = openWhile(dock, "joints", () => session.joints.controls !== null);
-  const followWorld = openWhile(dock, "world", () => session.modeling.active);
+  const followWorld = openWhile(dock, "world", () => session.modeling.isActive);
   const followComparison = openWhile(dock, "comparison", () => session.comparison.compared !== null);
   const followCourse = (["lesson", "checks"] as const).map((id) => openWhile(dock, id, () => session.course.isAvailable));
   const followTerminals = openWhile(dock, "terminal", () => session.terminals.isAvailable);
@@ -294,7 +294,7 @@ function connectTools(stage: Stage, session: Session, model: (event: ToolEvent) 
 /** Loads the code for modeling the world when it is needed first. */
 function loadModeler(stage: Stage, session: Session, made: (modeler: Modeler) => void): void {
   const stop = session.modeling.changed.on(() => {
-    if (!session.modeling.active) return;
+    if (!session.modeling.isActive) return;
     stop();
     void import("./scene/modeling/modeler").then(({ Modeler }) => made(new Modeler(stage, session)));
   });
@@ -303,7 +303,7 @@ function loadModeler(stage: Stage, session: Session, made: (modeler: Modeler) =>
 /** Loads the handles of a robot's parts when one is edited first. */
 function loadPartHandles(stage: Stage, session: Session, made: (handles: PartHandles) => void): void {
   const stop = session.editing.changed.on(() => {
-    if (!session.editing.active) return;
+    if (!session.editing.isActive) return;
     stop();
     void import("./scene/editing/part-handles").then(({ PartHandles }) => made(new PartHandles(stage, session)));
   });

@@ -2,7 +2,7 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { ComparedDescriptions, ComparedItem } from "../src/protocol";
 import { shortPlace } from "../src/panels/place";
-import { ComparisonState, groupDifferences, MARK_COLORS, marksIn } from "../src/state/comparison";
+import { ComparisonState, groupDifferences, MARK_COLORS, usedMarks } from "../src/state/comparison";
 
 function item(part: Partial<ComparedItem> = {}): ComparedItem {
   return {
@@ -52,7 +52,7 @@ describe("two descriptions in one scene", () => {
   });
 
   it("colors only the differences of the new robot, and nothing while marks are off", () => {
-    expect(comparison.overrideOf("display-1", "arm")?.behind).toBeUndefined();
+    expect(comparison.overrideOf("display-1", "arm")?.isBehind).toBeUndefined();
     expect(comparison.overrideOf("display-1", "base")).toBeNull();
     expect(comparison.overrideOf("display-7", "arm")).toBeNull();
     const changed = vi.fn();
@@ -80,7 +80,7 @@ describe("two descriptions in one scene", () => {
   it("groups the differences of one element, and lists only kinds that occur in the legend", () => {
     const groups = groupDifferences(TOLD.items);
     expect(groups.map(({ items, kind }) => [items.length, kind])).toEqual([[2, "changed"], [1, "changed"], [1, "removed"]]);
-    expect(marksIn([TOLD.new, TOLD.old])).toEqual(["changed", "removed", "old"]);
+    expect(usedMarks([TOLD.new, TOLD.old])).toEqual(["changed", "removed", "old"]);
   });
 });
 

@@ -7,7 +7,7 @@ import { AngleUnits } from "../src/state/angle-unit";
 import { DescriptionModel } from "../src/state/description-model";
 import { layOut } from "../src/state/diagram-layout";
 import { InspectState } from "../src/state/inspect";
-import { cellTexts, sortJoints } from "../src/state/joint-table";
+import { formatJointCells, sortJoints } from "../src/state/joint-table";
 import { visibleRows, LinkTreeState } from "../src/state/link-tree";
 import { formatGeneral } from "../src/state/number-text";
 import { Session } from "../src/state/session";
@@ -87,7 +87,7 @@ describe("the description", () => {
     const release = session.description.hold();
     expect(sent).toEqual([{ type: "ask_description", display: "d1" }]);
     receive(description());
-    expect(session.description.of("d1")?.links.size).toBe(4);
+    expect(session.description.modelOf("d1")?.links.size).toBe(4);
     release();
     session.description.hold()();
     expect(sent).toHaveLength(1);
@@ -108,13 +108,13 @@ describe("the description", () => {
 
   it("requests a text once, and again when it may have changed", () => {
     const { description: texts } = session;
-    expect(texts.text("d1", "")).toBeUndefined();
-    expect(texts.text("d1", "")).toBeUndefined();
+    expect(texts.textOf("d1", "")).toBeUndefined();
+    expect(texts.textOf("d1", "")).toBeUndefined();
     expect(sent).toHaveLength(1);
     receive({ type: "description_text", display: "d1", revision: 1, file: "", text: "<robot/>" });
-    expect(texts.text("d1", "")).toBe("<robot/>");
+    expect(texts.textOf("d1", "")).toBe("<robot/>");
     receive({ type: "diagnostics", items: [] });
-    expect(texts.text("d1", "")).toBeUndefined();
+    expect(texts.textOf("d1", "")).toBeUndefined();
     expect(sent).toHaveLength(2);
   });
 });
@@ -129,7 +129,7 @@ describe("the element that panels show", () => {
   it("is a joint until another link is selected; the scene highlights the link that it moves", () => {
     const { focus, selection } = session;
     focus.select({ display: "d1", kind: "joint", name: "turn" });
-    expect(selection.selected?.link.name).toBe("left");
+    expect(selection.selectedLink?.link.name).toBe("left");
     expect(focus.current).toEqual({ display: "d1", kind: "joint", name: "turn" });
     focus.select({ display: "d1", kind: "link", name: "left" });
     expect(focus.current?.kind).toBe("link");
@@ -146,7 +146,7 @@ describe("the model", () => {
 
   it("is a tree with depths and positions in the source", () => {
     expect(model.jointsBelow("base").map((each) => each.name)).toEqual(["lift", "turn"]);
-    expect([model.depthOf("base"), model.depthOf("tip"), model.deepest]).toEqual([0, 2, 2]);
+    expect([model.depthOf("base"), model.depthOf("tip"), model.maxDepth]).toEqual([0, 2, 2]);
     expect(model.elementsAt("m.xacro", 4).map((each) => each.name)).toEqual(["left", "right"]);
     expect(model.elementsAt("m.xacro", 7)).toEqual([]);
     expect(model.elementsAt("other", 4)).toEqual([]);
@@ -169,8 +169,8 @@ describe("the model", () => {
     const of = (name: string): (typeof nodes)[number] => nodes.find((node) => node.element.name === name)!;
     expect(nodes).toHaveLength(7);
     expect(of("turn").origin).toEqual(["xyz: 0 0 0.5", "rpy: 0 -0 1.5708"]);
-    expect(of("left").above).toBe(of("turn"));
-    expect(of("turn").above).toBe(of("base"));
+    expect(of("left").parent).toBe(of("turn"));
+    expect(of("turn").parent).toBe(of("base"));
     expect(of("lift").x).toBeLessThan(of("turn").x);
     expect(of("base").y).toBeLessThan(of("turn").y);
     expect(of("turn").y).toBeLessThan(of("left").y);
@@ -200,10 +200,10 @@ describe("the joint table", () => {
   it("has units, with degrees on request", () => {
     const angles = new AngleUnits(browserStorage());
     const one = joint("a", "b", "c", { damping: 0.5, mimic: { joint: "m", multiplier: -1, offset: Math.PI / 2 } });
-    expect(cellTexts(one, angles, words)).toMatchObject({ lower: "-1 rad", effort: "4 N m", dynamics: "d 0.5", mimic: "−m + 1.571 rad" });
+    expect(formatJointCells(one, angles, words)).toMatchObject({ lower: "-1 rad", effort: "4 N m", dynamics: "d 0.5", mimic: "−m + 1.571 rad" });
     angles.current = "deg";
-    expect(cellTexts(one, angles, words)).toMatchObject({ upper: "114.6 deg", velocity: "171.9 deg/s", mimic: "−m + 90 deg" });
-    expect(cellTexts({ ...one, kind: "prismatic" }, angles, words)).toMatchObject({ lower: "-1 m", effort: "4 N" });
+    expect(formatJointCells(one, angles, words)).toMatchObject({ upper: "114.6 deg", velocity: "171.9 deg/s", mimic: "−m + 90 deg" });
+    expect(formatJointCells({ ...one, kind: "prismatic" }, angles, words)).toMatchObject({ lower: "-1 m", effort: "4 N" });
   });
 
   it("sorts by number or name, with empty values last", () => {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { layOutTree, type TreeNode } from "../src/state/tidy-tree";
-import { lineStates, tokenize, type LineState } from "../src/state/xml-tokens";
+import { computeLineStates, tokenize, type LineState } from "../src/state/xml-tokens";
 
 function kinds(line: string, state: LineState = "text"): string[] {
   return tokenize(line, state).tokens.map((token) => `${token.kind}:${token.text}`);
@@ -31,7 +31,7 @@ describe("colors of XML", () => {
 
   it("continue over line ends", () => {
     const lines = ["<a b='1", "2' c", ' = "x>y"', ">t<!-- a <b> -->", "<!-- c", "d --><e/>", "<![CDATA[ <f> ", "]]><?g", "h?>"];
-    expect(lineStates(lines)).toEqual(["text", "'", "tag", "tag", "text", "comment", "text", "cdata", "instruction"]);
+    expect(computeLineStates(lines)).toEqual(["text", "'", "tag", "tag", "text", "comment", "text", "cdata", "instruction"]);
     expect(kinds("d --><e/>", "comment")).toEqual(["comment:d -->", "punctuation:<", "tag:e", "punctuation:/>"]);
   });
 
@@ -53,13 +53,13 @@ describe("colors of XML", () => {
       state = tokenize(line, state).state;
       return before;
     });
-    expect(lineStates(lines)).toEqual(slow);
+    expect(computeLineStates(lines)).toEqual(slow);
   });
 
   it("are computed quickly for a megabyte", () => {
     const lines = Array.from({ length: 25_000 }, (_, i) => `    <link name="link_${i}" a="\${x}">text</link>`);
     const start = performance.now();
-    lineStates(lines);
+    computeLineStates(lines);
     expect(performance.now() - start).toBeLessThan(250);
   });
 });

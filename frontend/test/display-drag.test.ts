@@ -71,8 +71,8 @@ describe("groups", () => {
     state.enabledChanged.on((each) => told.push(each.id));
     state.setValue("sensors/Enabled", false, null);
     expect(told).toEqual(["sensors", "laser", "deep", "cloud"]);
-    expect(state.displays.filter((each) => !each.enabled).map((each) => each.id)).toEqual(told);
-    expect(state.find("laser")?.checked).toBe(true);
+    expect(state.displays.filter((each) => !each.isEnabled).map((each) => each.id)).toEqual(told);
+    expect(state.find("laser")?.isChecked).toBe(true);
     told.length = 0;
     state.setValue("deep/Enabled", false, null);
     expect(told).toEqual(["deep"]);

@@ -104,7 +104,7 @@ describe("editing", () => {
     expect(editing.isOpen).toBe(false);
     connection.message.emit({ type: "robot_scene", display: "d", revision: 2, name: "r", links: [], joints: [] });
     expect(editing.draft).toBeNull();
-    expect(editing.written).toEqual(["/r.urdf"]);
+    expect(editing.writtenFiles).toEqual(["/r.urdf"]);
   });
 
   it("keeps a draft when other parts of the robot change, and drops it when its own values do", () => {

@@ -35,8 +35,8 @@ describe("the frame store", () => {
     store.setTable({ type: "frame_table", revision: 1, names: ["base", "lost"], parents: [-1, 0] });
     store.setTransforms(transforms(1, [HERE, NOWHERE]));
     expect(store.snapshot()).toEqual({ base: { position: [1, 2, 3], orientation: [0, 0, 0, 1] } });
-    expect(store.has(store.row("lost"))).toBe(false);
-    expect(store.has(store.row("unknown"))).toBe(false);
+    expect(store.has(store.rowOf("lost"))).toBe(false);
+    expect(store.has(store.rowOf("unknown"))).toBe(false);
   });
 
   it("emits changes only if a pose has changed", () => {

@@ -41,7 +41,7 @@ class Hall implements InitialViewWorld {
 
   fallen = false;
 
-  extents(): { robots: Box3; world: Box3 } {
+  boundsByKind(): { robots: Box3; world: Box3 } {
     return { robots: this.hasRobots && !this.fallen ? ROBOT : new Box3(), world: HALL };
   }
 

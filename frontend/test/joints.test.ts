@@ -3,7 +3,7 @@ import { Connection } from "../src/connection/connection";
 import { splitName } from "../src/panels/joints/joint-row";
 import type { JointControl, PageMessage, ServerMessage } from "../src/protocol";
 import { JointsState } from "../src/state/joints";
-import { PoseStore, fromSrdf, toSrdf, matchesPose } from "../src/state/named-poses";
+import { PoseStore, readSrdf, toSrdf, matchesPose } from "../src/state/named-poses";
 import { roundTrip, Sweep } from "../src/state/sweep";
 import { browserStorage } from "../src/storage";
 
@@ -41,7 +41,7 @@ describe("moving joints", () => {
     });
 
     it("restores the moved joints once after the sliders appear", () => {
-      joints.programRestarted(true);
+      joints.onProgramRestarted(true);
       emit({ type: "joints", controls: null });
       emit({ type: "joints", controls: [] });
       expect(sent).toEqual([]);
@@ -51,13 +51,13 @@ describe("moving joints", () => {
     });
 
     it("does not move joints that were at zero, are gone, or belong to another robot that is shown now", () => {
-      joints.programRestarted(true);
+      joints.onProgramRestarted(true);
       emit({ type: "joints", controls: [control("other")] });
       emit({ type: "joint_positions", positions: { other: 0 } });
-      joints.programRestarted(true);
+      joints.onProgramRestarted(true);
       emit({ type: "joints", controls: [control("other")] });
       emit({ type: "joint_positions", positions: { other: 1 } });
-      joints.programRestarted(false);
+      joints.onProgramRestarted(false);
       emit({ type: "joints", controls: [control("other")] });
       expect(sent).toEqual([]);
     });
@@ -77,11 +77,11 @@ describe("moving joints", () => {
   });
 
   it("finds the joint that moves a mimic joint, and its required position", () => {
-    expect(joints.leader("grip", 0.7)?.position).toBe(0.7);
-    const found = joints.leader("tip", 1.5);
+    expect(joints.leaderOf("grip", 0.7)?.position).toBe(0.7);
+    const found = joints.leaderOf("tip", 1.5);
     expect(found?.control.name).toBe("grip");
     expect(found?.position).toBe(-0.5);
-    expect(joints.leader("fixed", 0)).toBeNull();
+    expect(joints.leaderOf("fixed", 0)).toBeNull();
   });
 });
 
@@ -104,7 +104,7 @@ describe("named poses", () => {
 
   it("survive export to SRDF and import", () => {
     const poses = [home, { name: 'say "hi" & go', positions: { a: 3 } }];
-    expect(fromSrdf(toSrdf("r&d", poses))).toEqual(poses);
+    expect(readSrdf(toSrdf("r&d", poses))).toEqual(poses);
   });
 
   it("are read from a MoveIt file", () => {
@@ -116,11 +116,11 @@ describe("named poses", () => {
       </group_state>
       <group_state group="hand" name="ready"><joint name="z" value="0"></joint></group_state>
     </robot>`;
-    expect(fromSrdf(text)).toEqual([
+    expect(readSrdf(text)).toEqual([
       { name: "ready", positions: { x: 1.5, y: -2 } },
       { name: "ready (hand)", positions: { z: 0 } },
     ]);
-    expect(fromSrdf("no XML at all")).toEqual([]);
+    expect(readSrdf("no XML at all")).toEqual([]);
   });
 
   it("are marked if the robot is in that pose", () => {

@@ -15,7 +15,7 @@ function drawing(): MarkersDrawing {
 
 function send(to: MarkersDrawing, markers: MarkerShape[], gone: string[] = []): void {
   const content = { kind: "markers_changed", everything: false, gone, markers };
-  to.dataChanged({ display: "display-1", key: "", content } as unknown as Parameters<MarkersDrawing["dataChanged"]>[0]);
+  to.onDataChanged({ display: "display-1", key: "", content } as unknown as Parameters<MarkersDrawing["onDataChanged"]>[0]);
   to.update();
 }
 

@@ -181,11 +181,11 @@ describe("the progress of meshes", () => {
     const progress = new MeshProgress();
     const told = (): string[] => progress.loads.map((load) => `${load.name} ${progressText(load)}`);
     const report = progress.begin("arm.stl");
-    report.received(20_000, null);
+    report.onBytes(20_000, null);
     expect(told()).toEqual([]);
     await vi.advanceTimersByTimeAsync(500);
     expect(told()).toEqual(["arm.stl 20 kB"]);
-    report.received(1_200_000, 4_000_000);
+    report.onBytes(1_200_000, 4_000_000);
     expect(told()).toEqual(["arm.stl 1.2 MB of 4.0 MB"]);
     void report.startReading();
     expect(told()).toEqual(["arm.stl reading"]);
@@ -198,11 +198,11 @@ describe("the progress of meshes", () => {
     vi.stubGlobal("requestAnimationFrame", (call: () => void) => setTimeout(call, 16));
     const progress = new MeshProgress();
     const soon = progress.begin("small.stl");
-    soon.received(100, 100);
+    soon.onBytes(100, 100);
     await soon.startReading();
     soon.end();
     const large = progress.begin("large.stl");
-    large.received(50_000_000, 50_000_000);
+    large.onBytes(50_000_000, 50_000_000);
     let painted = false;
     void large.startReading().then(() => (painted = true));
     expect([progress.loads.length, painted]).toEqual([1, false]);

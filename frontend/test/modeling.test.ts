@@ -4,7 +4,7 @@ import { hex, entityItems } from "../src/panels/modeling/entity-items";
 import type { ModelingState, PageMessage, WorldEntity } from "../src/protocol";
 import { AngleUnits } from "../src/state/angle-unit";
 import { Modeling } from "../src/state/modeling/modeling";
-import { placementAt, resizeChange, scaledSize, stretchFactors, wallBetween } from "../src/state/modeling/shapes";
+import { placementAt, resizeChange, scaledSize, stretchFactors, placeWall } from "../src/state/modeling/shapes";
 import { Snapping, snap } from "../src/state/modeling/snapping";
 import { browserStorage } from "../src/storage";
 import type { TreeItem } from "../src/tree/tree-item";
@@ -44,12 +44,12 @@ describe("snapping", () => {
     const storage = browserStorage();
     const snapping = new Snapping(storage);
     [snapping.meters, snapping.degrees] = [0.5, 90];
-    expect(snapping.steps(false)).toEqual({ length: 0.5, angle: Math.PI / 2 });
-    expect(snapping.steps(true)).toEqual({ length: 0, angle: 0 });
-    snapping.enabled = false;
+    expect(snapping.currentSteps(false)).toEqual({ length: 0.5, angle: Math.PI / 2 });
+    expect(snapping.currentSteps(true)).toEqual({ length: 0, angle: 0 });
+    snapping.isEnabled = false;
     const again = new Snapping(storage);
-    expect([again.enabled, again.meters, again.degrees]).toEqual([false, 0.5, 90]);
-    expect(again.steps(true).length).toBe(0.5);
+    expect([again.isEnabled, again.meters, again.degrees]).toEqual([false, 0.5, 90]);
+    expect(again.currentSteps(true).length).toBe(0.5);
   });
 });
 
@@ -62,9 +62,9 @@ describe("shapes", () => {
   });
 
   it("include a wall from one point to another", () => {
-    const wall = wallBetween([1, 1], [1, 4]);
+    const wall = placeWall([1, 1], [1, 4]);
     expect(wall).toEqual({ pose: [1, 2.5, 0.5, 0, 0, Math.PI / 2], size: [3, 0.1, 1] });
-    expect(wallBetween([1, 1], [1, 1])).toBeNull();
+    expect(placeWall([1, 1], [1, 1])).toBeNull();
   });
 
   it("scale along their axes, round ones by the axis scaled most, never to zero", () => {
@@ -88,21 +88,21 @@ describe("the selection", () => {
     told({}, entity({ name: "a" }), entity({ name: "b" }));
     modeling.select(["a"]);
     modeling.select(["b"], "toggle");
-    expect(modeling.selected).toEqual(["a", "b"]);
+    expect(modeling.selectedNames).toEqual(["a", "b"]);
     modeling.select(["a"], "toggle");
-    expect(modeling.selected).toEqual(["b"]);
+    expect(modeling.selectedNames).toEqual(["b"]);
   });
 
   it("contains entities that this page has created, and no removed ones", () => {
     told({}, entity({ name: "a" }));
     modeling.select(["a"]);
     told({}, entity({ name: "a" }), entity({ name: "of another page" }));
-    expect(modeling.selected).toEqual(["a"]);
+    expect(modeling.selectedNames).toEqual(["a"]);
     modeling.add({ kind: "box", address: "" }, placementAt("box", [0, 0]));
     told({ can_undo: true }, entity({ name: "a" }), entity({ name: "box" }));
-    expect(modeling.selected).toEqual(["box"]);
+    expect(modeling.selectedNames).toEqual(["box"]);
     told({ can_redo: true }, entity({ name: "a" }));
-    expect(modeling.selected).toEqual([]);
+    expect(modeling.selectedNames).toEqual([]);
   });
 
   it("follows an entity that is renamed, unless the server refuses", () => {
@@ -110,24 +110,24 @@ describe("the selection", () => {
     modeling.select(["a"]);
     modeling.change([{ name: "a", new_name: "b" }]);
     told({}, entity({ name: "b" }));
-    expect(modeling.selected).toEqual(["b"]);
+    expect(modeling.selectedNames).toEqual(["b"]);
     modeling.change([{ name: "b", new_name: "c" }]);
     connection.message.emit({ type: "simulation_notice", text: "no" });
     told({}, entity({ name: "b" }), entity({ name: "d" }));
-    expect(modeling.selected).toEqual(["b"]);
+    expect(modeling.selectedNames).toEqual(["b"]);
   });
 
   it("is cleared, and placing stops, when modeling ends", () => {
     told({}, entity({ name: "a" }));
     modeling.select(["a"]);
-    modeling.place({ kind: "box", address: "" });
+    modeling.startPlacing({ kind: "box", address: "" });
     told({ active: false }, entity({ name: "a" }));
-    expect([modeling.selected, modeling.placing]).toEqual([[], null]);
+    expect([modeling.selectedNames, modeling.placing]).toEqual([[], null]);
   });
 });
 
 it("entities dropped before the scene is ready are placed once it is", () => {
-  const drop = { placing: { kind: "box", address: "" }, at: null } as const;
+  const drop = { placing: { kind: "box", address: "" }, position: null } as const;
   modeling.drop(drop);
   expect([modeling.takeDrop(), modeling.takeDrop()]).toEqual([drop, null]);
 });
@@ -161,7 +161,7 @@ describe("commands", () => {
     told({}, entity({ name: "a" }), entity({ name: "b" }));
     modeling.select(["a", "b"]);
     modeling.copy();
-    modeling.group();
+    modeling.groupSelected();
     modeling.remove();
     modeling.paste();
     modeling.save(null);

@@ -1,12 +1,12 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { LogLine, PageMessage } from "../src/protocol";
-import { bandwidthText, rateText } from "../src/state/monitor/figure-text";
-import { levelOf, lineText, LogState, MAX_LINES } from "../src/state/monitor/log";
+import { formatBandwidth, formatRate } from "../src/state/monitor/figure-text";
+import { levelOf, formatLine, LogState, MAX_LINES } from "../src/state/monitor/log";
 import { ParametersState } from "../src/state/monitor/parameters";
-import { parameterText, parameterValues } from "../src/state/monitor/parameter-text";
+import { formatParameter, parseParameter } from "../src/state/monitor/parameter-text";
 import { TeleopState } from "../src/state/monitor/teleop";
-import { motionOfKey, STILL, stickDeflection, sumOf } from "../src/state/monitor/teleop-keys";
+import { motionOfKey, STILL, computeDeflection, sumOf } from "../src/state/monitor/teleop-keys";
 import { TopicsState } from "../src/state/monitor/topics";
 
 let sent: PageMessage[];
@@ -53,32 +53,32 @@ describe("topics", () => {
   });
 
   it("have readable figures", () => {
-    expect([12, 1500, 45_678, 2.5e6, 3e9].map(bandwidthText)).toEqual(["12 B/s", "1.50 KB/s", "45.7 KB/s", "2.50 MB/s", "3.00 GB/s"]);
-    expect([0.2, 29.97, 1000.4].map(rateText)).toEqual(["0.20", "30.0", "1000"]);
+    expect([12, 1500, 45_678, 2.5e6, 3e9].map(formatBandwidth)).toEqual(["12 B/s", "1.50 KB/s", "45.7 KB/s", "2.50 MB/s", "3.00 GB/s"]);
+    expect([0.2, 29.97, 1000.4].map(formatRate)).toEqual(["0.20", "30.0", "1000"]);
   });
 });
 
 describe("texts of parameters", () => {
   it("show lists in brackets", () => {
-    expect(parameterText("double", ["1.5"])).toBe("1.5");
-    expect(parameterText("integer_array", ["1", "2"])).toBe("[1, 2]");
-    expect(parameterText("string_array", ["a", 'b"c'])).toBe('["a", "b\\"c"]');
-    expect(parameterText("bool_array", [])).toBe("[]");
+    expect(formatParameter("double", ["1.5"])).toBe("1.5");
+    expect(formatParameter("integer_array", ["1", "2"])).toBe("[1, 2]");
+    expect(formatParameter("string_array", ["a", 'b"c'])).toBe('["a", "b\\"c"]');
+    expect(formatParameter("bool_array", [])).toBe("[]");
   });
 
   it("are parsed", () => {
-    expect(parameterValues("string", "[a, b]")).toEqual(["[a, b]"]);
-    expect(parameterValues("integer_array", "[1, 2]")).toEqual(["1", "2"]);
-    expect(parameterValues("double_array", "1.5, 2")).toEqual(["1.5", "2"]);
-    expect(parameterValues("string_array", '["a, b", "c"]')).toEqual(["a, b", "c"]);
-    expect(parameterValues("string_array", "a, b c")).toEqual(["a", "b c"]);
-    expect(parameterValues("string_array", "[]")).toEqual([]);
-    expect(parameterValues("string_array", '["a, b]')).toBeNull();
+    expect(parseParameter("string", "[a, b]")).toEqual(["[a, b]"]);
+    expect(parseParameter("integer_array", "[1, 2]")).toEqual(["1", "2"]);
+    expect(parseParameter("double_array", "1.5, 2")).toEqual(["1.5", "2"]);
+    expect(parseParameter("string_array", '["a, b", "c"]')).toEqual(["a, b", "c"]);
+    expect(parseParameter("string_array", "a, b c")).toEqual(["a", "b c"]);
+    expect(parseParameter("string_array", "[]")).toEqual([]);
+    expect(parseParameter("string_array", '["a, b]')).toBeNull();
   });
 
   it("survive formatting and parsing", () => {
     const values = ["", "a,b", 'say "x"', "[1]", "ü"];
-    expect(parameterValues("string_array", parameterText("string_array", values))).toEqual(values);
+    expect(parseParameter("string_array", formatParameter("string_array", values))).toEqual(values);
   });
 });
 
@@ -107,12 +107,12 @@ describe("the log", () => {
     const log = new LogState(connection, storage);
     receive([line({ level: 10 }), line({ level: 40, node: "base", message: "Hot" }), line({})]);
     log.setLevel(10, false);
-    expect(log.shown.map(({ level }) => level)).toEqual([40, 20]);
+    expect(log.shownLines.map(({ level }) => level)).toEqual([40, 20]);
     log.setNode("base");
-    expect(log.shown.map(({ message }) => message)).toEqual(["Hot"]);
+    expect(log.shownLines.map(({ message }) => message)).toEqual(["Hot"]);
     log.setNode("");
     log.setText("hO");
-    expect(log.shown).toHaveLength(1);
+    expect(log.shownLines).toHaveLength(1);
     expect(log.nodes).toEqual(["base", "talker"]);
     expect(new LogState(connection, storage).levels.has(10)).toBe(false);
   });
@@ -123,7 +123,7 @@ describe("the log", () => {
     receive([line({})]);
     expect(log.lines).toHaveLength(0);
     log.setPaused(false);
-    expect(log.shown).toHaveLength(1);
+    expect(log.shownLines).toHaveLength(1);
   });
 
   it("keeps a limited number of records", () => {
@@ -132,13 +132,13 @@ describe("the log", () => {
       receive(Array.from({ length: 1000 }, (_, index) => line({ message: String(block * 1000 + index) })), 1);
     }
     expect(log.lines.length).toBeLessThanOrEqual(MAX_LINES);
-    expect(log.shown).toHaveLength(log.lines.length);
-    expect(log.shown.at(-1)?.message).toBe("44999");
-    expect(log.missed).toBe(45);
+    expect(log.shownLines).toHaveLength(log.lines.length);
+    expect(log.shownLines.at(-1)?.message).toBe("44999");
+    expect(log.missedCount).toBe(45);
   });
 
   it("is copied in the format of the console", () => {
-    const text = lineText(line({ level: 30, file: "/x/talker.py", line: 7 }), "WARN");
+    const text = formatLine(line({ level: 30, file: "/x/talker.py", line: 7 }), "WARN");
     expect(text).toBe("[WARN] [1.500000000] [talker]: hello (/x/talker.py:7)");
     expect([5, 10, 25, 50, 99].map((level) => levelOf({ level }))).toEqual([10, 10, 20, 50, 50]);
   });
@@ -160,8 +160,8 @@ describe("driving", () => {
   });
 
   it("by a stick has a dead zone in the middle", () => {
-    expect([0.1, -0.1, 1, -1].map((value) => stickDeflection(value))).toEqual([0, 0, 1, -1]);
-    expect(stickDeflection(0.5)).toBeGreaterThan(0.4);
+    expect([0.1, -0.1, 1, -1].map((value) => computeDeflection(value))).toEqual([0, 0, 1, -1]);
+    expect(computeDeflection(0.5)).toBeGreaterThan(0.4);
   });
 
   it("repeats the command while a key is held and ends with a single zero", () => {

@@ -1,11 +1,11 @@
 import { describe, expect, it } from "vitest";
 import type { NodeGraph } from "../src/protocol";
 import { layOutLayers, type Layout, type Link } from "../src/state/monitor/graph-layout";
-import { drawnGraph, type GraphOptions } from "../src/state/monitor/graph-model";
+import { buildGraph, type GraphOptions } from "../src/state/monitor/graph-model";
 import { isotonic } from "../src/state/monitor/isotonic";
 
 const box = (id: string): { id: string; width: number; height: number } => ({ id, width: 100, height: 28 });
-const link = (from: string, to: string): Link => ({ from, to });
+const link = (source: string, target: string): Link => ({ source, target });
 
 function overlaps({ boxes }: Layout): string[] {
   const all = [...boxes.values()];
@@ -57,7 +57,7 @@ describe("the layout", () => {
 
   it("routes long links around the boxes between their ends", () => {
     const layout = layOutLayers(["a", "b", "c"].map(box), [link("a", "b"), link("b", "c"), link("a", "c")]);
-    const way = layout.routes.find(({ from, to }) => from === "a" && to === "c");
+    const way = layout.routes.find(({ source, target }) => source === "a" && target === "c");
     expect(way?.points).toHaveLength(3);
     const middle = layout.boxes.get("b");
     expect(Math.abs((way?.points[1]?.[1] ?? 0) - (middle?.y ?? 0))).toBeGreaterThan(14);
@@ -107,7 +107,7 @@ const GRAPH: NodeGraph = {
 const OPTIONS: GraphOptions = { mode: "active", debug: false, tf: true, grouped: false, openGroups: new Set() };
 
 function labels(options: Partial<GraphOptions>): string[] {
-  return drawnGraph(GRAPH, { ...OPTIONS, ...options }).vertices.map(({ kind, label }) => `${kind} ${label}`);
+  return buildGraph(GRAPH, { ...OPTIONS, ...options }).vertices.map(({ kind, label }) => `${kind} ${label}`);
 }
 
 describe("the drawn graph", () => {
@@ -132,13 +132,13 @@ describe("the drawn graph", () => {
   });
 
   it("connects nodes directly if topics are not shown", () => {
-    const { vertices, edges } = drawnGraph(GRAPH, { ...OPTIONS, mode: "nodes" });
+    const { vertices, edges } = buildGraph(GRAPH, { ...OPTIONS, mode: "nodes" });
     expect(vertices.every(({ kind }) => kind === "node")).toBe(true);
     expect(edges).toContainEqual({ from: "node:/base", to: "node:/talker", topics: ["/move", "/tf"] });
   });
 
   it("merges the nodes of a namespace, including the topics between them", () => {
-    const { vertices, edges } = drawnGraph(GRAPH, { ...OPTIONS, grouped: true });
+    const { vertices, edges } = buildGraph(GRAPH, { ...OPTIONS, grouped: true });
     expect(vertices).toContainEqual({ id: "group:/left", kind: "group", label: "/left/", count: 2 });
     expect(vertices.map(({ label }) => label)).not.toContain("/left/grip");
     expect(edges).toContainEqual({ from: "group:/left", to: "topic:/left/state", topics: [] });

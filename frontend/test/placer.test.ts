@@ -31,7 +31,7 @@ beforeEach(() => {
 
 describe("placing entities in the world", () => {
   it("takes a click, snapped to the grid unless Ctrl is held; Shift continues placing", () => {
-    modeling.place({ kind: "sphere", address: "" });
+    modeling.startPlacing({ kind: "sphere", address: "" });
     pointer("down", 1.04, 2);
     pointer("up", 1.04, 2, { click: true, shift: true });
     pointer("up", 1.04, 2, { click: true, ctrl: true });
@@ -43,7 +43,7 @@ describe("placing entities in the world", () => {
   });
 
   it("leaves dragging to the camera", () => {
-    modeling.place({ kind: "box", address: "" });
+    modeling.startPlacing({ kind: "box", address: "" });
     expect(pointer("down", 0, 0)).toBe(false);
     expect(pointer("move", 3, 0)).toBe(false);
     expect(pointer("up", 3, 0)).toBe(false);
@@ -51,7 +51,7 @@ describe("placing entities in the world", () => {
   });
 
   it("draws walls from point to point, one after another", () => {
-    modeling.place({ kind: "wall", address: "" });
+    modeling.startPlacing({ kind: "wall", address: "" });
     expect(pointer("down", 0, 0)).toBe(true);
     expect(pointer("move", 4, 0)).toBe(true);
     pointer("up", 4, 0);

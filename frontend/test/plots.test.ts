@@ -2,8 +2,8 @@ import { describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import { unpackSamples } from "../src/connection/samples";
 import type { PageMessage } from "../src/protocol";
-import { fieldText, parseField, valueText } from "../src/state/monitor/field-text";
-import { csvText, plotTable } from "../src/state/monitor/plot-table";
+import { formatField, parseField, formatValue } from "../src/state/monitor/field-text";
+import { formatCsv, tabulatePlot } from "../src/state/monitor/plot-table";
 import { PlotsState } from "../src/state/monitor/plots";
 import { SeriesBuffer } from "../src/state/monitor/series-buffer";
 
@@ -23,7 +23,7 @@ describe("names of fields", () => {
     expect(parseField("/joint_states.position[2]")).toEqual({ topic: "/joint_states", path: "position[2]" });
     expect(parseField(" odom.twist.twist.linear.x ")).toEqual({ topic: "/odom", path: "twist.twist.linear.x" });
     expect(parseField("/a/b.c[x.y]")).toEqual({ topic: "/a/b", path: "c[x.y]" });
-    expect(fieldText({ topic: "/a", path: "b.c" })).toBe("/a.b.c");
+    expect(formatField({ topic: "/a", path: "b.c" })).toBe("/a.b.c");
   });
 
   it("require both", () => {
@@ -31,7 +31,7 @@ describe("names of fields", () => {
   });
 
   it("are shown next to short values", () => {
-    expect([1 / 3, 1e-9, 5, NaN, -Infinity, null].map(valueText)).toEqual(["0.333333", "1e-9", "5", "nan", "-inf", ""]);
+    expect([1 / 3, 1e-9, 5, NaN, -Infinity, null].map(formatValue)).toEqual(["0.333333", "1e-9", "5", "nan", "-inf", ""]);
   });
 });
 
@@ -71,15 +71,15 @@ describe("a series buffer", () => {
     expect(made.length).toBeLessThanOrEqual(5000);
     expect(made.length).toBeGreaterThan(2000);
     expect(made.lastValue).toBe(9999);
-    const times = made.times("received");
+    const times = made.timesOf("received");
     expect(times.every((time, index) => index === 0 || time === (times[index - 1] ?? 0) + 1)).toBe(true);
   });
 
   it("stores both times", () => {
     const made = new SeriesBuffer();
     made.append([100, 101], [5, NaN], [1, 2]);
-    expect([...made.times("stamp")]).toEqual([5, 101]);
-    expect(made.latest("received")).toBe(101);
+    expect([...made.timesOf("stamp")]).toEqual([5, 101]);
+    expect(made.latestTime("received")).toBe(101);
     expect(made.indexFrom("received", 100.5)).toBe(1);
   });
 
@@ -92,14 +92,14 @@ describe("a series buffer", () => {
 
 describe("the drawn samples", () => {
   it("are all samples while there are few, at the times of all series", () => {
-    const [times, a, b] = plotTable([buffer([1, 10], [2, 20]), buffer([2, 5], [3, NaN])], "received", 0, 10, 100);
+    const [times, a, b] = tabulatePlot([buffer([1, 10], [2, 20]), buffer([2, 5], [3, NaN])], "received", 0, 10, 100);
     expect(times).toEqual([1, 2, 3]);
     expect(a).toEqual([10, 20, undefined]);
     expect(b).toEqual([undefined, 5, null]);
   });
 
   it("extend beyond both edges", () => {
-    const [times] = plotTable([buffer([1, 1], [2, 2], [3, 3], [4, 4], [5, 5])], "received", 2.5, 3.5, 100);
+    const [times] = tabulatePlot([buffer([1, 1], [2, 2], [3, 3], [4, 4], [5, 5])], "received", 2.5, 3.5, 100);
     expect(times).toEqual([2, 3, 4]);
   });
 
@@ -107,7 +107,7 @@ describe("the drawn samples", () => {
     const many = new SeriesBuffer();
     const times = Array.from({ length: 20_000 }, (_, index) => index / 1000);
     many.append(times, times, times.map((time, index) => (index === 12_345 ? 99 : Math.sin(time))));
-    const [columns, values] = plotTable([many], "stamp", 5, 15, 400);
+    const [columns, values] = tabulatePlot([many], "stamp", 5, 15, 400);
     expect(columns.length).toBeLessThan(820);
     expect(columns.every((time, index) => index === 0 || time > (columns[index - 1] ?? 0))).toBe(true);
     expect(values).toContain(99);
@@ -119,8 +119,8 @@ describe("the drawn samples", () => {
     const many = new SeriesBuffer();
     const times = Array.from({ length: 20_000 }, (_, index) => index / 1000);
     many.append(times, times, times.map((time) => Math.sin(40 * time)));
-    const [firstTimes, first] = plotTable([many], "stamp", 5, 15, 397);
-    const [laterTimes, later] = plotTable([many], "stamp", 5.031, 15.031, 397);
+    const [firstTimes, first] = tabulatePlot([many], "stamp", 5, 15, 397);
+    const [laterTimes, later] = tabulatePlot([many], "stamp", 5.031, 15.031, 397);
     const known = new Map(firstTimes.map((time, row) => [time.toFixed(6), first?.[row]]));
     const shared = laterTimes.slice(4, -8).map((time, row) => [known.get(time.toFixed(6)), later?.[row + 4]]);
     expect(shared.length).toBeGreaterThan(700);
@@ -129,7 +129,7 @@ describe("the drawn samples", () => {
   });
 
   it("are saved as CSV", () => {
-    const text = csvText(["/a.x", 'b"y'], [buffer([1, 10], [2, 20]), buffer([2, 5], [9, 1])], "received", 1, 2);
+    const text = formatCsv(["/a.x", 'b"y'], [buffer([1, 10], [2, 20]), buffer([2, 5], [9, 1])], "received", 1, 2);
     expect(text).toBe('time,/a.x,"b""y"\n1.000000,10,\n2.000000,20,5\n');
   });
 });
@@ -203,7 +203,7 @@ describe("plots", () => {
     const again = made(texts).plots;
     expect(again.seconds).toBe(60);
     expect(again.plots[0]?.range).toEqual([-1, 2]);
-    expect(again.series.map(fieldText)).toEqual(["/a.x[1]"]);
+    expect(again.series.map(formatField)).toEqual(["/a.x[1]"]);
   });
 
   it("do not accept a field twice", () => {

@@ -29,8 +29,8 @@ describe("recording", () => {
     const others: RecordedFile[] = [];
     const other = new RecordingControl(connection);
     connection.message.emit(told());
-    recording.made.on((file) => made.push(file));
-    other.made.on((file) => others.push(file));
+    recording.finished.on((file) => made.push(file));
+    other.finished.on((file) => others.push(file));
     recording.record([]);
     connection.message.emit(told({ path: FILE.path, length: 1, size: 10 }));
     expect([recording.isRecording, other.isRecording, other.size]).toEqual([true, true, 10]);
@@ -54,9 +54,9 @@ describe("recording", () => {
 
   it("is impossible before the program allows it, or during another recording", () => {
     connection.message.emit({ type: "hello", protocol: 0, version: "", title: "", run: "1" });
-    expect(recording.possible).toBe(false);
+    expect(recording.isPossible).toBe(false);
     connection.message.emit(told({ possible: false }));
-    expect(recording.possible).toBe(false);
+    expect(recording.isPossible).toBe(false);
   });
 
   it("formats bytes and seconds", () => {

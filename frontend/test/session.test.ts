@@ -55,7 +55,7 @@ describe("properties", () => {
     const [grid] = session.displays.displays;
     expect(grid!.rows.nodes).toHaveLength(0);
     receive({ type: "property_changed", id: "d0/Enabled", value: false, options: null });
-    expect(grid!.enabled).toBe(false);
+    expect(grid!.isEnabled).toBe(false);
   });
 
   it("survive a new tree in the same display object, so that its drawing continues", () => {
@@ -75,10 +75,10 @@ describe("the selection", () => {
     const link = session.robots.get("d1")!.links[1]!;
     session.selection.select({ display: "d1", link });
     receive(robot("d1", "base_link", "wheel"));
-    expect(session.selection.selected?.link.name).toBe("wheel");
-    expect(session.selection.selected?.link).not.toBe(link);
+    expect(session.selection.selectedLink?.link.name).toBe("wheel");
+    expect(session.selection.selectedLink?.link).not.toBe(link);
     receive(robot("d1", "base_link"));
-    expect(session.selection.selected).toBeNull();
+    expect(session.selection.selectedLink).toBeNull();
   });
 });
 

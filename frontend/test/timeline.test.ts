@@ -56,10 +56,10 @@ describe("the timeline", () => {
     connection.message.emit({ type: "timeline", name: "", start: 100, end: 110, topics: [], live: true });
     connection.message.emit(playhead({ live: true }));
     connection.message.emit({ type: "history_extent", start: 105, end: 120, size: 5e6, most: 1e7 });
-    expect([timeline.playing, timeline.live, timeline.position]).toEqual([true, true, 120]);
+    expect([timeline.isPlaying, timeline.isLive, timeline.position]).toEqual([true, true, 120]);
     timeline.play(false);
     connection.message.emit(playhead({ position: 119 }));
-    expect([timeline.playing, timeline.live, timeline.position]).toEqual([false, false, 119]);
+    expect([timeline.isPlaying, timeline.isLive, timeline.position]).toEqual([false, false, 119]);
     expect(agoText(1)).toBe("−0:01.000");
     expect(momentText(52.304)).toBe("0:52.304");
     expect(momentText(new Date(2026, 1, 3, 14, 3, 7, 256).getTime() / 1000)).toBe("14:03:07.256");

@@ -63,14 +63,14 @@ describe("the clocks", () => {
   it("advance by themselves while they run, and only then", () => {
     let now = 1000;
     const time = new TimeControlState(connection, () => now);
-    expect(time.times()).toBeNull();
+    expect(time.currentTimes()).toBeNull();
     const clock = { type: "clock", ros: 50, ros_start: 40, wall: 1e9, wall_start: 1e9 - 5 } as const;
     receive({ ...clock, running: true });
     now += 1500;
-    expect(time.times()).toEqual({ ros: 51.5, rosElapsed: 11.5, wall: 1e9 + 1.5, wallElapsed: 6.5 });
+    expect(time.currentTimes()).toEqual({ ros: 51.5, rosElapsed: 11.5, wall: 1e9 + 1.5, wallElapsed: 6.5 });
     receive({ ...clock, running: false });
     now += 1500;
-    expect(time.times()).toMatchObject({ ros: 50, wall: 1e9 + 1.5 });
+    expect(time.currentTimes()).toMatchObject({ ros: 50, wall: 1e9 + 1.5 });
   });
 
   it("are requested again after the connection was lost", () => {
@@ -92,15 +92,15 @@ describe("the selection", () => {
     const changes = vi.fn();
     selection.changed.on(changes);
     selection.pick([{ display: "d0", key: "7" }], "replace");
-    expect(selection.selected).toBeNull();
+    expect(selection.selectedLink).toBeNull();
     selection.pick([{ display: "d1", key: "tip" }, { display: "d0", key: "7" }], "add");
     expect(selection.items).toHaveLength(2);
-    expect(selection.selected?.link.name).toBe("tip");
+    expect(selection.selectedLink?.link.name).toBe("tip");
     selection.pick([{ display: "d1", key: "tip" }], "add");
     expect(changes).toHaveBeenCalledTimes(2);
     selection.pick([{ display: "d0", key: "7" }], "remove");
     expect(selection.items).toEqual([{ display: "d1", key: "tip" }]);
-    selection.retain(() => false);
-    expect(selection.selected).toBeNull();
+    selection.keepIf(() => false);
+    expect(selection.selectedLink).toBeNull();
   });
 });

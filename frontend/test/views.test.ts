@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
-import { FIELD_OF_VIEW, onGround, rayThrough, type Camera } from "../src/state/views/camera";
+import { FIELD_OF_VIEW, onGround, castRay, type Camera } from "../src/state/views/camera";
 import { controllerOf } from "../src/state/views/catalog";
-import { spanInTarget } from "../src/state/views/fit";
+import { spanToTarget } from "../src/state/views/fit";
 import type { Drag, ViewController, ViewValues } from "../src/state/views/view-controller";
 import type { Vector } from "../src/state/views/vector";
 
@@ -25,7 +25,7 @@ function close(actual: readonly number[], expected: readonly number[], digits = 
 }
 
 function look(cls: string, values: ViewValues): { cls: string; values: ViewValues; camera: Camera } {
-  return { cls: `rviz_default_plugins/${cls}`, values, camera: view(cls).camera(values) };
+  return { cls: `rviz_default_plugins/${cls}`, values, camera: view(cls).computeCamera(values) };
 }
 
 function forward({ back }: Camera): Vector {
@@ -43,7 +43,7 @@ function seen(camera: Camera, point: Vector): [number, number] {
 describe("every view", () => {
   it("has right-handed unit axes", () => {
     for (const [name, values] of [["Orbit", FOCUSED], ["XYOrbit", FOCUSED], ["FPS", { Yaw: 1, Pitch: -0.4 }], ["TopDownOrtho", { Angle: 0.7 }]] as const) {
-      const { right, up, back } = view(name).camera(values);
+      const { right, up, back } = view(name).computeCamera(values);
       for (const axis of [right, up, back]) expect(Math.hypot(...axis)).toBeCloseTo(1);
       close(right, [up[1] * back[2] - up[2] * back[1], up[2] * back[0] - up[0] * back[2], up[0] * back[1] - up[1] * back[0]]);
     }
@@ -60,9 +60,9 @@ describe("every view", () => {
 
 describe("Orbit", () => {
   it("has the pose of RViz's formula, and is upside down with Invert Z", () => {
-    const [x, y, z] = ORBIT.camera(FOCUSED).position;
+    const [x, y, z] = ORBIT.computeCamera(FOCUSED).position;
     close([x, y, z], [1 + 2 * Math.cos(5.5) * Math.cos(0.33), 2 + 2 * Math.sin(5.5) * Math.cos(0.33), 3 + 2 * Math.sin(0.33)]);
-    const inverted = ORBIT.camera({ ...FOCUSED, "Invert Z Axis": true });
+    const inverted = ORBIT.computeCamera({ ...FOCUSED, "Invert Z Axis": true });
     expect(inverted.position[2]).toBeCloseTo(3 - 2 * Math.sin(0.33));
     expect(inverted.up[2]).toBeLessThan(0);
   });
@@ -84,14 +84,14 @@ describe("Orbit", () => {
   });
 
   it("zooms 12 % per notch, and a hundredth of the distance per pixel with the right button", () => {
-    expect(ORBIT.wheel(FOCUSED, 120, false)["Distance"]).toBeCloseTo(2 * 0.88);
+    expect(ORBIT.applyWheel(FOCUSED, 120, false)["Distance"]).toBeCloseTo(2 * 0.88);
     expect(ORBIT.drag(FOCUSED, dragged({ right: true, dy: 10 }))["Distance"]).toBeCloseTo(2 * 1.1);
-    expect(ORBIT.wheel(FOCUSED, 1e6, false)["Distance"]).toBeGreaterThan(0);
+    expect(ORBIT.applyWheel(FOCUSED, 1e6, false)["Distance"]).toBeGreaterThan(0);
   });
 
   it("moves along the line of sight with Shift", () => {
-    const moved = ORBIT.wheel(FOCUSED, 120, true);
-    const { back } = ORBIT.camera(FOCUSED);
+    const moved = ORBIT.applyWheel(FOCUSED, 120, true);
+    const { back } = ORBIT.computeCamera(FOCUSED);
     ["X", "Y", "Z"].forEach((axis, i) => {
       expect(moved[`Focal Point/${axis}`]).toBeCloseTo(Number(FOCUSED[`Focal Point/${axis}`]) - 0.24 * (back[i] ?? 0));
     });
@@ -99,8 +99,8 @@ describe("Orbit", () => {
   });
 
   it("looks at a point without moving", () => {
-    const after = ORBIT.camera({ ...FOCUSED, ...ORBIT.lookAt(FOCUSED, [0, 0, 1]) });
-    close(after.position, ORBIT.camera(FOCUSED).position);
+    const after = ORBIT.computeCamera({ ...FOCUSED, ...ORBIT.lookAt(FOCUSED, [0, 0, 1]) });
+    close(after.position, ORBIT.computeCamera(FOCUSED).position);
     close(seen(after, [0, 0, 1]), [0, 0]);
   });
 });
@@ -109,22 +109,22 @@ describe("XYOrbit", () => {
   const values: ViewValues = { Distance: 10, Yaw: 0.5, Pitch: 0.6, "Focal Point/X": 1, "Focal Point/Y": 2, "Focal Point/Z": 0 };
 
   it("is raised by a fifth of the distance", () => {
-    const [orbit, ground] = [ORBIT.camera(values), GROUND.camera(values)];
+    const [orbit, ground] = [ORBIT.computeCamera(values), GROUND.computeCamera(values)];
     close(ground.position, orbit.position.map((each, i) => each + 2 * (orbit.up[i] ?? 0)));
   });
 
   it("keeps the ground under the pointer, at most one meter per step", () => {
     const drag = dragged({ middle: true, dx: 12, dy: -7 });
-    const before = onGround(rayThrough(GROUND.camera(values), drag.x, drag.y, SIZE));
+    const before = onGround(castRay(GROUND.computeCamera(values), drag.x, drag.y, SIZE));
     const after = { ...values, ...GROUND.drag(values, drag) };
-    close(onGround(rayThrough(GROUND.camera(after), drag.x + 12, drag.y - 7, SIZE)) ?? [], before ?? [NaN]);
+    close(onGround(castRay(GROUND.computeCamera(after), drag.x + 12, drag.y - 7, SIZE)) ?? [], before ?? [NaN]);
     expect(after["Focal Point/Z"]).toBe(0);
     const far = GROUND.drag(values, dragged({ middle: true, dy: -300 }));
     expect(Math.hypot(Number(far["Focal Point/X"]) - 1, Number(far["Focal Point/Y"]) - 2)).toBeLessThanOrEqual(1 + 1e-9);
   });
 
   it("zooms with the wheel and the right button, also with Shift", () => {
-    expect(GROUND.wheel(values, 120, true)["Distance"]).toBeCloseTo(8.8);
+    expect(GROUND.applyWheel(values, 120, true)["Distance"]).toBeCloseTo(8.8);
     expect(GROUND.drag(values, dragged({ right: true, shift: true, dy: 10 }))["Distance"]).toBeCloseTo(11);
   });
 
@@ -135,24 +135,24 @@ describe("XYOrbit", () => {
 
 describe("FPS", () => {
   it("looks along yaw, tilted down by pitch", () => {
-    close(forward(FLY.camera({ Yaw: 0, Pitch: 0 })), [1, 0, 0]);
-    close(forward(FLY.camera({ Yaw: Math.PI / 2, Pitch: 0.5 })), [0, Math.cos(0.5), -Math.sin(0.5)]);
+    close(forward(FLY.computeCamera({ Yaw: 0, Pitch: 0 })), [1, 0, 0]);
+    close(forward(FLY.computeCamera({ Yaw: Math.PI / 2, Pitch: 0.5 })), [0, Math.cos(0.5), -Math.sin(0.5)]);
   });
 
   it("rotates, moves sideways, and flies forward", () => {
     const values: ViewValues = { Yaw: 1, Pitch: 0, "Position/X": 0, "Position/Y": 0, "Position/Z": 1 };
     const turned = FLY.drag(values, dragged({ left: true, dx: 10, dy: 10 }));
     close([Number(turned["Yaw"]), Number(turned["Pitch"])], [0.95, 0.05]);
-    const { right } = FLY.camera(values);
+    const { right } = FLY.computeCamera(values);
     const across = FLY.drag(values, dragged({ middle: true, dx: 100 }));
     close([Number(across["Position/X"]), Number(across["Position/Y"])], [right[0], right[1]]);
-    const ahead = FLY.wheel(values, 120, false);
+    const ahead = FLY.applyWheel(values, 120, false);
     close([Number(ahead["Position/X"]), Number(ahead["Position/Y"])], [1.2 * Math.cos(1), 1.2 * Math.sin(1)]);
     expect(FLY.drag(values, dragged({ right: true, dy: 10 }))["Position/Z"]).toBeCloseTo(1);
   });
 
   it("starts above and looks at the origin", () => {
-    const camera = FLY.camera(FLY.zero());
+    const camera = FLY.computeCamera(FLY.zero());
     close(camera.position, [5, 5, 10]);
     close(seen(camera, [0, 0, 0]), [0, 0]);
   });
@@ -161,10 +161,10 @@ describe("FPS", () => {
 describe("TopDownOrtho", () => {
   it("with a negative scale is rotated by half a turn, and is dragged and zoomed accordingly", () => {
     const values = { Scale: -80, Angle: 0 };
-    const { right, up, scale } = MAP.camera(values);
+    const { right, up, scale } = MAP.computeCamera(values);
     close([...right, ...up, scale ?? 0], [-1, 0, 0, 0, -1, 0, 80]);
     expect(MAP.drag(values, dragged({ middle: true, dx: 8 }))["X"]).toBeCloseTo(0.1);
-    expect(MAP.wheel(values, 120, false)["Scale"]).toBeCloseTo(-80 * 1.12);
+    expect(MAP.applyWheel(values, 120, false)["Scale"]).toBeCloseTo(-80 * 1.12);
     expect(MAP.drag(values, dragged({ right: true, dy: 500 }))["Scale"]).toBeCloseTo(-0.08);
   });
 
@@ -174,22 +174,22 @@ describe("TopDownOrtho", () => {
     const moved = MAP.drag(values, dragged({ middle: true, dx: 50 }));
     close([Number(moved["X"]), Number(moved["Y"])], [1, 1]);
     expect(MAP.drag(values, dragged({ right: true, dy: 10 }))["Scale"]).toBeCloseTo(45);
-    expect(MAP.wheel(values, 120, false)["Scale"]).toBeCloseTo(56);
+    expect(MAP.applyWheel(values, 120, false)["Scale"]).toBeCloseTo(56);
   });
 
   it("maps a pixel to the ground", () => {
-    const camera = MAP.camera({ Scale: 100, Angle: 0, X: 1, Y: 2 });
-    close(onGround(rayThrough(camera, 500, 200, SIZE)) ?? [], [2, 3, 0]);
+    const camera = MAP.computeCamera({ Scale: 100, Angle: 0, X: 1, Y: 2 });
+    close(onGround(castRay(camera, 500, 200, SIZE)) ?? [], [2, 3, 0]);
   });
 });
 
 describe("changing the class of a view", () => {
   it("to FPS keeps position and direction of an Orbit, and back", () => {
-    const orbit = ORBIT.camera(FOCUSED);
-    const fly = FLY.camera(FLY.mimic(look("Orbit", FOCUSED)));
+    const orbit = ORBIT.computeCamera(FOCUSED);
+    const fly = FLY.computeCamera(FLY.mimic(look("Orbit", FOCUSED)));
     close(fly.position, orbit.position);
     close(fly.back, orbit.back);
-    const back = ORBIT.camera(ORBIT.mimic(look("FPS", FLY.mimic(look("Orbit", FOCUSED)))));
+    const back = ORBIT.computeCamera(ORBIT.mimic(look("FPS", FLY.mimic(look("Orbit", FOCUSED)))));
     close(back.position, orbit.position);
     close(back.back, orbit.back);
   });
@@ -201,10 +201,10 @@ describe("changing the class of a view", () => {
 
   it("to XYOrbit keeps the view if the camera sees the ground", () => {
     const values: ViewValues = { Yaw: 0.3, Pitch: 0.7, "Position/X": 3, "Position/Y": 1, "Position/Z": 4 };
-    const fly = FLY.camera(values);
+    const fly = FLY.computeCamera(values);
     const mimicked = GROUND.mimic(look("FPS", values));
-    close(GROUND.camera(mimicked).position, fly.position);
-    close(GROUND.camera(mimicked).back, fly.back);
+    close(GROUND.computeCamera(mimicked).position, fly.position);
+    close(GROUND.computeCamera(mimicked).back, fly.back);
     expect(mimicked["Focal Point/Z"]).toBeCloseTo(0);
   });
 
@@ -220,14 +220,14 @@ describe("changing the class of a view", () => {
   it("from TopDownOrtho to Orbit looks down from 100 m with the same side up", () => {
     const values = ORBIT.mimic(look("TopDownOrtho", { X: 1, Y: 2, Angle: 0 }));
     expect(values["Distance"]).toBeCloseTo(100);
-    expect(ORBIT.camera(values).up[1]).toBeGreaterThan(0.99);
+    expect(ORBIT.computeCamera(values).up[1]).toBeGreaterThan(0.99);
   });
 });
 
 describe("a fitted view", () => {
   /** Returns the distances of a box's corners from the center of the canvas, right and up; 1 is the edge. */
   function reach(values: ViewValues, min: Vector, max: Vector, { width, height }: typeof SIZE): [number, number] {
-    const camera = ORBIT.camera(values);
+    const camera = ORBIT.computeCamera(values);
     const edge = Math.tan(FIELD_OF_VIEW / 2);
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i): Vector => {
       return [(i & 1 ? min : max)[0], (i & 2 ? min : max)[1], (i & 4 ? min : max)[2]];
@@ -266,9 +266,9 @@ describe("a fitted view", () => {
     for (const name of ["FPS", "XYOrbit", "ThirdPersonFollower"]) {
       const start = { Yaw: 1, Pitch: 0.6, Distance: 7 };
       const values = { ...start, ...view(name).fit(start, box, SIZE) };
-      const camera = view(name).camera(values);
+      const camera = view(name).computeCamera(values);
       close(seen(camera, [3.2, -0.7, 2.5]), [0, 0]);
-      close(camera.back, view(name).camera(start).back);
+      close(camera.back, view(name).computeCamera(start).back);
       const [, top] = seen(camera, [3, -1, 3]);
       expect(Math.abs(top)).toBeLessThan(Math.tan(FIELD_OF_VIEW / 2));
     }
@@ -285,7 +285,7 @@ describe("a fitted view", () => {
   });
 
   it("looks from a moving frame", () => {
-    const { min, max } = spanInTarget({ min: [1, 2, 0], max: [3, 3, 1] }, { position: [1, 2, 0], yaw: Math.PI / 2 });
+    const { min, max } = spanToTarget({ min: [1, 2, 0], max: [3, 3, 1] }, { position: [1, 2, 0], yaw: Math.PI / 2 });
     close(min, [0, -2, 0]);
     close(max, [1, 0, 1]);
   });

@@ -3,10 +3,10 @@ import { Connection } from "../src/connection/connection";
 import { obstacle } from "../src/panels/voice/voice-words";
 import type { PageMessage } from "../src/protocol";
 import { GapFinder } from "../src/state/voice/gaps";
-import { meterPart } from "../src/state/voice/level";
+import { meterShare } from "../src/state/voice/level";
 import { Microphone, type OpenCapture } from "../src/state/voice/microphone";
 import { toPcm, Resampler } from "../src/state/voice/resampler";
-import { soundFrame, VoiceState } from "../src/state/voice/voice";
+import { encodeSound, VoiceState } from "../src/state/voice/voice";
 import { WordsState } from "../src/state/voice/words";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
@@ -41,10 +41,10 @@ describe("resampling", () => {
 });
 
 it("a level meter is logarithmic", () => {
-  expect(meterPart(1)).toBe(1);
-  expect(meterPart(0.001)).toBeCloseTo(0);
-  expect(meterPart(0)).toBe(0);
-  expect(meterPart(Math.sqrt(0.001))).toBeCloseTo(0.5);
+  expect(meterShare(1)).toBe(1);
+  expect(meterShare(0.001)).toBeCloseTo(0);
+  expect(meterShare(0)).toBe(0);
+  expect(meterShare(Math.sqrt(0.001))).toBeCloseTo(0.5);
 });
 
 describe("gaps", () => {
@@ -137,7 +137,7 @@ describe("talking", () => {
     await soon();
     deliver(Int16Array.of(3));
     expect(modes()).toEqual(["held", "ready"]);
-    expect(frames).toEqual([soundFrame(Int16Array.of(1, -2)), soundFrame(Int16Array.of(7))]);
+    expect(frames).toEqual([encodeSound(Int16Array.of(1, -2)), encodeSound(Int16Array.of(7))]);
     expect([...new Int16Array(frames[0]!, 16)]).toEqual([1, -2]);
     expect([...new Uint32Array(frames[0]!, 0, 4)]).toEqual([5, 2, 0, 0]);
   });
@@ -217,7 +217,7 @@ describe("talking", () => {
     voice.press();
     await soon();
     expect(voice.microphone.problem).toBe(problem);
-    expect([voice.held, modes()]).toEqual([false, []]);
+    expect([voice.isHeld, modes()]).toEqual([false, []]);
   });
 
   it("ends when the microphone is removed, and requests it again", async () => {
@@ -226,7 +226,7 @@ describe("talking", () => {
     await soon();
     expect(modes()).toEqual(["open"]);
     lose();
-    expect([voice.open, voice.microphone.problem, modes().at(-1)]).toEqual([false, "lost", "off"]);
+    expect([voice.isPanelOpen, voice.microphone.problem, modes().at(-1)]).toEqual([false, "lost", "off"]);
     voice.press();
     await soon();
     expect([voice.microphone.problem, modes().at(-1)]).toEqual([null, "held"]);
@@ -238,7 +238,7 @@ describe("talking", () => {
     await soon();
     connection.stateChanged.emit("reconnecting");
     await soon();
-    expect(voice.held).toBe(false);
+    expect(voice.isHeld).toBe(false);
   });
 
   it("keeps the conversation, and replaces the partial text by the final one", () => {

@@ -32,7 +32,7 @@ export class Sidebar {
     theme: ThemeState,
     private readonly actions: SidebarActions,
   ) {
-    const words = strings.sharing.exported;
+    const texts = strings.sharing.exported;
     const name = session.robots.get(display)?.name ?? "";
     const languages = button(
       strings.shell.languageHint,
@@ -49,13 +49,13 @@ export class Sidebar {
     );
     this.element = h(
       "aside",
-      { class: "sidebar", aria: { label: words.sidebar } },
+      { class: "sidebar", aria: { label: texts.sidebar } },
       h("header", {}, h("h1", {}, name), themes, languages),
       this.comparison(),
-      h("section", { aria: { label: words.shown } }, h("h2", {}, words.shown), h("div", { class: "shown" }, ...this.boxes())),
-      h("section", { aria: { label: words.views } }, h("h2", {}, words.views), h("div", { class: "sides" }, ...this.views())),
+      h("section", { aria: { label: texts.shown } }, h("h2", {}, texts.shown), h("div", { class: "shown" }, ...this.boxes())),
+      h("section", { aria: { label: texts.views } }, h("h2", {}, texts.views), h("div", { class: "sides" }, ...this.views())),
       this.joints(),
-      h("footer", {}, words.made(program)),
+      h("footer", {}, texts.made(program)),
     );
   }
 
@@ -68,11 +68,11 @@ export class Sidebar {
   }
 
   private boxes(): HTMLElement[] {
-    const words = strings.sharing.exported;
+    const texts = strings.sharing.exported;
     const { displays } = this.session.displays;
     const robot = displays.find(({ id }) => id === this.display);
-    const boxes = robot ? [this.rowBox(robot, "Visual Enabled", words.visual), this.rowBox(robot, "Collision Enabled", words.collision)] : [];
-    const others = displays.filter(({ id, isGroup, supported }) => id !== this.display && !isGroup && supported && !this.session.comparison.isOld(id));
+    const boxes = robot ? [this.rowBox(robot, "Visual Enabled", texts.visual), this.rowBox(robot, "Collision Enabled", texts.collision)] : [];
+    const others = displays.filter(({ id, isGroup, isSupported }) => id !== this.display && !isGroup && isSupported && !this.session.comparison.isOld(id));
     return [...boxes, ...others.map((other) => this.displayBox(other))].filter((box) => box !== null);
   }
 
@@ -86,25 +86,25 @@ export class Sidebar {
 
   private displayBox(display: DisplayState): HTMLElement {
     const tick = tickBox(display.name, display.name, (ticked) => this.session.setProperty(display.enabledId, ticked));
-    tick.box.checked = display.checked;
+    tick.box.checked = display.isChecked;
     return tick;
   }
 
   private views(): HTMLElement[] {
-    const words = strings.sharing.exported;
-    const sides = SIDES.map((side) => button(words.sides[side], () => this.actions.lookFrom(side), "tool", words.sides[side]));
+    const texts = strings.sharing.exported;
+    const sides = SIDES.map((side) => button(texts.sides[side], () => this.actions.lookFrom(side), "tool", texts.sides[side]));
     const recall = ({ cls, values }: View): void => {
       this.session.view.setClass(cls);
       this.session.view.update(values);
     };
-    const saved = this.session.view.saved.map(({ view }) => button(view.name, () => recall(view), "tool", view.name));
-    const reset = button(words.startHint, () => this.actions.reset(), "tool", icon("reset"), words.start);
+    const saved = this.session.view.savedViews.map(({ view }) => button(view.name, () => recall(view), "tool", view.name));
+    const reset = button(texts.startHint, () => this.actions.reset(), "tool", icon("reset"), texts.start);
     return [...sides, ...saved, reset];
   }
 
   private joints(): HTMLElement {
     const { joints, angles } = this.session;
-    const words = strings.joints;
+    const texts = strings.joints;
     const rows = (joints.controls ?? []).map(
       (joint) => new JointRow(joint, angles, (position) => joints.move({ [joint.name]: position })),
     );
@@ -115,7 +115,7 @@ export class Sidebar {
     angles.changed.on(() => rows.forEach((row) => row.showUnit()));
     update();
     const bar = jointBar(this.session);
-    const none = h("p", { class: "empty" }, words.none);
+    const none = h("p", { class: "empty" }, texts.none);
     const content = rows.length > 0 ? [bar, h("div", { class: "joints" }, ...rows.map((row) => row.element))] : [none];
     return h("section", { class: "joint-section", aria: { label: strings.sharing.exported.joints } }, h("h2", {}, strings.sharing.exported.joints), ...content);
   }

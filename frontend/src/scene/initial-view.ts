@@ -17,7 +17,7 @@ const MIN_FOCAL_DISTANCE = 0.5;
 /** The part of a world that the initial view needs. */
 export interface InitialViewWorld {
   readonly hasRobots: boolean;
-  extents(): { robots: Box3; world: Box3 };
+  boundsByKind(): { robots: Box3; world: Box3 };
   cameraOfFile(): Matrix4 | null;
   isClear(ray: Raycaster): boolean;
   pick(ray: Raycaster): { distance: number } | null;
@@ -31,13 +31,13 @@ export function setInitialView(world: InitialViewWorld, view: ViewState, size: V
   if (!view.awaitsFit(world.hasRobots ? SHOWS_ROBOTS : SHOWS_WORLD)) return;
   const camera = world.cameraOfFile();
   if (camera) {
-    view.propose(orbitFromCamera(world, camera), SHOWS_ROBOTS, true);
+    view.proposeValues(orbitFromCamera(world, camera), SHOWS_ROBOTS, true);
     return;
   }
-  const extents = world.extents();
-  const [robots, all] = [spanOf(extents.robots), spanOf(extents.world)];
-  if (robots) view.propose(orbitAround(view.values, robots, size, (eye, place) => sees(world, eye, place)), SHOWS_ROBOTS, true);
-  else view.propose(all ? orbitOverview(view.values, all, size) : {}, SHOWS_WORLD, world.hasRobots);
+  const boundsByKind = world.boundsByKind();
+  const [robots, all] = [spanOf(boundsByKind.robots), spanOf(boundsByKind.world)];
+  if (robots) view.proposeValues(orbitAround(view.values, robots, size, (eye, place) => sees(world, eye, place)), SHOWS_ROBOTS, true);
+  else view.proposeValues(all ? orbitOverview(view.values, all, size) : {}, SHOWS_WORLD, world.hasRobots);
 }
 
 /** Returns the values of an Orbit view that looks like a camera of the world's file, without its roll. */

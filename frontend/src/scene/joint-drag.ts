@@ -79,7 +79,7 @@ export class JointDrag {
     const { model, joint, point } = found;
     const { frames, joints } = this.session;
     const pose = new Matrix4();
-    if (!framePose(frames, frames.row(model.links.get(joint.child)?.frame ?? ""), pose)) return false;
+    if (!framePose(frames, frames.rowOf(model.links.get(joint.child)?.frame ?? ""), pose)) return false;
     // A joint's axis is the same in its own frame and in the frame of its child link.
     const axis = new Vector3().fromArray(joint.axis).transformDirection(pose);
     const origin = new Vector3().setFromMatrixPosition(pose);
@@ -93,7 +93,7 @@ export class JointDrag {
     const { joint, axis, origin, grabbed } = hold;
     hold.moved =
       joint.kind === "prismatic" ? slideTowards(ray, axis, grabbed) : turnTowards(ray, axis, origin, grabbed, hold.moved);
-    const target = this.session.joints.leader(joint.name, hold.start + hold.moved);
+    const target = this.session.joints.leaderOf(joint.name, hold.start + hold.moved);
     if (!target) return;
     const { control, position } = target;
     this.session.joints.move({ [control.name]: Math.min(Math.max(position, control.lower), control.upper) });
@@ -115,10 +115,10 @@ export class JointDrag {
   /** Returns the nearest movable joint above the link under the pointer. */
   private find(event: ToolEvent): { model: DescriptionModel; joint: JointDetails; point: Vector3 } | null {
     const found = this.stage.picker.objectAt(event.x, event.y);
-    const model = found && this.session.description.of(found.display);
+    const model = found && this.session.description.modelOf(found.display);
     if (!model) return null;
     for (let joint = model.jointAbove(found.hit.key); joint; joint = model.jointAbove(joint.parent)) {
-      if (this.session.joints.leader(joint.name, 0)) return { model, joint, point: found.hit.point.clone() };
+      if (this.session.joints.leaderOf(joint.name, 0)) return { model, joint, point: found.hit.point.clone() };
     }
     return null;
   }

@@ -26,7 +26,7 @@ export class Keyboard {
     const { session, toolbox } = this;
     const { tools } = session;
     if (key === "Escape") return this.escape();
-    const tool = tools.tools.find((each) => each.supported && TOOLS.get(each.cls)?.key === key);
+    const tool = tools.tools.find((each) => each.isSupported && TOOLS.get(each.cls)?.key === key);
     if (tool && (tool === tools.current || toolbox.current.grabsKeys !== true)) {
       tools.toggle(tool);
       return true;

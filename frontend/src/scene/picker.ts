@@ -119,7 +119,7 @@ export class Picker {
         if (item.display !== display) continue;
         const objects = drawing.objectsOf?.(item.key) ?? [];
         for (const object of objects) box.expandByObject(object);
-        const place = objects.length === 0 ? drawing.placeOf?.(item.key) : null;
+        const place = objects.length === 0 ? drawing.positionOf?.(item.key) : null;
         if (place) box.expandByPoint(place);
       }
     }

@@ -29,7 +29,7 @@ export function dataPose(frames: FrameStore, data: DisplayData, matrix: Matrix4)
     poseMatrix(data.pose, matrix);
     return true;
   }
-  if (data.frame !== "" && data.frame !== frames.fixedFrame) return framePose(frames, frames.row(data.frame), matrix);
+  if (data.frame !== "" && data.frame !== frames.fixedFrame) return framePose(frames, frames.rowOf(data.frame), matrix);
   matrix.identity();
   return true;
 }

@@ -79,7 +79,7 @@ export class Stage {
     const invalidate = (): void => this.loop.invalidate();
     this.flash = new Flash(this.viewport, session, (display, link) => this.objectsOf(display, link), invalidate);
     this.inspectLayer = new InspectLayer(session, (display) => this.boundsOf(display), invalidate);
-    session.displays.isLoading = ({ id }) => this.drawings.get(id)?.drawing.settled?.() === false;
+    session.displays.isLoading = ({ id }) => this.drawings.get(id)?.drawing.isSettled?.() === false;
     this.overlays.add(this.focalShape.root);
     this.viewport.scene.add(this.overlays, this.inspectLayer.root, this.robotLight.root, this.backdrop.root);
     this.listen();
@@ -153,13 +153,13 @@ export class Stage {
   /** Notifies the drawings of the state of the Interact tool. */
   setInteraction(interaction: Interaction): void {
     this.interaction = interaction;
-    for (const { drawing } of this.drawings.values()) drawing.interactionChanged?.(interaction);
+    for (const { drawing } of this.drawings.values()) drawing.onInteractionChanged?.(interaction);
     this.loop.invalidate();
   }
 
   /** Returns the enabled displays by ID. */
   private *enabled(): Generator<readonly [string, Drawing]> {
-    for (const [id, { display, drawing }] of this.drawings) if (display.enabled) yield [id, drawing];
+    for (const [id, { display, drawing }] of this.drawings) if (display.isEnabled) yield [id, drawing];
   }
 
   private listen(): void {
@@ -182,11 +182,11 @@ export class Stage {
     displays.enabledChanged.on((display) => this.propertiesChanged(display));
     session.data.received.on((data) => {
       const drawn = this.drawings.get(data.display);
-      drawn?.drawing.dataChanged?.(data);
-      if (drawn?.display.enabled && !drawn.drawing.isElsewhere) loop.invalidate();
+      drawn?.drawing.onDataChanged?.(data);
+      if (drawn?.display.isEnabled && !drawn.drawing.isElsewhere) loop.invalidate();
     });
     session.data.removed.on(({ display, key }) => {
-      this.drawings.get(display)?.drawing.dataForgotten?.(key);
+      this.drawings.get(display)?.drawing.onDataForgotten?.(key);
       loop.invalidate();
     });
     frames.tableChanged.on(invalidate);
@@ -216,7 +216,7 @@ export class Stage {
       const known = this.drawings.get(display.id);
       const Drawing = DRAWINGS.get(display.drawing);
       if (known) this.propertiesChanged(known.display);
-      else if (Drawing && display.supported) {
+      else if (Drawing && display.isSupported) {
         const { session, meshes, panels } = this;
         const invalidate = (): void => this.loop.invalidate();
         const showWithFrame = (show: () => void): void => this.loop.schedule(show);
@@ -225,8 +225,8 @@ export class Stage {
         const drawing = new Drawing({ display, session, meshes, panels, invalidate, showWithFrame, camera, affordsStudio });
         this.drawings.set(display.id, { display, drawing, pacing: new Pacing(invalidate) });
         this.viewport.scene.add(drawing.root);
-        drawing.interactionChanged?.(this.interaction);
-        for (const data of session.data.of(display.id)) drawing.dataChanged?.(data);
+        drawing.onInteractionChanged?.(this.interaction);
+        for (const data of session.data.contentsOf(display.id)) drawing.onDataChanged?.(data);
       }
     }
     this.globalOptionsChanged();
@@ -236,7 +236,7 @@ export class Stage {
 
   private propertiesChanged(display: DisplayState): void {
     const drawn = this.drawings.get(display.id);
-    drawn?.drawing.propertiesChanged();
+    drawn?.drawing.onPropertiesChanged();
     drawn?.pacing.restart();
     this.loop.invalidate();
   }
@@ -263,10 +263,10 @@ export class Stage {
     let loading = "";
     const now = performance.now();
     for (const { display, drawing, pacing } of this.drawings.values()) {
-      drawing.root.visible = display.enabled;
-      if (!display.enabled) continue;
+      drawing.root.visible = display.isEnabled;
+      if (!display.isEnabled) continue;
       if (pacing.isDue(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
-      if (drawing.settled?.() === false) loading += ` ${display.id}`;
+      if (drawing.isSettled?.() === false) loading += ` ${display.id}`;
     }
     const settled = loading === "";
     if (loading !== this.loading) {
@@ -343,7 +343,7 @@ export class Stage {
 
   /** Returns the bounding box of robots and the world's models; of all selectable objects if there are none. */
   private boundsOfAll(): Span | null {
-    const worlds = this.worlds().reduce((sum, world) => sum.union(world.extents().world), new Box3());
+    const worlds = this.worlds().reduce((sum, world) => sum.union(world.boundsByKind().world), new Box3());
     const robots = this.robots().reduce((sum, robot) => sum.union(robot.bounds()), worlds);
     return spanOf(robots) ?? this.picker.boundsOfAll();
   }
@@ -351,18 +351,18 @@ export class Stage {
   /** Draws the displays that show the scene in their own panels. */
   private drawElsewhere(): void {
     const { renderer, scene } = this.viewport;
-    const view: DrawnScene = { renderer, scene, background: this.backgroundColor, withOnly: (accepts, draw) => this.withOnly(accepts, draw) };
-    for (const { display, drawing } of this.drawings.values()) if (display.enabled) drawing.afterFrame?.(view);
+    const view: DrawnScene = { renderer, scene, background: this.backgroundColor, drawOnly: (accepts, draw) => this.withOnly(accepts, draw) };
+    for (const { display, drawing } of this.drawings.values()) if (display.isEnabled) drawing.afterFrame?.(view);
   }
 
   private withOnly(accepts: (display: DisplayState) => boolean, draw: () => void): void {
     const decorations = [this.overlays, this.backdrop.root, this.robotLight.root].filter((each) => each.visible);
     for (const decoration of decorations) decoration.visible = false;
     for (const { display, drawing } of this.drawings.values()) {
-      drawing.root.visible = display.enabled && accepts(display);
+      drawing.root.visible = display.isEnabled && accepts(display);
     }
     draw();
-    for (const { display, drawing } of this.drawings.values()) drawing.root.visible = display.enabled;
+    for (const { display, drawing } of this.drawings.values()) drawing.root.visible = display.isEnabled;
     for (const decoration of decorations) decoration.visible = true;
   }
 
@@ -381,15 +381,15 @@ export class Stage {
   private selectedObjects(): Object3D[] {
     const objects: Object3D[] = [];
     for (const { display, key } of this.session.selection.items) objects.push(...this.objectsOf(display, key));
-    const { hovered } = this.session.focus;
-    const link = hovered && this.session.focus.linkOf(hovered);
-    if (hovered && link !== null && link !== undefined) objects.push(...this.objectsOf(hovered.display, link));
+    const { hoveredElement } = this.session.focus;
+    const link = hoveredElement && this.session.focus.linkOf(hoveredElement);
+    if (hoveredElement && link !== null && link !== undefined) objects.push(...this.objectsOf(hoveredElement.display, link));
     return objects;
   }
 
   private objectsOf(display: string, key: string): readonly Object3D[] {
     const drawn = this.drawings.get(display);
-    return (drawn?.display.enabled && drawn.drawing.objectsOf?.(key)) || [];
+    return (drawn?.display.isEnabled && drawn.drawing.objectsOf?.(key)) || [];
   }
 
   /** Returns the bounding box of a display's objects, in the fixed frame, m. */

@@ -64,7 +64,7 @@ export class WorldHandling {
       return true;
     }
     const { simulation, modeling, tools } = this.session;
-    if (!simulation.present || modeling.active || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return false;
+    if (!simulation.isPresent || modeling.isActive || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return false;
     if (event.type === "down" && event.button === "left" && event.ctrl) return this.grab(event);
     if (event.type === "up" && event.button === "right" && event.click) this.openMenu(event);
     return false;
@@ -131,16 +131,16 @@ export class WorldHandling {
   private openMenu(event: ToolEvent): void {
     const found = this.find(event);
     const { simulation, view, frames, sceneMenu } = this.session;
-    const words = strings.simulation;
+    const texts = strings.simulation;
     const at = found?.at ?? this.stage.picker.groundAt(event.x, event.y);
     const place = at instanceof Vector3 ? at.toArray() : at;
     if (!place) return;
-    const choices = [{ label: words.spawnHere, run: () => simulation.spawnRequested.emit(found ? found.drawing.pointToWorld(place) : place) }];
+    const choices = [{ label: texts.spawnHere, run: () => simulation.spawnRequested.emit(found ? found.drawing.pointToWorld(place) : place) }];
     if (found) {
       const model = modelOf(found.link);
       const frame = found.link.split("::").at(-1) ?? "";
-      if (frames.has(frames.row(frame))) choices.push({ label: words.follow(frame), run: () => view.set("Target Frame", frame) });
-      choices.push({ label: words.remove(model), run: () => simulation.remove(model) });
+      if (frames.has(frames.rowOf(frame))) choices.push({ label: texts.follow(frame), run: () => view.set("Target Frame", frame) });
+      choices.push({ label: texts.remove(model), run: () => simulation.remove(model) });
     }
     sceneMenu.emit({ x: event.x, y: event.y, choices });
   }

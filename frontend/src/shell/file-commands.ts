@@ -32,7 +32,7 @@ export class FileCommands {
   }
 
   begin(): void {
-    this.ask((discard) => this.state.newFile(discard));
+    this.ask((discard) => this.state.createFile(discard));
   }
 
   open(path: string): void {
@@ -75,14 +75,14 @@ export class FileCommands {
   }
 
   revert(): void {
-    const words = strings.shell;
+    const texts = strings.shell;
     new Dialog(
-      words.revert,
-      [words.revertQuestion],
+      texts.revert,
+      [texts.revertQuestion],
       [
-        { label: words.cancel, main: true },
+        { label: texts.cancel, main: true },
         {
-          label: words.revert,
+          label: texts.revert,
           danger: true,
           run: () => {
             this.state.revert();
@@ -105,39 +105,39 @@ export class FileCommands {
   }
 
   private onRefused(refusal: ConfigurationRefused): void {
-    const words = strings.shell;
+    const texts = strings.shell;
     switch (refusal.question) {
       case "unsaved":
         this.askToDiscard();
         break;
       case "exists":
-        this.askToReplace(words.exists, words.existsQuestion(refusal.path ?? ""), refusal.path);
+        this.askToReplace(texts.exists, texts.existsQuestion(refusal.path ?? ""), refusal.path);
         break;
       case "changed_on_disk":
-        this.askToReplace(words.changedOnDisk, words.changedOnDiskQuestion(refusal.path ?? ""), refusal.path);
+        this.askToReplace(texts.changedOnDisk, texts.changedOnDiskQuestion(refusal.path ?? ""), refusal.path);
         break;
       case null:
         this.afterSaving = null;
-        if (this.dialog?.showProblem(refusal.message) !== true) showNotice(words.refused, refusal.message);
+        if (this.dialog?.showProblem(refusal.message) !== true) showNotice(texts.refused, refusal.message);
         break;
     }
   }
 
   private askToDiscard(): void {
-    const words = strings.shell;
+    const texts = strings.shell;
     const again = this.pending;
     const proceed = (): undefined => {
       again?.(true);
       return undefined;
     };
     new Dialog(
-      words.unsavedTitle,
-      [words.unsavedQuestion(this.state.fileName ?? words.untitled)],
+      texts.unsavedTitle,
+      [texts.unsavedQuestion(this.state.fileName ?? texts.untitled)],
       [
-        { label: words.cancel },
-        { label: words.discard, danger: true, run: proceed },
+        { label: texts.cancel },
+        { label: texts.discard, danger: true, run: proceed },
         {
-          label: words.saveFirst,
+          label: texts.saveFirst,
           main: true,
           run: () => {
             this.afterSaving = proceed;
@@ -150,14 +150,14 @@ export class FileCommands {
   }
 
   private askToReplace(title: string, question: string, path: string | null): void {
-    const words = strings.shell;
+    const texts = strings.shell;
     new Dialog(
       title,
       [question],
       [
-        { label: words.cancel, main: true },
+        { label: texts.cancel, main: true },
         {
-          label: words.replace,
+          label: texts.replace,
           danger: true,
           run: () => {
             this.state.save(path, true);

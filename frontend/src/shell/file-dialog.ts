@@ -25,22 +25,22 @@ export class FileDialog {
     private readonly onChosen: (path: string) => void,
     private readonly cancelled: () => void = () => undefined,
   ) {
-    const words = strings.shell;
-    this.name.setAttribute("aria-label", words.fileName);
+    const texts = strings.shell;
+    this.name.setAttribute("aria-label", texts.fileName);
     this.name.spellcheck = false;
-    if (kind === "save") this.name.value = state.fileName ?? `${words.untitled}${EXTENSION}`;
-    this.up = button(words.folderUp, () => this.ask(this.folder?.parent ?? null), "tool framed", icon("up"));
+    if (kind === "save") this.name.value = state.fileName ?? `${texts.untitled}${EXTENSION}`;
+    this.up = button(texts.folderUp, () => this.ask(this.folder?.parent ?? null), "tool framed", icon("up"));
     this.dialog = new Dialog(
-      kind === "open" ? words.openTitle : words.saveTitle,
+      kind === "open" ? texts.openTitle : texts.saveTitle,
       [
         h("div", { class: "file-place" }, this.up, this.place),
         this.list,
-        h("label", { class: "form-field" }, h("span", {}, words.fileName), this.name),
+        h("label", { class: "form-field" }, h("span", {}, texts.fileName), this.name),
         this.problem,
       ],
       [
-        { label: words.cancel },
-        { label: kind === "open" ? words.openShort : words.save, main: true, run: () => this.accept() },
+        { label: texts.cancel },
+        { label: kind === "open" ? texts.openShort : texts.save, main: true, run: () => this.accept() },
       ],
       "file-dialog",
     );

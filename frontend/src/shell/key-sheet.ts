@@ -23,11 +23,11 @@ export class KeySheet {
   }
 
   private open(): void {
-    const words = strings.keys;
-    const dialog = h("dialog", { class: "key-sheet", aria: { label: words.title } });
-    const close = button(words.close, () => dialog.close(), "tool bare", icon("close"));
+    const texts = strings.keys;
+    const dialog = h("dialog", { class: "key-sheet", aria: { label: texts.title } });
+    const close = button(texts.close, () => dialog.close(), "tool bare", icon("close"));
     dialog.append(
-      h("header", {}, h("strong", {}, words.title), h("span", { class: "spacer" }), close),
+      h("header", {}, h("strong", {}, texts.title), h("span", { class: "spacer" }), close),
       h("div", { class: "key-columns" }, ...this.sections().map(([title, rows, note]) => section(title, rows, note))),
     );
     dialog.addEventListener("close", () => {
@@ -43,37 +43,37 @@ export class KeySheet {
   }
 
   private sections(): (readonly [title: string, rows: readonly Row[], note?: string])[] {
-    const words = strings.keys;
+    const texts = strings.keys;
     const { shell, displays, modeling, terminal } = strings;
     const tools = this.tools.tools.flatMap((tool): Row[] => {
       const entry = TOOLS.get(tool.cls);
       return entry ? [[entry.key.toUpperCase(), toolName(tool)]] : [];
     });
     return [
-      [words.toolsTitle, tools, words.toolsNote],
+      [texts.toolsTitle, tools, texts.toolsNote],
       [
-        words.viewTitle,
+        texts.viewTitle,
         [
-          ["F", words.focus],
+          ["F", texts.focus],
           [FIT_KEY, strings.tools.fitHint],
-          ["Z", words.zero],
-          ["Shift Z", words.resetView],
-          [words.arrows, words.turn],
-          [`Shift ${words.arrows}`, words.move],
-          ["+ -", words.zoom],
-          [`${words.space} ← →`, strings.timeline.keys],
+          ["Z", texts.zero],
+          ["Shift Z", texts.resetView],
+          [texts.arrows, texts.turn],
+          [`Shift ${texts.arrows}`, texts.move],
+          ["+ -", texts.zoom],
+          [`${texts.space} ← →`, strings.timeline.keys],
           ["[ ]", strings.recording.key],
           [strings.simulation.dragKeys, strings.simulation.dragModel],
           [strings.simulation.pushKeys, strings.simulation.pushModel],
         ],
       ],
       [
-        words.treeTitle,
+        texts.treeTitle,
         [
-          ["↑ ↓", words.rows],
-          ["← →", words.open],
-          ["Enter", words.edit],
-          [words.space, words.toggle],
+          ["↑ ↓", texts.rows],
+          ["← →", texts.open],
+          ["Enter", texts.edit],
+          [texts.space, texts.toggle],
           [keyText(SHORTCUTS.add), displays.addHint],
           [keyText(SHORTCUTS.duplicate), displays.duplicate],
           [keyText(SHORTCUTS.rename), displays.rename],
@@ -103,20 +103,20 @@ export class KeySheet {
         ],
       ],
       [
-        words.generalTitle,
+        texts.generalTitle,
         [
-          ["Esc", words.escape],
+          ["Esc", texts.escape],
           [keyText(SHORTCUTS.open), shell.open],
           [keyText(SHORTCUTS.save), shell.save],
           [keyText(SHORTCUTS.saveAs), shell.saveAs],
           [keyText(SHORTCUTS.undo), shell.undo],
           [keyText(SHORTCUTS.redo), shell.redo],
-          ["R", words.resetTime],
+          ["R", texts.resetTime],
           [TALK_KEY.toUpperCase(), strings.voice.talkKey],
           [`${keyText(SHORTCUTS.previousStep)} ${keyText(SHORTCUTS.nextStep)}`, strings.learning.stepKeys],
           [keyText(SHORTCUTS.checkStep), strings.learning.checkHint],
-          ["F11", words.fullscreen],
-          ["?", words.sheet],
+          ["F11", texts.fullscreen],
+          ["?", texts.sheet],
         ],
       ],
     ];

@@ -54,9 +54,9 @@ export class RecordingDrop {
   }
 
   private accept(dropped: Dropped): void {
-    const words = strings.recording;
+    const texts = strings.recording;
     if (this.isBusy) return;
-    if (dropped.files.length === 0) showNotice(words.noRecording, words.noRecordingHint(dropped.name));
+    if (dropped.files.length === 0) showNotice(texts.noRecording, texts.noRecordingHint(dropped.name));
     else void this.send(dropped);
   }
 
@@ -70,19 +70,19 @@ export class RecordingDrop {
    * size in bytes.
    */
   private async open(name: string, whole: number, bring: (upload: Upload) => Promise<string | null>): Promise<void> {
-    const words = strings.recording;
+    const texts = strings.recording;
     if (this.isBusy) return;
-    const bar = h("progress", { class: "wide", aria: { label: words.sending(name) } });
+    const bar = h("progress", { class: "wide", aria: { label: texts.sending(name) } });
     const text = h("p", { role: "status" });
     const show = (sent: number): void => {
       bar.max = Math.max(1, whole);
       if (sent < whole) bar.value = sent;
       else bar.removeAttribute("value");
-      text.textContent = sent < whole ? amountOf(sent, whole) : words.opening;
+      text.textContent = sent < whole ? amountOf(sent, whole) : texts.opening;
     };
     const upload = new Upload(document.baseURI, this.tokens, language, show);
     let done = false;
-    const dialog = new Dialog(words.sending(name), [bar, text], [{ label: strings.shell.cancel, main: true }]);
+    const dialog = new Dialog(texts.sending(name), [bar, text], [{ label: strings.shell.cancel, main: true }]);
     dialog.element.addEventListener("close", () => {
       if (!done) upload.cancel();
     });
@@ -95,7 +95,7 @@ export class RecordingDrop {
     } catch (error) {
       done = true;
       dialog.close();
-      showNotice(words.notOpened(name), error instanceof RefusedError && error.message !== "" ? error.message : words.broken);
+      showNotice(texts.notOpened(name), error instanceof RefusedError && error.message !== "" ? error.message : texts.broken);
     } finally {
       done = true;
       this.isBusy = false;

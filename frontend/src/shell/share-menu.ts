@@ -36,26 +36,26 @@ export class ShareMenu {
   }
 
   entries(): MenuEntry[] {
-    const words = strings.sharing;
+    const texts = strings.sharing;
     const { stage, video } = this;
     const recording = video?.isRecording ?? false;
     return [
       ...SCALES.map((scale): MenuEntry => ({
-        label: scale === 1 ? words.screenshot : words.screenshotScaled(scale),
+        label: scale === 1 ? texts.screenshot : texts.screenshotScaled(scale),
         icon: "camera",
         disabled: stage === null,
         run: () => void this.saveImage(scale),
       })),
       {
-        label: recording ? words.stopVideo(timeText(video?.seconds ?? 0)) : words.startVideo,
+        label: recording ? texts.stopVideo(timeText(video?.seconds ?? 0)) : texts.startVideo,
         icon: "record",
         disabled: video === null,
         separate: true,
         run: () => (recording ? video?.stop() : video?.start()),
       },
-      { label: words.exportHtml, icon: "download", separate: true, disabled: this.hasNoRobot, run: () => this.ask("html") },
-      { label: words.exportGlb, icon: "download", disabled: this.hasNoRobot, run: () => this.ask("glb") },
-      { label: words.copyLink, hint: words.copyLinkHint, icon: "link", separate: true, run: () => void this.copyLink() },
+      { label: texts.exportHtml, icon: "download", separate: true, disabled: this.hasNoRobot, run: () => this.ask("html") },
+      { label: texts.exportGlb, icon: "download", disabled: this.hasNoRobot, run: () => this.ask("glb") },
+      { label: texts.copyLink, hint: texts.copyLinkHint, icon: "link", separate: true, run: () => void this.copyLink() },
     ];
   }
 
@@ -78,10 +78,10 @@ export class ShareMenu {
   }
 
   private async copyLink(): Promise<void> {
-    const words = strings.sharing;
+    const texts = strings.sharing;
     const { link } = this.tokens;
-    if (await copyText(link)) showNotice(words.linkCopied, words.copyLinkHint);
-    else showNotice(words.linkHere, link);
+    if (await copyText(link)) showNotice(texts.linkCopied, texts.copyLinkHint);
+    else showNotice(texts.linkHere, link);
   }
 
   private showTime(): void {

@@ -29,13 +29,13 @@ export class TitleBar {
     theme: ThemeState,
     share: ShareMenu,
   ) {
-    const words = strings.shell;
+    const texts = strings.shell;
     const { configuration } = session;
-    this.undo = button(words.undo, () => configuration.undo(), "tool bare", icon("undo"));
-    this.redo = button(words.redo, () => configuration.redo(), "tool bare", icon("redo"));
+    this.undo = button(texts.undo, () => configuration.undo(), "tool bare", icon("undo"));
+    this.redo = button(texts.redo, () => configuration.redo(), "tool bare", icon("redo"));
     const menus = [
-      menuButton(words.file, () => this.fileMenu()),
-      menuButton(words.panels, () => this.panelsMenu()),
+      menuButton(texts.file, () => this.fileMenu()),
+      menuButton(texts.panels, () => this.panelsMenu()),
       menuButton(strings.sharing.share, () => share.entries()),
     ];
     bindArrowKeys(menus);
@@ -44,7 +44,7 @@ export class TitleBar {
       { class: "title-bar" },
       logo(),
       h("span", { class: "brand" }, "Linkwright"),
-      h("nav", { class: "menu-bar", aria: { label: words.menu } }, ...menus),
+      h("nav", { class: "menu-bar", aria: { label: texts.menu } }, ...menus),
       this.undo,
       this.redo,
       this.file,
@@ -54,11 +54,11 @@ export class TitleBar {
       this.ownSwitch(),
       themeButton(theme),
       button(
-        words.languageHint,
+        texts.languageHint,
         changeLanguage,
         "tool language-button",
         icon("language"),
-        words.language,
+        texts.language,
       ),
     );
     configuration.changed.on(() => this.update());
@@ -71,33 +71,33 @@ export class TitleBar {
   }
 
   private update(): void {
-    const words = strings.shell;
+    const texts = strings.shell;
     const { current, fileName } = this.session.configuration;
-    const name = fileName ?? words.untitled;
-    this.file.replaceChildren(name, current.unsaved ? h("span", { class: "unsaved", title: words.unsaved }, "●") : "");
-    this.file.title = `${current.path ?? words.untitled}${current.unsaved ? ` (${words.unsaved})` : ""}`;
+    const name = fileName ?? texts.untitled;
+    this.file.replaceChildren(name, current.unsaved ? h("span", { class: "unsaved", title: texts.unsaved }, "●") : "");
+    this.file.title = `${current.path ?? texts.untitled}${current.unsaved ? ` (${texts.unsaved})` : ""}`;
     this.title.textContent = this.programTitle;
     document.title = `${current.unsaved ? "● " : ""}${this.programTitle || name} - Linkwright`;
     this.undo.disabled = current.undo === null;
     this.redo.disabled = current.redo === null;
-    describe(this.undo, current.undo ? words.undoing(editText(current.undo)) : words.undo, keyText(SHORTCUTS.undo));
-    describe(this.redo, current.redo ? words.redoing(editText(current.redo)) : words.redo, keyText(SHORTCUTS.redo));
+    describe(this.undo, current.undo ? texts.undoing(editText(current.undo)) : texts.undo, keyText(SHORTCUTS.undo));
+    describe(this.redo, current.redo ? texts.redoing(editText(current.redo)) : texts.redo, keyText(SHORTCUTS.redo));
   }
 
   private fileMenu(): MenuEntry[] {
-    const words = strings.shell;
+    const texts = strings.shell;
     const { files } = this;
     const { current } = this.session.configuration;
     return [
-      { label: words.newFile, icon: "file", run: () => files.begin() },
-      { label: words.open, icon: "open", keys: keyText(SHORTCUTS.open), run: () => files.chooseFile() },
-      { label: words.openLocal, icon: "upload", run: () => files.chooseLocal() },
+      { label: texts.newFile, icon: "file", run: () => files.begin() },
+      { label: texts.open, icon: "open", keys: keyText(SHORTCUTS.open), run: () => files.chooseFile() },
+      { label: texts.openLocal, icon: "upload", run: () => files.chooseLocal() },
       { label: strings.recording.open, hint: strings.recording.openFileHint, icon: "play", run: () => this.recordings.choose() },
-      { label: words.save, icon: "save", keys: keyText(SHORTCUTS.save), separate: true, run: () => files.save() },
-      { label: words.saveAs, keys: keyText(SHORTCUTS.saveAs), run: () => files.saveAs() },
-      { label: words.download, icon: "download", run: () => files.download() },
+      { label: texts.save, icon: "save", keys: keyText(SHORTCUTS.save), separate: true, run: () => files.save() },
+      { label: texts.saveAs, keys: keyText(SHORTCUTS.saveAs), run: () => files.saveAs() },
+      { label: texts.download, icon: "download", run: () => files.download() },
       {
-        label: words.revert,
+        label: texts.revert,
         disabled: current.path === null || !current.unsaved,
         separate: true,
         run: () => files.revert(),
@@ -129,13 +129,13 @@ export class TitleBar {
   }
 
   private ownSwitch(): HTMLElement {
-    const words = strings.shell;
+    const texts = strings.shell;
     const { configuration } = this.session;
     const choose = (own: boolean) => (): void => {
       if (own !== configuration.current.own) location.assign(addressFor(location.href, own));
     };
-    const shared = button(words.sharedDisplays, choose(false), "", icon("shared"), words.shared);
-    const own = button(words.ownHint, choose(true), "", icon("own"), words.own);
+    const shared = button(texts.sharedDisplays, choose(false), "", icon("shared"), texts.shared);
+    const own = button(texts.ownHint, choose(true), "", icon("own"), texts.own);
     const show = (): void => {
       for (const [each, on] of [
         [shared, !configuration.current.own],
@@ -147,7 +147,7 @@ export class TitleBar {
     };
     configuration.changed.on(show);
     show();
-    return h("div", { class: "segmented own-switch", role: "group", aria: { label: words.displays } }, shared, own);
+    return h("div", { class: "segmented own-switch", role: "group", aria: { label: texts.displays } }, shared, own);
   }
 }
 
@@ -183,16 +183,16 @@ function shortened(path: string): string {
 
 /** Returns the button that shows the theme, with a menu to choose one. */
 function themeButton(theme: ThemeState): HTMLButtonElement {
-  const words = strings.shell;
+  const texts = strings.shell;
   const choose = (): void => {
     const entries = THEME_CHOICES.map((choice) => ({
-      label: words.themes[choice],
+      label: texts.themes[choice],
       checked: theme.choice === choice,
       run: () => theme.choose(choice),
     }));
     openMenu(element, entries);
   };
-  const element = button(words.theme, choose, "tool bare theme-button", icon("system"));
+  const element = button(texts.theme, choose, "tool bare theme-button", icon("system"));
   element.setAttribute("aria-haspopup", "menu");
   const show = (): void => element.replaceChildren(icon(theme.theme === "light" ? "light" : "dark"));
   theme.changed.on(show);

@@ -16,25 +16,25 @@ export class TokenScreen {
     private readonly tokens: Tokens,
     private readonly page: HTMLElement,
   ) {
-    const words = strings.door;
+    const texts = strings.door;
     this.field.placeholder = `${location.origin}/?token=…`;
     this.field.spellcheck = false;
     this.field.autocomplete = "off";
-    const form = h("form", {}, this.field, button(words.open, () => this.submit(), "tool framed primary", words.open));
+    const form = h("form", {}, this.field, button(texts.open, () => this.submit(), "tool framed primary", texts.open));
     form.addEventListener("submit", (event) => {
       event.preventDefault();
       this.submit();
     });
     this.element = h(
       "div",
-      { class: "door", role: "dialog", aria: { modal: "true", label: words.title } },
+      { class: "door", role: "dialog", aria: { modal: "true", label: texts.title } },
       h(
         "div",
         { class: "door-box" },
-        h("header", {}, logo(), h("h1", {}, words.title)),
-        h("p", {}, words.printed),
+        h("header", {}, logo(), h("h1", {}, texts.title)),
+        h("p", {}, texts.printed),
         h("code", {}, `Viewer: ${location.origin}/?token=…`),
-        h("p", {}, words.hint),
+        h("p", {}, texts.hint),
         form,
         this.problem,
       ),

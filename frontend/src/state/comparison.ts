@@ -21,9 +21,9 @@ export interface LinkOverride {
   /** r g b, 0 to 1. */
   readonly color: readonly [number, number, number];
   /** Whether objects in the same place are drawn over the link. */
-  readonly behind?: boolean;
+  readonly isBehind?: boolean;
   /** Whether the link is less transparent than the rest of the robot. */
-  readonly firm?: boolean;
+  readonly isOpaque?: boolean;
 }
 
 /** The comparison of two descriptions in one scene: their differences, and how their links are drawn. */
@@ -47,8 +47,8 @@ export class ComparisonState {
     return this.showsMarks;
   }
 
-  set marks(marks: boolean) {
-    this.showsMarks = marks;
+  set marks(showsMarks: boolean) {
+    this.showsMarks = showsMarks;
     this.changed.emit();
   }
 
@@ -59,8 +59,8 @@ export class ComparisonState {
     const isOld = display === descriptions.old.display;
     if (!isOld && display !== descriptions.new.display) return null;
     const mark = this.showsMarks ? (isOld ? descriptions.old : descriptions.new).marks[link] : undefined;
-    if (isOld) return { color: rgb(MARK_COLORS[mark ?? "old"]), behind: true, firm: mark !== undefined };
-    return mark ? { color: rgb(MARK_COLORS[mark]) } : null;
+    if (isOld) return { color: parseRgb(MARK_COLORS[mark ?? "old"]), isBehind: true, isOpaque: mark !== undefined };
+    return mark ? { color: parseRgb(MARK_COLORS[mark]) } : null;
   }
 
   /** Whether a display shows the old description. */
@@ -108,12 +108,12 @@ export function groupDifferences(items: readonly ComparedItem[]): DifferenceGrou
 }
 
 /** Returns the marks among the links, in the order of the legend. */
-export function marksIn(robots: readonly ComparedRobot[]): MarkName[] {
-  const found = new Set<MarkName>(robots.flatMap(({ marks }) => Object.values(marks)));
-  return [...(["added", "changed", "removed"] as const).filter((mark) => found.has(mark)), "old"];
+export function usedMarks(robots: readonly ComparedRobot[]): MarkName[] {
+  const marks = new Set<MarkName>(robots.flatMap(({ marks }) => Object.values(marks)));
+  return [...(["added", "changed", "removed"] as const).filter((mark) => marks.has(mark)), "old"];
 }
 
-function rgb(hex: string): [number, number, number] {
-  const part = (from: number): number => parseInt(hex.slice(from, from + 2), 16) / 255;
-  return [part(1), part(3), part(5)];
+function parseRgb(hex: string): [number, number, number] {
+  const channelAt = (start: number): number => parseInt(hex.slice(start, start + 2), 16) / 255;
+  return [channelAt(1), channelAt(3), channelAt(5)];
 }

@@ -75,8 +75,8 @@ export class ConfigurationState {
   }
 
   /** Moves displays into a group (null for none), before one of its displays (null for the end). */
-  move(displays: string[], group: string | null, before: string | null): void {
-    this.connection.send({ type: "move_displays", displays, group, before });
+  move(displays: string[], group: string | null, nextSibling: string | null): void {
+    this.connection.send({ type: "move_displays", displays, group, before: nextSibling });
   }
 
   group(displays: string[], name: string): void {
@@ -97,23 +97,23 @@ export class ConfigurationState {
     this.connection.send({ type: "ask_configuration_text" });
   }
 
-  newFile(discard = false): void {
-    this.connection.send({ type: "new_configuration", discard });
+  createFile(discardsChanges = false): void {
+    this.connection.send({ type: "new_configuration", discard: discardsChanges });
   }
 
-  open(path: string, discard = false): void {
-    this.connection.send({ type: "open_configuration", path, discard });
+  open(path: string, discardsChanges = false): void {
+    this.connection.send({ type: "open_configuration", path, discard: discardsChanges });
   }
 
-  load(name: string, text: string, discard = false): void {
-    this.connection.send({ type: "load_configuration", name, text, discard });
+  load(name: string, text: string, discardsChanges = false): void {
+    this.connection.send({ type: "load_configuration", name, text, discard: discardsChanges });
   }
 
   revert(): void {
     this.connection.send({ type: "revert_configuration" });
   }
 
-  save(path: string | null = null, replace = false): void {
-    this.connection.send({ type: "save_configuration", path, replace });
+  save(path: string | null = null, replacesFile = false): void {
+    this.connection.send({ type: "save_configuration", path, replace: replacesFile });
   }
 }

@@ -86,9 +86,9 @@ export class CourseState {
   }
 
   /** Returns the step that is `count` steps after the shown one, or undefined. */
-  neighbor(count: number): CourseStepItem | undefined {
-    const at = this.steps.findIndex(({ address }) => address === this.step?.address);
-    return at < 0 ? undefined : this.steps[at + count];
+  stepAt(count: number): CourseStepItem | undefined {
+    const index = this.steps.findIndex(({ address }) => address === this.step?.address);
+    return index < 0 ? undefined : this.steps[index + count];
   }
 
   open(address: string): void {
@@ -97,7 +97,7 @@ export class CourseState {
 
   /** Opens the step that is `count` steps after the shown one, if there is one. */
   move(count: number): void {
-    const step = this.neighbor(count);
+    const step = this.stepAt(count);
     if (step) this.open(step.address);
   }
 

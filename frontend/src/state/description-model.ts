@@ -14,7 +14,7 @@ export const EXPANDED = "";
 export class DescriptionModel {
   readonly links: ReadonlyMap<string, LinkDetails>;
   readonly joints: ReadonlyMap<string, JointDetails>;
-  private readonly below = new Map<string, JointDetails[]>();
+  private readonly jointsByParent = new Map<string, JointDetails[]>();
   private readonly depths = new Map<string, number>();
   /** The source ranges in each file; elements from a macro share a range. */
   private readonly ranges = new Map<string, { range: SourceRange; element: ElementName }[]>();
@@ -25,9 +25,9 @@ export class DescriptionModel {
     for (const joint of [...description.joints].sort((a, b) => (a.name < b.name ? -1 : 1))) {
       // If several joints have the same child link, urdfdom keeps one of them.
       if (this.links.get(joint.child)?.parent_joint !== joint.name) continue;
-      const siblings = this.below.get(joint.parent);
+      const siblings = this.jointsByParent.get(joint.parent);
       if (siblings) siblings.push(joint);
-      else this.below.set(joint.parent, [joint]);
+      else this.jointsByParent.set(joint.parent, [joint]);
     }
     this.computeDepths();
     for (const link of description.links) this.addRanges("link", link.name, link.written);
@@ -40,7 +40,7 @@ export class DescriptionModel {
 
   /** Returns the child joints of a link, sorted by name as in urdfdom. */
   jointsBelow(link: string): readonly JointDetails[] {
-    return this.below.get(link) ?? [];
+    return this.jointsByParent.get(link) ?? [];
   }
 
   jointAbove(link: string): JointDetails | undefined {
@@ -53,13 +53,13 @@ export class DescriptionModel {
     return this.depths.get(link) ?? 0;
   }
 
-  get deepest(): number {
+  get maxDepth(): number {
     return Math.max(0, ...this.depths.values());
   }
 
   placesOf(element: ElementName): Written | undefined {
-    const from: ReadonlyMap<string, { written: Written }> = element.kind === "link" ? this.links : this.joints;
-    return from.get(element.name)?.written;
+    const elements: ReadonlyMap<string, { written: Written }> = element.kind === "link" ? this.links : this.joints;
+    return elements.get(element.name)?.written;
   }
 
   /**
@@ -67,17 +67,17 @@ export class DescriptionModel {
    * yield several.
    */
   elementsAt(file: string, line: number): ElementName[] {
-    const here = this.ranges.get(file) ?? [];
-    return here.filter(({ range }) => range.line <= line && line <= range.end_line).map(({ element }) => element);
+    const ranges = this.ranges.get(file) ?? [];
+    return ranges.filter(({ range }) => range.line <= line && line <= range.end_line).map(({ element }) => element);
   }
 
   private computeDepths(): void {
-    const pending: [string, number][] = [[this.description.root, 0]];
-    for (let next = pending.pop(); next; next = pending.pop()) {
+    const stack: [string, number][] = [[this.description.root, 0]];
+    for (let next = stack.pop(); next; next = stack.pop()) {
       const [link, depth] = next;
       if (this.depths.has(link)) continue;
       this.depths.set(link, depth);
-      for (const joint of this.jointsBelow(link)) pending.push([joint.child, depth + 1]);
+      for (const joint of this.jointsBelow(link)) stack.push([joint.child, depth + 1]);
     }
   }
 
@@ -85,8 +85,8 @@ export class DescriptionModel {
     for (const range of [expanded, origin]) {
       if (!range) continue;
       const entry = { range, element: { display: this.display, kind, name } };
-      const known = this.ranges.get(range.file);
-      if (known) known.push(entry);
+      const ranges = this.ranges.get(range.file);
+      if (ranges) ranges.push(entry);
       else this.ranges.set(range.file, [entry]);
     }
   }

@@ -38,9 +38,9 @@ export class DescriptionState {
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => this.revisions.clear());
     connection.on("tree", ({ displays }) => {
-      const shown = new Set(displays.map((display) => display.id));
-      for (const known of [this.revisions, this.models, this.findings]) {
-        for (const display of known.keys()) if (!shown.has(display)) known.delete(display);
+      const displayIds = new Set(displays.map((display) => display.id));
+      for (const entries of [this.revisions, this.models, this.findings]) {
+        for (const display of entries.keys()) if (!displayIds.has(display)) entries.delete(display);
       }
     });
     connection.on("description_changed", (message) => this.onChanged(message));
@@ -69,7 +69,7 @@ export class DescriptionState {
         if (this.models.get(display)?.description.revision !== revision) this.request("ask_description", display);
       }
     }
-    return once(() => (this.modelHolders -= 1));
+    return runOnce(() => (this.modelHolders -= 1));
   }
 
   /** Keeps the findings about masses up to date until the returned function is called. */
@@ -80,11 +80,11 @@ export class DescriptionState {
         if (this.findings.get(display)?.revision !== revision) this.request("ask_inertia", display);
       }
     }
-    return once(() => (this.findingHolders -= 1));
+    return runOnce(() => (this.findingHolders -= 1));
   }
 
   /** Returns the description of a display, if it has arrived; it may be slightly out of date. */
-  of(display: string): DescriptionModel | undefined {
+  modelOf(display: string): DescriptionModel | undefined {
     return this.models.get(display);
   }
 
@@ -93,7 +93,7 @@ export class DescriptionState {
   }
 
   /** Returns a text if it has arrived, otherwise requests it; null if it does not exist. */
-  text(display: string, file: string): string | null | undefined {
+  textOf(display: string, file: string): string | null | undefined {
     const key = textKey(display, file);
     if (!this.texts.has(key)) {
       this.texts.set(key, undefined);
@@ -127,10 +127,10 @@ function textKey(display: string, file: string): string {
   return `${display} ${file}`;
 }
 
-function once(work: () => void): () => void {
-  let done = false;
+function runOnce(action: () => void): () => void {
+  let hasRun = false;
   return () => {
-    if (!done) work();
-    done = true;
+    if (!hasRun) action();
+    hasRun = true;
   };
 }

@@ -13,7 +13,7 @@ export interface DiagramNode {
   /** The text at the edge above a joint: its origin in the parent's frame. */
   readonly origin: readonly string[];
   /** The node at the start of the edge to this one. */
-  readonly above: DiagramNode | null;
+  readonly parent: DiagramNode | null;
 }
 
 export interface Diagram {
@@ -41,7 +41,7 @@ interface Sized extends TreeNode {
  *
  * @param measure - returns the width of a text, px.
  */
-export function layOut(model: DescriptionModel, origins: boolean, measure: (text: string) => number): Diagram {
+export function layOut(model: DescriptionModel, showsOrigins: boolean, measure: (text: string) => number): Diagram {
   const size = (kind: ElementName["kind"], name: string, origin: readonly string[], children: readonly Sized[]): Sized => {
     const boxWidth = measure(name) + (kind === "link" ? 20 : 34);
     const boxHeight = kind === "link" ? BOX_PX : ELLIPSE_PX;
@@ -50,15 +50,15 @@ export function layOut(model: DescriptionModel, origins: boolean, measure: (text
     const element = { display: model.display, kind, name };
     return { id: `${kind} ${name}`, element, width, height, boxWidth, boxHeight, origin, children };
   };
-  const tree = layOutTree(buildTree(model, origins, size), GAP_PX, LEVEL_GAP_PX);
-  const made = new Map<TreeNode, DiagramNode>();
+  const tree = layOutTree(buildTree(model, showsOrigins, size), GAP_PX, LEVEL_GAP_PX);
+  const diagramNodes = new Map<TreeNode, DiagramNode>();
   const nodes = tree.nodes.map(({ node, x, y, parent }) => {
     const { element, boxWidth, boxHeight, origin } = node as Sized;
-    const above = (parent && made.get(parent.node)) ?? null;
-    const below = origin.length > 0 ? ORIGIN_PX / 2 : 0;
-    const placed = { element, x, y: y + below, width: boxWidth, height: boxHeight, origin, above };
-    made.set(node, placed);
-    return placed;
+    const parentNode = (parent && diagramNodes.get(parent.node)) ?? null;
+    const originOffset = origin.length > 0 ? ORIGIN_PX / 2 : 0;
+    const diagramNode = { element, x, y: y + originOffset, width: boxWidth, height: boxHeight, origin, parent: parentNode };
+    diagramNodes.set(node, diagramNode);
+    return diagramNode;
   });
   return { nodes, width: tree.width, height: tree.height };
 }
@@ -66,32 +66,32 @@ export function layOut(model: DescriptionModel, origins: boolean, measure: (text
 /** Builds the tree from the leaves up, without recursion, because descriptions may be chains of thousands of links. */
 function buildTree(
   model: DescriptionModel,
-  origins: boolean,
+  showsOrigins: boolean,
   size: (kind: ElementName["kind"], name: string, origin: readonly string[], children: readonly Sized[]) => Sized,
 ): Sized {
   const order: string[] = [];
-  const seen = new Set<string>();
-  const pending = [model.description.root];
-  for (let link = pending.pop(); link !== undefined; link = pending.pop()) {
-    if (seen.has(link)) continue;
-    seen.add(link);
+  const visited = new Set<string>();
+  const stack = [model.description.root];
+  for (let link = stack.pop(); link !== undefined; link = stack.pop()) {
+    if (visited.has(link)) continue;
+    visited.add(link);
     order.push(link);
-    for (const joint of model.jointsBelow(link)) pending.push(joint.child);
+    for (const joint of model.jointsBelow(link)) stack.push(joint.child);
   }
-  const made = new Map<string, Sized>();
+  const sizedNodes = new Map<string, Sized>();
   for (const link of order.reverse()) {
     const joints = model.jointsBelow(link).flatMap((joint) => {
-      const child = made.get(joint.child);
-      return child ? [size("joint", joint.name, origins ? originText(joint) : [], [child])] : [];
+      const child = sizedNodes.get(joint.child);
+      return child ? [size("joint", joint.name, showsOrigins ? formatOrigin(joint) : [], [child])] : [];
     });
-    made.set(link, size("link", link, [], joints));
+    sizedNodes.set(link, size("link", link, [], joints));
   }
-  return made.get(model.description.root) ?? size("link", model.description.root, [], []);
+  return sizedNodes.get(model.description.root) ?? size("link", model.description.root, [], []);
 }
 
 /**
  * Returns the text of an origin as urdf_to_graphviz writes it: meters, and radians converted through the quaternion.
  */
-function originText({ xyz, rpy }: Pick<JointDetails, "xyz" | "rpy">): [string, string] {
+function formatOrigin({ xyz, rpy }: Pick<JointDetails, "xyz" | "rpy">): [string, string] {
   return [`xyz: ${xyz.map(formatGeneral).join(" ")}`, `rpy: ${rpy.map(formatGeneral).join(" ")}`];
 }

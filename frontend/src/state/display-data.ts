@@ -19,7 +19,7 @@ export class DisplayDataStore {
   }
 
   /** Returns the contents of a display. */
-  of(display: string): Iterable<DisplayData> {
+  contentsOf(display: string): Iterable<DisplayData> {
     return this.contents.get(display)?.values() ?? [];
   }
 

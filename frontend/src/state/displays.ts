@@ -20,10 +20,10 @@ export class DisplayState {
   readonly drawing: string;
   name = "";
   /** Whether its own box is ticked. */
-  checked = false;
+  isChecked = false;
   /** The group that contains it. */
   group: DisplayState | null = null;
-  supported = false;
+  isSupported = false;
   level: StatusLevel = "ok";
   status: readonly StatusRow[] = [];
   rows = new PropertyRows([]);
@@ -37,7 +37,7 @@ export class DisplayState {
 
   /** The status rows that are not "ok", errors first; empty while the display is disabled. */
   get problems(): StatusRow[] {
-    return this.enabled ? problemsOf(this.status) : [];
+    return this.isEnabled ? problemsOf(this.status) : [];
   }
 
   get enabledId(): string {
@@ -45,8 +45,8 @@ export class DisplayState {
   }
 
   /** Whether the display is drawn: its box and those of all groups around it are ticked. */
-  get enabled(): boolean {
-    return this.checked && (this.group?.enabled ?? true);
+  get isEnabled(): boolean {
+    return this.isChecked && (this.group?.isEnabled ?? true);
   }
 
   /** Whether it is a group of displays. */
@@ -61,8 +61,8 @@ export class DisplayState {
 
   update(display: Display): void {
     this.name = display.name;
-    this.checked = display.enabled;
-    this.supported = display.supported;
+    this.isChecked = display.enabled;
+    this.isSupported = display.supported;
     this.level = display.level;
     this.status = display.status;
     this.setProperties(display.properties);
@@ -70,8 +70,8 @@ export class DisplayState {
 
   setProperties(properties: readonly Property[]): void {
     // The enable box is in the display's own row.
-    const rest = properties.filter((property) => property.id !== this.enabledId);
-    this.rows = new PropertyRows(rest.map((property) => new PropertyNode(property)));
+    const rows = properties.filter((property) => property.id !== this.enabledId);
+    this.rows = new PropertyRows(rows.map((property) => new PropertyNode(property)));
   }
 }
 
@@ -98,17 +98,17 @@ export class DisplaysState {
   private owners = new Map<string, { node: PropertyNode; display: DisplayState | null }>();
 
   setTree(tree: Tree): void {
-    const known = new Map(this.displays.map((display) => [display.id, display]));
+    const displaysById = new Map(this.displays.map((display) => [display.id, display]));
     const next = tree.displays.map((display) => {
-      const old = known.get(display.id);
-      if (old?.cls !== display.cls) return new DisplayState(display);
-      old.update(display);
-      return old;
+      const existing = displaysById.get(display.id);
+      if (existing?.cls !== display.cls) return new DisplayState(display);
+      existing.update(display);
+      return existing;
     });
     this.displays.splice(0, this.displays.length, ...next);
     for (const [index, { group }] of tree.displays.entries()) {
       const display = next[index];
-      if (display) display.group = (group !== null && next.find((each) => each.id === group)) || null;
+      if (display) display.group = (group !== null && next.find((candidate) => candidate.id === group)) || null;
     }
     this.globalOptions = new PropertyRows(tree.global_options.map((property) => new PropertyNode(property)));
     this.globalStatus = tree.global_status;
@@ -149,18 +149,18 @@ export class DisplaysState {
       this.valueChanged.emit(owner);
       return;
     }
-    const display = this.displays.find((each) => each.enabledId === id);
-    if (!display || typeof value !== "boolean" || display.checked === value) return;
-    const before = this.displays.map((each) => each.enabled);
-    display.checked = value;
-    for (const [index, each] of this.displays.entries()) {
-      if (each === display || each.enabled !== before[index]) this.enabledChanged.emit(each);
+    const display = this.displays.find((candidate) => candidate.enabledId === id);
+    if (!display || typeof value !== "boolean" || display.isChecked === value) return;
+    const wereEnabled = this.displays.map((display) => display.isEnabled);
+    display.isChecked = value;
+    for (const [index, candidate] of this.displays.entries()) {
+      if (candidate === display || candidate.isEnabled !== wereEnabled[index]) this.enabledChanged.emit(candidate);
     }
   }
 
   /** Returns the level to show for a display: while it is loading, it is not "ok". */
   levelOf(display: DisplayState): ShownLevel {
-    return display.level === "ok" && display.enabled && this.isLoading(display) ? "loading" : display.level;
+    return display.level === "ok" && display.isEnabled && this.isLoading(display) ? "loading" : display.level;
   }
 
   /** Returns the displays in a group, or the top-level ones for null, in their order. */
@@ -170,8 +170,8 @@ export class DisplaysState {
 
   /** The number of enabled displays with an error; the global status counts as one. */
   get failingCount(): number {
-    const all = [problemsOf(this.globalStatus), ...this.displays.map((display) => display.problems)];
-    return all.filter(([worst]) => worst?.level === "error").length;
+    const problems = [problemsOf(this.globalStatus), ...this.displays.map((display) => display.problems)];
+    return problems.filter(([worst]) => worst?.level === "error").length;
   }
 
   find(id: string): DisplayState | undefined {

@@ -13,20 +13,20 @@ export class DrawingPace {
   /** The name of the software renderer; null if a GPU draws. */
   software: string | null = null;
   private readonly lateness: boolean[] = [];
-  private slow = false;
+  private wasSlow = false;
 
   get isSlow(): boolean {
-    return this.slow;
+    return this.wasSlow;
   }
 
   /** Counts a frame; `late` if it was drawn long after it was due, because the frames before took too long. */
-  countFrame(late: boolean): void {
-    this.lateness.push(late);
+  countFrame(isLate: boolean): void {
+    this.lateness.push(isLate);
     if (this.lateness.length > JUDGED_FRAMES) this.lateness.shift();
     const count = this.lateness.filter(Boolean).length;
-    const slow = this.slow ? count > FAST_UP_TO : count >= SLOW_FROM;
-    if (slow === this.slow) return;
-    this.slow = slow;
+    const isSlow = this.wasSlow ? count > FAST_UP_TO : count >= SLOW_FROM;
+    if (isSlow === this.wasSlow) return;
+    this.wasSlow = isSlow;
     this.changed.emit();
   }
 }

@@ -19,7 +19,7 @@ export class ElementFocus {
     private readonly robots: ReadonlyMap<string, RobotScene>,
   ) {
     selection.changed.on(() => {
-      if (this.joint && this.linkOf(this.joint) !== selection.selected?.link.name) this.joint = null;
+      if (this.joint && this.linkOf(this.joint) !== selection.selectedLink?.link.name) this.joint = null;
       this.changed.emit();
     });
   }
@@ -31,23 +31,23 @@ export class ElementFocus {
 
   get current(): ElementName | null {
     if (this.joint) return this.joint;
-    const selected = this.selection.selected;
-    return selected && { display: selected.display, kind: "link", name: selected.link.name };
+    const selectedLink = this.selection.selectedLink;
+    return selectedLink && { display: selectedLink.display, kind: "link", name: selectedLink.link.name };
   }
 
   /** The element under the pointer in a list or tree. */
-  get hovered(): ElementName | null {
+  get hoveredElement(): ElementName | null {
     return this.hover;
   }
 
   select(element: ElementName | null): void {
     this.joint = element?.kind === "joint" ? element : null;
     const name = element && this.linkOf(element);
-    const link = element && this.robots.get(element.display)?.links.find((each) => each.name === name);
-    const before = this.selection.selected;
+    const link = element && this.robots.get(element.display)?.links.find((candidate) => candidate.name === name);
+    const previous = this.selection.selectedLink;
     this.selection.select(element && link ? { display: element.display, link } : null);
     // The link is the same, but the selected element may be another of its joints, or the link itself.
-    if (before?.link.name === this.selection.selected?.link.name) this.changed.emit();
+    if (previous?.link.name === this.selection.selectedLink?.link.name) this.changed.emit();
   }
 
   setHovered(element: ElementName | null): void {

@@ -27,10 +27,10 @@ export class FrameStore {
   fixedFrame = "";
   private revision = -1;
   private rows = new Map<string, number>();
-  private pending: Transforms | null = null;
+  private pendingTransforms: Transforms | null = null;
 
   setTable(table: FrameTable): void {
-    const before = this.rows;
+    const previousRows = this.rows;
     const { poses, ages } = this;
     this.revision = table.revision;
     this.names = table.names;
@@ -39,14 +39,14 @@ export class FrameStore {
     this.poses = new Float32Array(table.names.length * 7).fill(NaN);
     this.ages = new Float32Array(table.names.length);
     for (const [name, row] of this.rows) {
-      const old = before.get(name);
-      if (old === undefined) continue;
-      this.poses.set(poses.subarray(old * 7, old * 7 + 7), row * 7);
-      this.ages[row] = ages[old] ?? 0;
+      const previousRow = previousRows.get(name);
+      if (previousRow === undefined) continue;
+      this.poses.set(poses.subarray(previousRow * 7, previousRow * 7 + 7), row * 7);
+      this.ages[row] = ages[previousRow] ?? 0;
     }
     this.tableChanged.emit();
-    if (this.pending?.revision === table.revision) this.apply(this.pending);
-    this.pending = null;
+    if (this.pendingTransforms?.revision === table.revision) this.apply(this.pendingTransforms);
+    this.pendingTransforms = null;
   }
 
   /**
@@ -54,11 +54,11 @@ export class FrameStore {
    */
   setTransforms(transforms: Transforms): void {
     if (transforms.revision === this.revision) this.apply(transforms);
-    else if (transforms.revision > this.revision) this.pending = transforms;
+    else if (transforms.revision > this.revision) this.pendingTransforms = transforms;
   }
 
   /** Returns the row of a frame, or -1. */
-  row(name: string): number {
+  rowOf(name: string): number {
     return this.rows.get(name) ?? -1;
   }
 
@@ -67,12 +67,12 @@ export class FrameStore {
   }
 
   /** Returns the distance of two frames: the largest difference of their coordinates in m or quaternion components. */
-  difference(one: string, other: string): number {
-    const [a, b] = [this.row(one), this.row(other)];
+  difference(first: string, second: string): number {
+    const [a, b] = [this.rowOf(first), this.rowOf(second)];
     if (!this.has(a) || !this.has(b)) return Infinity;
-    let most = 0;
-    for (let i = 0; i < 7; i++) most = Math.max(most, Math.abs((this.poses[a * 7 + i] ?? 0) - (this.poses[b * 7 + i] ?? 0)));
-    return most;
+    let maximum = 0;
+    for (let i = 0; i < 7; i++) maximum = Math.max(maximum, Math.abs((this.poses[a * 7 + i] ?? 0) - (this.poses[b * 7 + i] ?? 0)));
+    return maximum;
   }
 
   /** Returns all frames with a pose. */
@@ -88,16 +88,16 @@ export class FrameStore {
 
   private apply(transforms: Transforms): void {
     if (transforms.poses.length !== this.poses.length) return;
-    const changed = !sameNumbers(this.poses, transforms.poses);
+    const hasChanged = !hasSameNumbers(this.poses, transforms.poses);
     this.poses = transforms.poses;
     this.ages = transforms.ages;
     this.stamp = transforms.stamp;
-    if (changed) this.posesChanged.emit();
+    if (hasChanged) this.posesChanged.emit();
     else this.agesChanged.emit();
   }
 }
 
-function sameNumbers(a: Float32Array, b: Float32Array): boolean {
+function hasSameNumbers(a: Float32Array, b: Float32Array): boolean {
   for (let i = 0; i < a.length; i++) if (!Object.is(a[i], b[i])) return false;
   return true;
 }

@@ -33,23 +33,23 @@ const NOTHING: Inspected = {
  */
 export class InspectState {
   readonly changed = new Signal();
-  private shown: Inspected;
+  private settings: Inspected;
   private size: number;
   private depth: number | null = null;
 
   constructor(private readonly storage: TextStorage) {
-    const { scale, ...shown } = read(storage.getItem(KEY));
-    this.shown = { ...NOTHING, ...shown };
+    const { scale, ...shown } = parseSettings(storage.getItem(KEY));
+    this.settings = { ...NOTHING, ...shown };
     this.size = scale;
   }
 
   get current(): Readonly<Inspected> {
-    return this.shown;
+    return this.settings;
   }
 
   /** Whether any choice is on. */
   get isActive(): boolean {
-    return Object.values(this.shown).some(Boolean);
+    return Object.values(this.settings).some(Boolean);
   }
 
   /** The scale of marks, relative to a size that suits the robot. */
@@ -63,32 +63,32 @@ export class InspectState {
   }
 
   /** The depth down to which frames are drawn; null for all. */
-  get deepest(): number | null {
+  get maxDepth(): number | null {
     return this.depth;
   }
 
-  set deepest(depth: number | null) {
+  set maxDepth(depth: number | null) {
     this.depth = depth;
     this.remember();
   }
 
-  set(what: keyof Inspected, on: boolean): void {
-    this.shown = { ...this.shown, [what]: on };
+  set(setting: keyof Inspected, isOn: boolean): void {
+    this.settings = { ...this.settings, [setting]: isOn };
     this.remember();
   }
 
   private remember(): void {
-    this.storage.setItem(KEY, JSON.stringify({ ...this.shown, scale: this.size }));
+    this.storage.setItem(KEY, JSON.stringify({ ...this.settings, scale: this.size }));
     this.changed.emit();
   }
 }
 
-function read(text: string | null): Partial<Inspected> & { scale: number } {
+function parseSettings(text: string | null): Partial<Inspected> & { scale: number } {
   try {
-    const known = JSON.parse(text ?? "{}") as Record<string, unknown>;
-    const on = Object.keys(NOTHING).map((name) => [name, known[name] === true]);
-    const scale = known["scale"];
-    return { ...(Object.fromEntries(on) as Partial<Inspected>), scale: typeof scale === "number" && scale > 0 ? scale : 1 };
+    const values = JSON.parse(text ?? "{}") as Record<string, unknown>;
+    const settings = Object.keys(NOTHING).map((name) => [name, values[name] === true]);
+    const scale = values["scale"];
+    return { ...(Object.fromEntries(settings) as Partial<Inspected>), scale: typeof scale === "number" && scale > 0 ? scale : 1 };
   } catch {
     return { scale: 1 };
   }

@@ -26,58 +26,58 @@ interface Words {
 }
 
 /** Returns the texts of a joint's row. */
-export function cellTexts(joint: JointDetails, angles: AngleUnits, words: Words): Record<Column, string> {
+export function formatJointCells(joint: JointDetails, angles: AngleUnits, words: Words): Record<Column, string> {
   const scale = angles.scale(joint.kind);
   const unit = joint.kind === "prismatic" ? "m" : angles.current;
-  const moves = joint.kind !== "fixed";
-  const amount = (value: number | null, of: string): string => (value === null ? "" : `${rounded(value)} ${of}`.trim());
-  const scaled = (value: number | null, per = ""): string => (value === null ? "" : amount(value * scale, unit + per));
+  const isMovable = joint.kind !== "fixed";
+  const formatAmount = (value: number | null, unit: string): string => (value === null ? "" : `${formatRounded(value)} ${unit}`.trim());
+  const formatScaled = (value: number | null, per = ""): string => (value === null ? "" : formatAmount(value * scale, unit + per));
   const { mimic, damping, friction, soft_lower, soft_upper } = joint;
   return {
     name: joint.name,
     kind: words.kinds[joint.kind],
     parent: joint.parent,
     child: joint.child,
-    axis: moves && joint.kind !== "floating" ? joint.axis.map(rounded).join(" ") : "",
-    lower: scaled(joint.lower),
-    upper: scaled(joint.upper),
-    velocity: scaled(joint.velocity, "/s"),
-    effort: amount(joint.effort, joint.kind === "prismatic" ? "N" : "N m"),
-    mimic: mimic ? mimicText(mimic.joint, mimic.multiplier, mimic.offset * scale, unit) : "",
+    axis: isMovable && joint.kind !== "floating" ? joint.axis.map(formatRounded).join(" ") : "",
+    lower: formatScaled(joint.lower),
+    upper: formatScaled(joint.upper),
+    velocity: formatScaled(joint.velocity, "/s"),
+    effort: formatAmount(joint.effort, joint.kind === "prismatic" ? "N" : "N m"),
+    mimic: mimic ? formatMimic(mimic.joint, mimic.multiplier, mimic.offset * scale, unit) : "",
     dynamics: [
-      damping === null ? "" : words.table.damping(rounded(damping)),
-      friction === null ? "" : words.table.friction(rounded(friction)),
+      damping === null ? "" : words.table.damping(formatRounded(damping)),
+      friction === null ? "" : words.table.friction(formatRounded(friction)),
     ]
       .filter((text) => text !== "")
       .join(", "),
     safety:
       soft_lower === null || soft_upper === null
         ? ""
-        : `${rounded(soft_lower * scale)} … ${scaled(soft_upper)}, k ${rounded(joint.k_position ?? 0)}, ${rounded(joint.k_velocity ?? 0)}`,
+        : `${formatRounded(soft_lower * scale)} … ${formatScaled(soft_upper)}, k ${formatRounded(joint.k_position ?? 0)}, ${formatRounded(joint.k_velocity ?? 0)}`,
   };
 }
 
 /** Returns `2 × elbow + 0.1 rad`. */
-export function mimicText(joint: string, multiplier: number, offset: number, unit: string): string {
-  const product = multiplier === 1 ? joint : multiplier === -1 ? `−${joint}` : `${rounded(multiplier)} × ${joint}`;
+export function formatMimic(joint: string, multiplier: number, offset: number, unit: string): string {
+  const product = multiplier === 1 ? joint : multiplier === -1 ? `−${joint}` : `${formatRounded(multiplier)} × ${joint}`;
   if (offset === 0) return product;
-  return `${product} ${offset < 0 ? "−" : "+"} ${rounded(Math.abs(offset))} ${unit}`;
+  return `${product} ${offset < 0 ? "−" : "+"} ${formatRounded(Math.abs(offset))} ${unit}`;
 }
 
 /** Returns joints sorted by a column: numbers by their value, joints without one last. */
-export function sortJoints(joints: readonly JointDetails[], column: Column, descending: boolean): JointDetails[] {
-  const way = descending ? -1 : 1;
+export function sortJoints(joints: readonly JointDetails[], column: Column, isDescending: boolean): JointDetails[] {
+  const sign = isDescending ? -1 : 1;
   return [...joints].sort((a, b) => {
-    const [x, y] = [value(a, column), value(b, column)];
+    const [x, y] = [valueOf(a, column), valueOf(b, column)];
     if (x === null || y === null) return Number(x === null) - Number(y === null);
     const order = typeof x === "number" && typeof y === "number" ? x - y : COLLATOR.compare(String(x), String(y));
-    return order * way;
+    return order * sign;
   });
 }
 
 const COLLATOR = new Intl.Collator("en", { numeric: true });
 
-function value(joint: JointDetails, column: Column): number | string | null {
+function valueOf(joint: JointDetails, column: Column): number | string | null {
   switch (column) {
     case "axis":
       return joint.axis.join(" ");
@@ -100,6 +100,6 @@ function value(joint: JointDetails, column: Column): number | string | null {
 }
 
 /** Rounds to four significant digits, which fit into a table. */
-function rounded(value: number): string {
+function formatRounded(value: number): string {
   return formatGeneral(Number(value.toPrecision(4)));
 }

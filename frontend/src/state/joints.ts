@@ -17,7 +17,7 @@ export class JointsState {
   positions: Positions = {};
   /** Whether links can be dragged without Alt. */
   dragsWithoutAlt = false;
-  private pending: Record<string, number> | null = null;
+  private pendingPositions: Record<string, number> | null = null;
   /** The latest joints, also after the program has ended. */
   private latest: readonly JointControl[] = [];
   /** The joint positions from before a restart of the program, until the new program has sliders. */
@@ -25,7 +25,7 @@ export class JointsState {
 
   constructor(
     private readonly connection: Connection,
-    private readonly nextFrame: (work: () => void) => void = (work) => void requestAnimationFrame(work),
+    private readonly requestFrame: (action: () => void) => void = (action) => void requestAnimationFrame(action),
   ) {
     connection.on("joints", ({ controls }) => this.setControls(controls));
     connection.on("joint_positions", ({ positions }) => this.setPositions(positions));
@@ -33,7 +33,7 @@ export class JointsState {
 
   /** Preserves across reloads of the page whether links can be dragged without Alt. */
   preserveIn(memory: PageMemory): void {
-    memory.preserve("hands on", () => this.dragsWithoutAlt, (on) => (this.dragsWithoutAlt = on));
+    memory.preserve("hands on", () => this.dragsWithoutAlt, (isOn) => (this.dragsWithoutAlt = isOn));
   }
 
   /**
@@ -41,39 +41,39 @@ export class JointsState {
    * together.
    */
   move(positions: Positions): void {
-    if (this.pending) {
-      Object.assign(this.pending, positions);
+    if (this.pendingPositions) {
+      Object.assign(this.pendingPositions, positions);
       return;
     }
     this.send(positions);
-    this.pending = {};
-    this.nextFrame(() => {
-      const late = this.pending ?? {};
-      this.pending = null;
-      if (Object.keys(late).length > 0) this.move(late);
+    this.pendingPositions = {};
+    this.requestFrame(() => {
+      const positions = this.pendingPositions ?? {};
+      this.pendingPositions = null;
+      if (Object.keys(positions).length > 0) this.move(positions);
     });
   }
 
   /** Returns the joint that must be moved so that `name` gets to `position`, and its position; null if no joint can. */
-  leader(name: string, position: number): { control: JointControl; position: number } | null {
-    const seen = new Set<string>();
-    for (let at = position, next = name; !seen.has(next); ) {
-      seen.add(next);
-      const control = this.controls?.find((each) => each.name === next);
+  leaderOf(name: string, position: number): { control: JointControl; position: number } | null {
+    const visited = new Set<string>();
+    for (let leaderPosition = position, next = name; !visited.has(next); ) {
+      visited.add(next);
+      const control = this.controls?.find((candidate) => candidate.name === next);
       if (!control) return null;
-      if (control.mimic === null) return { control, position: at };
+      if (control.mimic === null) return { control, position: leaderPosition };
       if (control.multiplier === 0) return null;
-      at = (at - control.offset) / control.multiplier;
+      leaderPosition = (leaderPosition - control.offset) / control.multiplier;
       next = control.mimic;
     }
     return null;
   }
 
   /** Moves joints back to their positions after the program was restarted, if it shows the same robot. */
-  programRestarted(isSame: boolean): void {
-    const moved = this.latest.filter(({ name, mimic, zero }) => mimic === null && this.positions[name] !== zero);
-    const before = moved.map(({ name }) => [name, this.positions[name]]).filter(([, position]) => position !== undefined);
-    this.beforeRestart = isSame ? { ...this.beforeRestart, ...(Object.fromEntries(before) as Positions) } : {};
+  onProgramRestarted(isSame: boolean): void {
+    const movedJoints = this.latest.filter(({ name, mimic, zero }) => mimic === null && this.positions[name] !== zero);
+    const positions = movedJoints.map(({ name }) => [name, this.positions[name]]).filter(([, position]) => position !== undefined);
+    this.beforeRestart = isSame ? { ...this.beforeRestart, ...(Object.fromEntries(positions) as Positions) } : {};
   }
 
   private setControls(controls: readonly JointControl[] | null): void {
@@ -81,10 +81,10 @@ export class JointsState {
     this.controlsChanged.emit();
     if (controls === null || controls.length === 0) return;
     this.latest = controls;
-    const known = new Set(controls.map(({ name }) => name));
-    const found = Object.entries(this.beforeRestart).filter(([name]) => known.has(name));
+    const names = new Set(controls.map(({ name }) => name));
+    const positions = Object.entries(this.beforeRestart).filter(([name]) => names.has(name));
     this.beforeRestart = {};
-    this.send(Object.fromEntries(found));
+    this.send(Object.fromEntries(positions));
   }
 
   private setPositions(positions: Positions): void {
@@ -94,9 +94,9 @@ export class JointsState {
 
   private send(positions: Positions): void {
     const entries = Object.entries(positions);
-    const [only] = entries;
-    if (only && entries.length === 1) {
-      this.connection.send({ type: "set_joint", name: only[0], position: only[1] });
+    const [entry] = entries;
+    if (entry && entries.length === 1) {
+      this.connection.send({ type: "set_joint", name: entry[0], position: entry[1] });
       return;
     }
     for (let i = 0; i < entries.length; i += MAX_PER_MESSAGE) {

@@ -9,34 +9,34 @@ export interface TreeRow {
   readonly depth: number;
   /** Whether the link has children. */
   readonly hasChildren: boolean;
-  readonly folded: boolean;
+  readonly isFolded: boolean;
 }
 
 /** The folded links, by name, so that a reload leaves the tree unchanged. */
 export class LinkTreeState {
-  private folded = new Set<string>();
+  private foldedLinks = new Set<string>();
 
   /** Preserves the folds across reloads of the page. */
   preserveIn(memory: PageMemory): void {
-    memory.preserve("folded links", () => [...this.folded], (links) => (this.folded = new Set(links)));
+    memory.preserve("folded links", () => [...this.foldedLinks], (links) => (this.foldedLinks = new Set(links)));
   }
 
   isFolded(link: string): boolean {
-    return this.folded.has(link);
+    return this.foldedLinks.has(link);
   }
 
   toggle(link: string): void {
-    if (!this.folded.delete(link)) this.folded.add(link);
+    if (!this.foldedLinks.delete(link)) this.foldedLinks.add(link);
   }
 
   /** Folds or unfolds everything. */
-  foldAll(model: DescriptionModel, all: boolean): void {
-    this.folded = new Set(all ? model.links.keys() : []);
+  foldAll(model: DescriptionModel, foldsAll: boolean): void {
+    this.foldedLinks = new Set(foldsAll ? model.links.keys() : []);
   }
 
   /** Unfolds the ancestors of a link. */
   reveal(model: DescriptionModel, link: string): void {
-    for (let joint = model.jointAbove(link); joint; joint = model.jointAbove(joint.parent)) this.folded.delete(joint.parent);
+    for (let joint = model.jointAbove(link); joint; joint = model.jointAbove(joint.parent)) this.foldedLinks.delete(joint.parent);
   }
 }
 
@@ -48,18 +48,18 @@ export function visibleRows(model: DescriptionModel, state: LinkTreeState, searc
   const words = search.toLowerCase().split(/\s+/).filter((word) => word !== "");
   const matching = words.length > 0 ? matchesOf(model, words) : null;
   const rows: TreeRow[] = [];
-  const seen = new Set<string>();
-  const pending: [string, JointDetails | null, number][] = [[model.description.root, null, 0]];
-  for (let next = pending.pop(); next; next = pending.pop()) {
+  const visited = new Set<string>();
+  const stack: [string, JointDetails | null, number][] = [[model.description.root, null, 0]];
+  for (let next = stack.pop(); next; next = stack.pop()) {
     const [name, joint, depth] = next;
     const link = model.links.get(name);
-    if (!link || seen.has(name) || (matching && !matching.has(name))) continue;
-    seen.add(name);
-    const below = model.jointsBelow(name);
-    const folded = !matching && state.isFolded(name);
-    rows.push({ link, joint, depth, hasChildren: below.length > 0, folded });
-    if (folded) continue;
-    for (const each of [...below].reverse()) pending.push([each.child, each, depth + 1]);
+    if (!link || visited.has(name) || (matching && !matching.has(name))) continue;
+    visited.add(name);
+    const joints = model.jointsBelow(name);
+    const isFolded = !matching && state.isFolded(name);
+    rows.push({ link, joint, depth, hasChildren: joints.length > 0, isFolded });
+    if (isFolded) continue;
+    for (const joint of [...joints].reverse()) stack.push([joint.child, joint, depth + 1]);
   }
   return rows;
 }
@@ -69,7 +69,7 @@ function matchesOf(model: DescriptionModel, words: readonly string[]): Set<strin
   for (const link of model.links.keys()) {
     const names = `${link} ${model.jointAbove(link)?.name ?? ""}`.toLowerCase();
     if (!words.every((word) => names.includes(word))) continue;
-    for (let at: string | undefined = link; at !== undefined && !matching.has(at); at = model.jointAbove(at)?.parent) matching.add(at);
+    for (let ancestor: string | undefined = link; ancestor !== undefined && !matching.has(ancestor); ancestor = model.jointAbove(ancestor)?.parent) matching.add(ancestor);
   }
   return matching;
 }

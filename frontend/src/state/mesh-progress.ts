@@ -18,26 +18,26 @@ export interface MeshLoad {
 /** The mesh files that take longer than a moment to load. */
 export class MeshProgress {
   readonly changed = new Signal();
-  private readonly shown = new Set<MeshLoad>();
+  private readonly shownLoads = new Set<MeshLoad>();
 
   /** The loads to show, in the order in which they started. */
   get loads(): readonly Readonly<MeshLoad>[] {
-    return [...this.shown];
+    return [...this.shownLoads];
   }
 
   /** Starts tracking a file, whose loader then reports its progress. */
   begin(name: string): LoadReport {
     const load: MeshLoad = { name, bytes: 0, total: null, stage: "fetching" };
     const show = (): void => {
-      this.shown.add(load);
+      this.shownLoads.add(load);
       this.changed.emit();
     };
     const timer = setTimeout(show, SHOWN_AFTER_MS);
     const notify = (): void => {
-      if (this.shown.has(load)) this.changed.emit();
+      if (this.shownLoads.has(load)) this.changed.emit();
     };
     return {
-      received: (bytes, total) => {
+      onBytes: (bytes, total) => {
         Object.assign(load, { bytes, total });
         notify();
       },
@@ -45,11 +45,11 @@ export class MeshProgress {
         load.stage = "reading";
         if (load.bytes >= LARGE_BYTES) show();
         notify();
-        if (this.shown.has(load)) await afterPaint();
+        if (this.shownLoads.has(load)) await waitForPaint();
       },
       end: () => {
         clearTimeout(timer);
-        if (this.shown.delete(load)) this.changed.emit();
+        if (this.shownLoads.delete(load)) this.changed.emit();
       },
     };
   }
@@ -58,7 +58,7 @@ export class MeshProgress {
 /** The functions with which a loader reports the progress of a file. */
 export interface LoadReport {
   /** Reports the number of bytes received so far. */
-  received(bytes: number, total: number | null): void;
+  onBytes(bytes: number, total: number | null): void;
   /** Reports that all bytes are received. Resolves once the page shows that, because reading blocks painting. */
   startReading(): Promise<void>;
   /** Reports that the file is loaded, or failed to load. */
@@ -66,7 +66,7 @@ export interface LoadReport {
 }
 
 /** Resolves once the page was painted, or after a while, because a hidden page is not painted. */
-function afterPaint(): Promise<void> {
+function waitForPaint(): Promise<void> {
   return new Promise((resolve) => {
     const timer = setTimeout(resolve, 200);
     requestAnimationFrame(() =>

@@ -20,8 +20,8 @@ export class PoseStore {
 
   posesOf(robot: string): readonly NamedPose[] {
     try {
-      const known: unknown = JSON.parse(this.storage.getItem(KEY + robot) ?? "[]");
-      return Array.isArray(known) ? known.filter(isPose) : [];
+      const poses: unknown = JSON.parse(this.storage.getItem(KEY + robot) ?? "[]");
+      return Array.isArray(poses) ? poses.filter(isPose) : [];
     } catch {
       return [];
     }
@@ -29,8 +29,8 @@ export class PoseStore {
 
   /** Stores poses, replacing those with the same name. */
   save(robot: string, ...poses: readonly NamedPose[]): void {
-    const all = new Map([...this.posesOf(robot), ...poses].map((pose) => [pose.name, pose]));
-    this.write(robot, [...all.values()]);
+    const posesByName = new Map([...this.posesOf(robot), ...poses].map((pose) => [pose.name, pose]));
+    this.write(robot, [...posesByName.values()]);
   }
 
   remove(robot: string, name: string): void {
@@ -47,28 +47,28 @@ export class PoseStore {
 export function toSrdf(robot: string, poses: readonly NamedPose[]): string {
   const states = poses.map(({ name, positions }) => {
     const joints = Object.entries(positions).map(
-      ([joint, value]) => `    <joint name="${escaped(joint)}" value="${String(value)}"/>`,
+      ([joint, value]) => `    <joint name="${escapeXml(joint)}" value="${String(value)}"/>`,
     );
-    return [`  <group_state name="${escaped(name)}" group="all">`, ...joints, "  </group_state>"].join("\n");
+    return [`  <group_state name="${escapeXml(name)}" group="all">`, ...joints, "  </group_state>"].join("\n");
   });
-  return ['<?xml version="1.0"?>', `<robot name="${escaped(robot)}">`, ...states, "</robot>", ""].join("\n");
+  return ['<?xml version="1.0"?>', `<robot name="${escapeXml(robot)}">`, ...states, "</robot>", ""].join("\n");
 }
 
 /**
  * Returns the group states of an SRDF file. States of several groups with the same name become several poses; joints
  * with several values are omitted.
  */
-export function fromSrdf(srdf: string): NamedPose[] {
+export function readSrdf(srdf: string): NamedPose[] {
   const text = srdf.replace(/<!--[\s\S]*?-->/g, "");
   const poses = new Map<string, NamedPose>();
-  for (const [, tag = "", inside = ""] of text.matchAll(/<group_state\b([^>]*)>([\s\S]*?)<\/group_state\s*>/g)) {
+  for (const [, tag = "", content = ""] of text.matchAll(/<group_state\b([^>]*)>([\s\S]*?)<\/group_state\s*>/g)) {
     const positions: Record<string, number> = {};
-    for (const [, joint = ""] of inside.matchAll(/<joint\b([^>]*)>/g)) {
-      const [name, value] = [attribute(joint, "name"), attribute(joint, "value")];
+    for (const [, joint = ""] of content.matchAll(/<joint\b([^>]*)>/g)) {
+      const [name, value] = [attributeOf(joint, "name"), attributeOf(joint, "value")];
       if (name !== null && value !== null && value !== "" && Number.isFinite(Number(value))) positions[name] = Number(value);
     }
-    const own = attribute(tag, "name") ?? "";
-    const name = poses.has(own) ? `${own} (${attribute(tag, "group") ?? ""})` : own;
+    const poseName = attributeOf(tag, "name") ?? "";
+    const name = poses.has(poseName) ? `${poseName} (${attributeOf(tag, "group") ?? ""})` : poseName;
     if (name !== "" && Object.keys(positions).length > 0) poses.set(name, { name, positions });
   }
   return [...poses.values()];
@@ -87,18 +87,18 @@ function isPose(value: unknown): value is NamedPose {
   return typeof pose?.name === "string" && typeof pose.positions === "object";
 }
 
-function attribute(tag: string, name: string): string | null {
-  const found = new RegExp(`(?:^|\\s)${name}\\s*=\\s*(?:"([^"]*)"|'([^']*)')`).exec(tag);
-  const value = found && (found[1] ?? found[2]);
-  return value === null || value === undefined ? null : unescaped(value).trim();
+function attributeOf(tag: string, name: string): string | null {
+  const match = new RegExp(`(?:^|\\s)${name}\\s*=\\s*(?:"([^"]*)"|'([^']*)')`).exec(tag);
+  const value = match && (match[1] ?? match[2]);
+  return value === null || value === undefined ? null : unescapeXml(value).trim();
 }
 
 const ENTITIES: Readonly<Record<string, string>> = { "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" };
 
-function escaped(text: string): string {
+function escapeXml(text: string): string {
   return text.replace(/[&<>"]/g, (character) => ENTITIES[character] ?? character);
 }
 
-function unescaped(text: string): string {
-  return Object.entries(ENTITIES).reduceRight((all, [character, entity]) => all.replaceAll(entity, character), text);
+function unescapeXml(text: string): string {
+  return Object.entries(ENTITIES).reduceRight((unescaped, [character, entity]) => unescaped.replaceAll(entity, character), text);
 }

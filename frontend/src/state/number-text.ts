@@ -3,11 +3,11 @@ export function formatGeneral(value: number): string {
   if (!Number.isFinite(value)) return String(value);
   if (value === 0) return Object.is(value, -0) ? "-0" : "0";
   const exponent = Number(value.toExponential(5).split("e")[1]);
-  if (exponent >= -4 && exponent < 6) return trimmed(value.toPrecision(6));
+  if (exponent >= -4 && exponent < 6) return trimZeros(value.toPrecision(6));
   const [mantissa = "", power = ""] = value.toExponential(5).split("e");
-  return `${trimmed(mantissa)}e${power.replace(/^([+-])(\d)$/, "$10$2")}`;
+  return `${trimZeros(mantissa)}e${power.replace(/^([+-])(\d)$/, "$10$2")}`;
 }
 
-function trimmed(text: string): string {
+function trimZeros(text: string): string {
   return text.includes(".") ? text.replace(/\.?0+$/, "") : text;
 }

@@ -1,7 +1,7 @@
 /** x, y, z in m, and the unit quaternion qx, qy, qz, qw. */
 export type PoseNumbers = readonly [number, number, number, number, number, number, number];
 
-type Turn = readonly [number, number, number, number];
+type Rotation = readonly [number, number, number, number];
 type Vector = readonly [number, number, number];
 
 /** Returns a pose `b` given in the frame `a`, in the frame in which `a` is given. */
@@ -11,21 +11,21 @@ export function compose(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
 }
 
 /** Returns the pose of `b` in `a`, where both are given in the same frame. */
-export function relativeTo(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
+export function computeRelativePose(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
   const [x, y, z, w] = turnOf(a);
-  const back: Turn = [-x, -y, -z, w];
-  return [...rotate(back, [b[0] - a[0], b[1] - a[1], b[2] - a[2]]), ...multiply(back, turnOf(b))];
+  const inverse: Rotation = [-x, -y, -z, w];
+  return [...rotate(inverse, [b[0] - a[0], b[1] - a[1], b[2] - a[2]]), ...multiply(inverse, turnOf(b))];
 }
 
 function placeOf([x, y, z]: PoseNumbers): Vector {
   return [x, y, z];
 }
 
-function turnOf(pose: PoseNumbers): Turn {
+function turnOf(pose: PoseNumbers): Rotation {
   return [pose[3], pose[4], pose[5], pose[6]];
 }
 
-function multiply([ax, ay, az, aw]: Turn, [bx, by, bz, bw]: Turn): Turn {
+function multiply([ax, ay, az, aw]: Rotation, [bx, by, bz, bw]: Rotation): Rotation {
   return [
     aw * bx + ax * bw + ay * bz - az * by,
     aw * by - ax * bz + ay * bw + az * bx,
@@ -34,7 +34,7 @@ function multiply([ax, ay, az, aw]: Turn, [bx, by, bz, bw]: Turn): Turn {
   ];
 }
 
-function rotate([x, y, z, w]: Turn, [a, b, c]: Vector): Vector {
+function rotate([x, y, z, w]: Rotation, [a, b, c]: Vector): Vector {
   const [p, q, r] = [y * c - z * b, z * a - x * c, x * b - y * a];
   return [a + 2 * (w * p + y * r - z * q), b + 2 * (w * q + z * p - x * r), c + 2 * (w * r + x * q - y * p)];
 }

@@ -8,8 +8,8 @@ export class PropertyNode {
   readonly description: string;
   readonly minimum: number | null;
   readonly maximum: number | null;
-  readonly readOnly: boolean;
-  readonly expanded: boolean;
+  readonly isReadOnly: boolean;
+  readonly isExpanded: boolean;
   readonly children: readonly PropertyNode[];
   /** The kind of object that the row represents, if the page adds rows with details of it. */
   readonly details: RowDetails | null;
@@ -27,8 +27,8 @@ export class PropertyNode {
     this.options = property.options;
     this.minimum = property.minimum;
     this.maximum = property.maximum;
-    this.readOnly = property.read_only;
-    this.expanded = property.expanded;
+    this.isReadOnly = property.read_only;
+    this.isExpanded = property.expanded;
     this.details = property.details;
     this.topics = property.topics;
     this.children = property.children.map((child) => new PropertyNode(child));

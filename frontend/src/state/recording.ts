@@ -6,7 +6,7 @@ import { Signal } from "../signal";
 export class RecordingControl {
   readonly changed = new Signal();
   /** The recording or excerpt that this page requested is complete. */
-  readonly made = new Signal<RecordedFile>();
+  readonly finished = new Signal<RecordedFile>();
   /** A request of this page failed, or its recording ended early; the value is the reason. */
   readonly refused = new Signal<string>();
   /** The user asked to view a finished recording. */
@@ -24,7 +24,7 @@ export class RecordingControl {
   }
 
   /** Whether topics can be recorded, which is not the case while a recording is shown. */
-  get possible(): boolean {
+  get isPossible(): boolean {
     return this.latest?.possible ?? false;
   }
 
@@ -48,7 +48,7 @@ export class RecordingControl {
   }
 
   /** The saved share of the history, 0 to 1; null while nothing is being saved. */
-  get saved(): number | null {
+  get savedBytes(): number | null {
     return this.latest?.saved ?? null;
   }
 
@@ -79,17 +79,17 @@ export class RecordingControl {
   }
 
   private setState(state: RecordingState): void {
-    const before = this.latest;
+    const previous = this.latest;
     this.latest = state;
     this.changed.emit();
-    if (!this.hasRequested || before === null) return;
-    const [newest] = state.files;
-    if (state.problem !== "" && state.problem !== before.problem) {
+    if (!this.hasRequested || previous === null) return;
+    const [newestFile] = state.files;
+    if (state.problem !== "" && state.problem !== previous.problem) {
       this.hasRequested = this.isRecording;
       this.refused.emit(state.problem);
-    } else if (newest && newest.url !== before.files[0]?.url) {
+    } else if (newestFile && newestFile.url !== previous.files[0]?.url) {
       this.hasRequested = this.isRecording;
-      this.made.emit(newest);
+      this.finished.emit(newestFile);
     }
   }
 }

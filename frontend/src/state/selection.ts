@@ -38,33 +38,33 @@ export class SelectionState {
   }
 
   /** The first selected link. */
-  get selected(): SelectedLink | null {
+  get selectedLink(): SelectedLink | null {
     return this.link;
   }
 
-  select(selected: SelectedLink | null): void {
-    this.pick(selected ? [{ display: selected.display, key: selected.link.name }] : [], "replace");
+  select(link: SelectedLink | null): void {
+    this.pick(link ? [{ display: link.display, key: link.link.name }] : [], "replace");
   }
 
   pick(items: readonly SelectedItem[], mode: SelectionMode): void {
-    const next = new Map((mode === "replace" ? [] : this.current).map((item) => [identity(item), item]));
+    const next = new Map((mode === "replace" ? [] : this.current).map((item) => [identityOf(item), item]));
     for (const item of items) {
-      if (mode === "remove") next.delete(identity(item));
-      else next.set(identity(item), item);
+      if (mode === "remove") next.delete(identityOf(item));
+      else next.set(identityOf(item), item);
     }
-    const same = next.size === this.current.length && this.current.every((item) => next.has(identity(item)));
-    if (!same) this.setItems([...next.values()]);
+    const isUnchanged = next.size === this.current.length && this.current.every((item) => next.has(identityOf(item)));
+    if (!isUnchanged) this.setItems([...next.values()]);
   }
 
   /** Deselects objects that their display no longer shows. */
-  retain(exists: (item: SelectedItem) => boolean): void {
+  keepIf(exists: (item: SelectedItem) => boolean): void {
     const left = this.current.filter(exists);
     if (left.length < this.current.length) this.setItems(left);
   }
 
-  robotChanged(robot: RobotScene): void {
-    const mine = this.current.filter((item) => item.display === robot.display);
-    if (mine.length === 0) return;
+  onRobotChanged(robot: RobotScene): void {
+    const items = this.current.filter((item) => item.display === robot.display);
+    if (items.length === 0) return;
     const links = new Set(robot.links.map((link) => link.name));
     this.setItems(this.current.filter((item) => item.display !== robot.display || links.has(item.key)));
   }
@@ -73,7 +73,7 @@ export class SelectionState {
     this.current = items;
     this.link = null;
     for (const { display, key } of items) {
-      const link = this.robots.get(display)?.links.find((each) => each.name === key);
+      const link = this.robots.get(display)?.links.find((candidate) => candidate.name === key);
       if (link) {
         this.link = { display, link };
         break;
@@ -83,6 +83,6 @@ export class SelectionState {
   }
 }
 
-function identity({ display, key }: SelectedItem): string {
+function identityOf({ display, key }: SelectedItem): string {
   return `${display} ${key}`;
 }

@@ -115,7 +115,7 @@ export class Session {
   private registerState(): void {
     const { memory } = this;
     memory.preserve("program", () => this.program, (program) => (this.program = program));
-    for (const each of [this.view, this.selection, this.focus, this.tools, this.joints]) each.preserveIn(memory);
+    for (const part of [this.view, this.selection, this.focus, this.tools, this.joints]) part.preserveIn(memory);
   }
 
   /** Applies a user's edit of a property: shows it immediately, and sends it to the server. */
@@ -135,12 +135,12 @@ export class Session {
 
   /** Keeps joint positions and camera when the program was restarted, unless it shows something else now. */
   private onHello(hello: Hello): void {
-    const before = this.program;
+    const previous = this.program;
     this.program = hello;
-    if (before !== null && before.run !== hello.run) {
-      const isSame = before.title === hello.title;
-      this.view.programRestarted(isSame);
-      this.joints.programRestarted(isSame);
+    if (previous !== null && previous.run !== hello.run) {
+      const isSame = previous.title === hello.title;
+      this.view.onProgramRestarted(isSame);
+      this.joints.onProgramRestarted(isSame);
     }
     this.greeted.emit(hello);
   }
@@ -150,7 +150,7 @@ export class Session {
     connection.on("tree", (message) => {
       this.displays.setTree(message);
       for (const id of this.robots.keys()) if (!this.displays.find(id)) this.robots.delete(id);
-      this.selection.retain(({ display }) => this.displays.find(display) !== undefined);
+      this.selection.keepIf(({ display }) => this.displays.find(display) !== undefined);
     });
     connection.on("display_properties", ({ display, properties }) => this.displays.setRows(display, properties));
     connection.on("property_changed", ({ id, value, options }) => this.displays.setValue(id, value, options));
@@ -158,7 +158,7 @@ export class Session {
     connection.on("robot_scene", (message) => {
       this.robots.set(message.display, message);
       this.robotChanged.emit(message);
-      this.selection.robotChanged(message);
+      this.selection.onRobotChanged(message);
     });
     connection.on("frame_table", (message) => this.frames.setTable(message));
     connection.on("diagnostics", ({ items }) => {

@@ -24,11 +24,11 @@ export class SimulationState {
     connection.on("simulation_notice", ({ text }) => this.refused.emit(text));
   }
 
-  get present(): boolean {
+  get isPresent(): boolean {
     return this.status?.present ?? false;
   }
 
-  get paused(): boolean {
+  get isPaused(): boolean {
     return this.status?.paused ?? false;
   }
 
@@ -42,7 +42,7 @@ export class SimulationState {
     return this.status?.real_time_factor ?? null;
   }
 
-  control(action: ControlSimulation["action"]): void {
+  sendControl(action: ControlSimulation["action"]): void {
     this.connection.send({ type: "control_simulation", action });
   }
 
@@ -56,8 +56,8 @@ export class SimulationState {
   }
 
   /** Moves a model by an offset in the world's frame, m, from its position at the start of the drag. */
-  drag(model: string, offset: readonly number[], begins: boolean): void {
-    this.connection.send({ type: "drag_model", model, begins, offset: [...offset] });
+  drag(model: string, offset: readonly number[], isBeginning: boolean): void {
+    this.connection.send({ type: "drag_model", model, begins: isBeginning, offset: [...offset] });
   }
 
   /** Pushes a link for a moment: `force` in the world's frame, N; `point` in the link's frame, m. */

@@ -22,28 +22,28 @@ export interface Reduced {
 /** The contents that the server reduces because the connection to this page is slow. */
 export class SlowConnection {
   readonly changed = new Signal();
-  private readonly known = new Map<string, { reduction: Reduction; times: number[] }>();
+  private readonly reductions = new Map<string, { reduction: Reduction; times: number[] }>();
 
   constructor(data: DisplayDataStore, private readonly now: () => number = () => performance.now()) {
-    data.received.on((each) => this.countContent(each));
+    data.received.on((content) => this.countContent(content));
     data.removed.on(({ display }) => {
-      if (this.known.delete(display)) this.changed.emit();
+      if (this.reductions.delete(display)) this.changed.emit();
     });
   }
 
   get reduced(): Reduced[] {
-    return [...this.known].map(([display, { reduction, times }]) => ({ display, reduction, rate: rateOf(times) }));
+    return [...this.reductions].map(([display, { reduction, times }]) => ({ display, reduction, rate: rateOf(times) }));
   }
 
   private countContent({ display, content }: DisplayData): void {
     const reduction = reductionOf(content);
     if (reduction === null) {
-      if (this.known.delete(display)) this.changed.emit();
+      if (this.reductions.delete(display)) this.changed.emit();
       return;
     }
     const now = this.now();
-    const times = [...(this.known.get(display)?.times ?? []), now].filter((time) => now - time < RATE_WINDOW_MS);
-    this.known.set(display, { reduction, times });
+    const times = [...(this.reductions.get(display)?.times ?? []), now].filter((time) => now - time < RATE_WINDOW_MS);
+    this.reductions.set(display, { reduction, times });
     this.changed.emit();
   }
 }
@@ -56,7 +56,7 @@ function reductionOf(content: DisplayData["content"]): Reduction | null {
 }
 
 function rateOf(times: readonly number[]): number | null {
-  const [first, last] = [times[0], times.at(-1)];
-  if (first === undefined || last === undefined || last - first < RATE_WINDOW_MS / 10) return null;
-  return ((times.length - 1) * 1000) / (last - first);
+  const [oldest, newest] = [times[0], times.at(-1)];
+  if (oldest === undefined || newest === undefined || newest - oldest < RATE_WINDOW_MS / 10) return null;
+  return ((times.length - 1) * 1000) / (newest - oldest);
 }

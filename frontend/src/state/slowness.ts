@@ -59,10 +59,10 @@ export class Slowness {
     }, INTERVAL_MS);
   }
 
-  private addMeasurement(late: number): void {
-    this.delays.push(late);
+  private addMeasurement(delay: number): void {
+    this.delays.push(delay);
     if (this.delays.length > AVERAGED) this.delays.shift();
-    const sum = this.delays.reduce((all, delay) => all + delay, 0);
+    const sum = this.delays.reduce((total, delay) => total + delay, 0);
     const share = sum / (sum + this.delays.length * INTERVAL_MS);
     const isLate = this.isPageLate ? share > TIMELY_SHARE : share >= LATE_SHARE;
     if (isLate === this.isPageLate) return;

@@ -28,8 +28,8 @@ export class Sweep {
     return Object.fromEntries(
       this.joints.map((joint, i) => {
         const start = this.start[joint.name] ?? joint.zero;
-        const moves = this.order === "all" || i === moving;
-        return [joint.name, moves ? roundTrip(joint, start, round % 1) : start];
+        const isMoving = this.order === "all" || i === moving;
+        return [joint.name, isMoving ? roundTrip(joint, start, round % 1) : start];
       }),
     );
   }
@@ -42,8 +42,8 @@ export class Sweep {
 export function roundTrip({ lower, upper }: Pick<JointControl, "lower" | "upper">, start: number, part: number): number {
   const range = upper - lower;
   const travelled = part * 2 * range;
-  const up = upper - start;
-  if (travelled <= up) return start + travelled;
-  if (travelled <= up + range) return upper - (travelled - up);
-  return lower + (travelled - up - range);
+  const upwardLength = upper - start;
+  if (travelled <= upwardLength) return start + travelled;
+  if (travelled <= upwardLength + range) return upper - (travelled - upwardLength);
+  return lower + (travelled - upwardLength - range);
 }

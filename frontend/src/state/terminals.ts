@@ -32,7 +32,7 @@ export class TerminalsState {
   /** The pages of the programs in terminals, oldest first. */
   programs: readonly ProgramPage[] = [];
   /** Why the last request was refused, or empty. */
-  whyNot = "";
+  unavailableReason = "";
   private isAvailableNow = false;
   /** Whether the connection is new, and the server has not reported terminals yet. */
   private isUnknown = true;
@@ -43,9 +43,9 @@ export class TerminalsState {
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", ({ run }) => this.onHello(run));
-    connection.on("terminals", ({ folder, terminals, why_not: whyNot }) => {
+    connection.on("terminals", ({ folder, terminals, why_not: unavailableReason }) => {
       if (this.isUnknown && folder !== "") connection.send({ type: "watch_program_pages" });
-      [this.folder, this.items, this.whyNot] = [folder, this.isUnknown ? this.withoutLost(terminals) : terminals, whyNot];
+      [this.folder, this.items, this.unavailableReason] = [folder, this.isUnknown ? this.withoutLost(terminals) : terminals, unavailableReason];
       this.isUnknown = false;
       this.setAvailable(folder !== "");
       this.changed.emit();
@@ -125,9 +125,9 @@ export class TerminalsState {
   }
 
   private setPrograms(pages: readonly ProgramPage[]): void {
-    const known = this.programs.map(({ id, url }) => `${id} ${url}`);
+    const programKeys = this.programs.map(({ id, url }) => `${id} ${url}`);
     this.programs = pages;
-    this.programsChanged.emit(pages.some(({ id, url }) => !known.includes(`${id} ${url}`)));
+    this.programsChanged.emit(pages.some(({ id, url }) => !programKeys.includes(`${id} ${url}`)));
   }
 
   private setAvailable(isAvailable: boolean): void {

@@ -5,7 +5,7 @@ import { isSameElement, type ElementFocus } from "./element-focus";
 /** Keeps the selected element and the cursor of a text editor together, if the program has an editor. */
 export class TextEditorLink {
   private isAttached = false;
-  private known: ElementName | null = null;
+  private lastElement: ElementName | null = null;
 
   constructor(
     private readonly connection: Connection,
@@ -13,16 +13,16 @@ export class TextEditorLink {
   ) {
     connection.on("editor_attached", () => (this.isAttached = true));
     connection.on("show_element", ({ display, kind, name }) => {
-      this.known = { display, kind, name };
-      focus.select(this.known);
+      this.lastElement = { display, kind, name };
+      focus.select(this.lastElement);
     });
     focus.changed.on(() => this.tell());
   }
 
   private tell(): void {
     const { current } = this.focus;
-    if (!this.isAttached || current === null || isSameElement(current, this.known)) return;
-    this.known = current;
+    if (!this.isAttached || current === null || isSameElement(current, this.lastElement)) return;
+    this.lastElement = current;
     this.connection.send({ type: "element_selected", ...current });
   }
 }

@@ -18,7 +18,7 @@ export class ThemeState {
     private readonly system: MediaQueryList,
   ) {
     const remembered = storage.getItem(KEY);
-    this.currentChoice = THEME_CHOICES.find((each) => each === remembered) ?? "system";
+    this.currentChoice = THEME_CHOICES.find((choice) => choice === remembered) ?? "system";
     system.addEventListener("change", () => this.apply());
     this.apply();
   }

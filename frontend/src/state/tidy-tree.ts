@@ -31,25 +31,25 @@ interface Contour {
  * close to each other as `gap` permits on every level (after Reingold and Tilford).
  */
 export function layOutTree(root: TreeNode, gap: number, levelGap: number): TidyTree {
-  const order = preorder(root);
+  const order = listInPreorder(root);
   const offsets = new Map<TreeNode, number>();
   const contours = new Map<TreeNode, Contour>();
   // Go from the leaves up, without recursion, because chains may be thousands of nodes long.
   for (const { node } of [...order].reverse()) contours.set(node, placeChildren(node, contours, offsets, gap));
-  const rows = rowTops(order, levelGap);
-  const whole = contours.get(root) ?? { left: [0], right: [0] };
-  const left = Math.min(...whole.left);
-  const placed = new Map<TreeNode, PlacedNode>();
-  const nodes = order.map(({ node, depth, above }) => {
-    const parent = (above && placed.get(above)) ?? null;
+  const rows = computeRowTops(order, levelGap);
+  const outline = contours.get(root) ?? { left: [0], right: [0] };
+  const left = Math.min(...outline.left);
+  const placedNodes = new Map<TreeNode, PlacedNode>();
+  const nodes = order.map(({ node, depth, parent: parentNode }) => {
+    const parent = (parentNode && placedNodes.get(parentNode)) ?? null;
     const x = parent ? parent.x + (offsets.get(node) ?? 0) : -left;
     const { top = 0, height = 0 } = rows[depth] ?? {};
-    const place = { node, x, y: top + height / 2, parent };
-    placed.set(node, place);
-    return place;
+    const placedNode = { node, x, y: top + height / 2, parent };
+    placedNodes.set(node, placedNode);
+    return placedNode;
   });
   const last = rows.at(-1);
-  return { nodes, width: Math.max(...whole.right) - left, height: last ? last.top + last.height : 0 };
+  return { nodes, width: Math.max(...outline.right) - left, height: last ? last.top + last.height : 0 };
 }
 
 /** Places the children of a node next to each other and returns the contour of the whole. */
@@ -60,14 +60,14 @@ function placeChildren(
   gap: number,
 ): Contour {
   const contourOfNode: Contour = { left: [-node.width / 2], right: [node.width / 2] };
-  const [only, ...more] = node.children;
-  if (!only) return contourOfNode;
-  const below = contours.get(only);
-  if (below && more.length === 0) {
+  const [first, ...others] = node.children;
+  if (!first) return contourOfNode;
+  const contour = contours.get(first);
+  if (contour && others.length === 0) {
     // Extend the child's contour in place, because no other node needs it and a chain may be long.
-    below.left.unshift(-node.width / 2);
-    below.right.unshift(node.width / 2);
-    return below;
+    contour.left.unshift(-node.width / 2);
+    contour.right.unshift(node.width / 2);
+    return contour;
   }
   const combined: Contour = { left: [], right: [] };
   const xs = node.children.map((child) => {
@@ -81,25 +81,25 @@ function placeChildren(
     contour.right.forEach((right, level) => (combined.right[level] = right + x));
     return x;
   });
-  const middle = ((xs[0] ?? 0) + (xs.at(-1) ?? 0)) / 2;
-  node.children.forEach((child, i) => offsets.set(child, (xs[i] ?? 0) - middle));
-  for (const left of combined.left) contourOfNode.left.push(left - middle);
-  for (const right of combined.right) contourOfNode.right.push(right - middle);
+  const center = ((xs[0] ?? 0) + (xs.at(-1) ?? 0)) / 2;
+  node.children.forEach((child, i) => offsets.set(child, (xs[i] ?? 0) - center));
+  for (const left of combined.left) contourOfNode.left.push(left - center);
+  for (const right of combined.right) contourOfNode.right.push(right - center);
   return contourOfNode;
 }
 
-function preorder(root: TreeNode): { node: TreeNode; depth: number; above: TreeNode | null }[] {
-  const order: { node: TreeNode; depth: number; above: TreeNode | null }[] = [];
-  const pending = [{ node: root, depth: 0, above: null as TreeNode | null }];
-  for (let next = pending.pop(); next; next = pending.pop()) {
+function listInPreorder(root: TreeNode): { node: TreeNode; depth: number; parent: TreeNode | null }[] {
+  const order: { node: TreeNode; depth: number; parent: TreeNode | null }[] = [];
+  const stack = [{ node: root, depth: 0, parent: null as TreeNode | null }];
+  for (let next = stack.pop(); next; next = stack.pop()) {
     order.push(next);
     const { node, depth } = next;
-    for (const child of [...node.children].reverse()) pending.push({ node: child, depth: depth + 1, above: node });
+    for (const child of [...node.children].reverse()) stack.push({ node: child, depth: depth + 1, parent: node });
   }
   return order;
 }
 
-function rowTops(order: readonly { node: TreeNode; depth: number }[], gap: number): { top: number; height: number }[] {
+function computeRowTops(order: readonly { node: TreeNode; depth: number }[], gap: number): { top: number; height: number }[] {
   const rows: { top: number; height: number }[] = [];
   for (const { node, depth } of order) {
     const row = (rows[depth] ??= { top: 0, height: 0 });

@@ -18,7 +18,7 @@ export class TimeControlState {
   readonly clockChanged = new Signal();
   /** The displays were cleared. */
   readonly wasReset = new Signal();
-  paused = false;
+  isPaused = false;
   mode: SyncMode = "Off";
   source = "";
   sources: readonly string[] = [];
@@ -47,24 +47,24 @@ export class TimeControlState {
   }
 
   /** Returns the current times; null until the server has sent any. */
-  times(): Times | null {
+  currentTimes(): Times | null {
     if (!this.clock) return null;
     const { ros, ros_start, wall, wall_start, running } = this.clock;
-    const passed = (this.now() - this.clockAt) / 1000;
-    const rosNow = ros + (running ? passed : 0);
-    const wallNow = wall + passed;
+    const elapsed = (this.now() - this.clockAt) / 1000;
+    const rosNow = ros + (running ? elapsed : 0);
+    const wallNow = wall + elapsed;
     return { ros: rosNow, rosElapsed: rosNow - ros_start, wall: wallNow, wallElapsed: wallNow - wall_start };
   }
 
   /** Starts or stops the server's reports of the clocks. */
-  watch(watching: boolean): void {
-    if (watching === this.isWatching) return;
-    this.isWatching = watching;
-    this.connection.send({ type: "watch_clock", watching });
+  watch(isWatching: boolean): void {
+    if (isWatching === this.isWatching) return;
+    this.isWatching = isWatching;
+    this.connection.send({ type: "watch_clock", watching: isWatching });
   }
 
   set(part: { paused?: boolean; mode?: SyncMode; source?: string }): void {
-    const { paused, mode, source } = { paused: this.paused, mode: this.mode, source: this.source, ...part };
+    const { paused, mode, source } = { paused: this.isPaused, mode: this.mode, source: this.source, ...part };
     this.connection.send({ type: "set_time", paused, mode, source });
   }
 

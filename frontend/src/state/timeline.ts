@@ -21,14 +21,14 @@ export class TimelineState {
   private target: number | null = null;
   private isSeeking = false;
   private requestedPosition = 0;
-  private marked: Span | null = null;
+  private markedSpan: Span | null = null;
   /** The topic by whose messages to step; empty for all topics shown. */
   stepTopic = "";
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
       // A new connection has no pending requests, and reports a timeline only if there is one.
-      this.recording = this.playhead = this.historyExtent = this.target = this.marked = null;
+      this.recording = this.playhead = this.historyExtent = this.target = this.markedSpan = null;
       this.isSeeking = false;
       this.stepTopic = "";
       this.changed.emit();
@@ -51,7 +51,7 @@ export class TimelineState {
   }
 
   /** Whether live data is shown, so that time advances. */
-  get live(): boolean {
+  get isLive(): boolean {
     return this.playhead?.live ?? false;
   }
 
@@ -60,15 +60,15 @@ export class TimelineState {
     return this.historyExtent;
   }
 
-  get playing(): boolean {
-    return this.live || (this.playhead?.playing ?? false);
+  get isPlaying(): boolean {
+    return this.isLive || (this.playhead?.playing ?? false);
   }
 
   get speed(): number {
     return this.playhead?.speed ?? 1;
   }
 
-  get loop(): boolean {
+  get isLooping(): boolean {
     return this.playhead?.loop ?? false;
   }
 
@@ -79,50 +79,50 @@ export class TimelineState {
 
   /** The time shown, s since the epoch. */
   get position(): number {
-    if (this.live && this.target === null) return this.recording?.end ?? 0;
+    if (this.isLive && this.target === null) return this.recording?.end ?? 0;
     return this.target ?? this.playhead?.position ?? this.recording?.start ?? 0;
   }
 
   /** The part of the history that the user marked, as far as the history still contains it. */
   get mark(): Span | null {
-    const { recording, marked } = this;
-    if (!recording?.live || !marked || marked.end <= recording.start) return null;
-    return { start: Math.max(marked.start, recording.start), end: Math.min(marked.end, recording.end) };
+    const { recording, markedSpan } = this;
+    if (!recording?.live || !markedSpan || markedSpan.end <= recording.start) return null;
+    return { start: Math.max(markedSpan.start, recording.start), end: Math.min(markedSpan.end, recording.end) };
   }
 
   /** Marks the part between two times in either order; null removes the mark. */
   setMark(mark: Span | null): void {
-    this.marked = mark && { start: Math.min(mark.start, mark.end), end: Math.max(mark.start, mark.end) };
+    this.markedSpan = mark && { start: Math.min(mark.start, mark.end), end: Math.max(mark.start, mark.end) };
     this.changed.emit();
   }
 
   /** Moves the start or end of the mark to the time shown. */
-  markHere(which: "start" | "end"): void {
+  markHere(end: "start" | "end"): void {
     const { recording, position } = this;
     if (!recording?.live) return;
-    const other = this.mark ?? { start: recording.start, end: recording.end };
-    if (which === "start") this.setMark({ start: position, end: other.end > position ? other.end : recording.end });
-    else this.setMark({ start: other.start < position ? other.start : recording.start, end: position });
+    const span = this.mark ?? { start: recording.start, end: recording.end };
+    if (end === "start") this.setMark({ start: position, end: span.end > position ? span.end : recording.end });
+    else this.setMark({ start: span.start < position ? span.start : recording.start, end: position });
   }
 
-  play(playing: boolean): void {
-    this.connection.send({ type: "play", playing });
+  play(isPlaying: boolean): void {
+    this.connection.send({ type: "play", playing: isPlaying });
   }
 
   goLive(): void {
     this.connection.send({ type: "go_live" });
   }
 
-  step(forward: boolean): void {
-    this.connection.send({ type: "step_time", forward, topic: this.stepTopic });
+  step(isForward: boolean): void {
+    this.connection.send({ type: "step_time", forward: isForward, topic: this.stepTopic });
   }
 
   setSpeed(speed: number): void {
-    this.connection.send({ type: "set_playback", speed, loop: this.loop });
+    this.connection.send({ type: "set_playback", speed, loop: this.isLooping });
   }
 
-  setLoop(loop: boolean): void {
-    this.connection.send({ type: "set_playback", speed: this.speed, loop });
+  setLoop(isLooping: boolean): void {
+    this.connection.send({ type: "set_playback", speed: this.speed, loop: isLooping });
   }
 
   /** Moves to a time. While the server is still processing a move, only the newest further one is kept. */
@@ -140,15 +140,15 @@ export class TimelineState {
   }
 
   private setPlayhead(playhead: Playhead): void {
-    const before = this.playhead;
+    const previous = this.playhead;
     this.playhead = playhead;
-    if (this.isSeeking && before?.seeks !== playhead.seeks) {
+    if (this.isSeeking && previous?.seeks !== playhead.seeks) {
       this.isSeeking = false;
       if (this.target !== null && this.target !== this.requestedPosition) this.requestSeek(this.target);
       else this.target = null;
     }
-    const same = before !== null && (["playing", "live", "speed", "loop", "problem"] as const).every((key) => before[key] === playhead[key]);
-    if (same) this.moved.emit();
+    const isUnchanged = previous !== null && (["playing", "live", "speed", "loop", "problem"] as const).every((key) => previous[key] === playhead[key]);
+    if (isUnchanged) this.moved.emit();
     else this.changed.emit();
   }
 }

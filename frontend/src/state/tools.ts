@@ -9,14 +9,14 @@ export class ToolState {
   readonly id: string;
   readonly cls: string;
   readonly name: string;
-  readonly supported: boolean;
+  readonly isSupported: boolean;
   readonly rows: PropertyRows;
 
   constructor(tool: Tool) {
     this.id = tool.id;
     this.cls = tool.cls;
     this.name = tool.name;
-    this.supported = tool.supported;
+    this.isSupported = tool.supported;
     this.rows = new PropertyRows(tool.properties.map((property) => new PropertyNode(property)));
   }
 }
@@ -34,7 +34,7 @@ export class ToolsState {
   tools: readonly ToolState[] = [];
   /** The classes of tools that can be added. */
   classes: readonly ToolClass[] = [];
-  private active: ToolState | null = null;
+  private activeTool: ToolState | null = null;
   private hintText = "";
   /** The ID of the tool that was active before the reload of the page. */
   private activeBefore: string | null = null;
@@ -46,16 +46,16 @@ export class ToolsState {
 
   /** Preserves the choice of the active tool across reloads of the page. */
   preserveIn(memory: PageMemory): void {
-    memory.preserve("tool", () => this.active?.id ?? null, (id) => (this.activeBefore = id));
+    memory.preserve("tool", () => this.activeTool?.id ?? null, (id) => (this.activeBefore = id));
   }
 
   get current(): ToolState | null {
-    return this.active;
+    return this.activeTool;
   }
 
   /** The default tool: the first one. */
   get default(): ToolState | null {
-    return this.tools.find((tool) => tool.supported) ?? null;
+    return this.tools.find((tool) => tool.isSupported) ?? null;
   }
 
   /** The text of the status line about the mouse. */
@@ -71,14 +71,14 @@ export class ToolsState {
 
   /** Activates a tool. */
   choose(tool: ToolState | null): void {
-    if (tool === this.active || tool?.supported === false) return;
-    this.active = tool;
+    if (tool === this.activeTool || tool?.isSupported === false) return;
+    this.activeTool = tool;
     this.currentChanged.emit(tool);
   }
 
   /** Activates a tool, or the default tool if it is active already. */
   toggle(tool: ToolState): void {
-    this.choose(tool === this.active ? this.default : tool);
+    this.choose(tool === this.activeTool ? this.default : tool);
   }
 
   setProperty(id: string, value: PropertyValue): void {
@@ -95,17 +95,17 @@ export class ToolsState {
   }
 
   private setTools(tools: readonly Tool[], classes: readonly ToolClass[]): void {
-    const before = this.active?.id ?? this.activeBefore;
+    const previous = this.activeTool?.id ?? this.activeBefore;
     this.tools = tools.map((tool) => new ToolState(tool));
     this.classes = classes;
-    this.active = this.tools.find((tool) => tool.id === before && tool.supported) ?? this.default;
+    this.activeTool = this.tools.find((tool) => tool.id === previous && tool.isSupported) ?? this.default;
     this.listChanged.emit();
-    this.currentChanged.emit(this.active);
+    this.currentChanged.emit(this.activeTool);
   }
 
   private setValue(id: string, value: PropertyValue): void {
     for (const tool of this.tools) {
-      const node = tool.rows.nodes.flatMap((top) => [...top.walk()]).find((each) => each.id === id);
+      const node = tool.rows.nodes.flatMap((top) => [...top.walk()]).find((row) => row.id === id);
       if (!node || node.value === value) continue;
       node.value = value;
       this.valueChanged.emit(tool);

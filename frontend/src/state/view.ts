@@ -3,9 +3,9 @@ import type { Property, PropertyValue, SavedView, View, ViewClass } from "../pro
 import { Signal } from "../signal";
 import type { FrameStore } from "./frames";
 import type { PageMemory } from "./page-memory";
-import { cameraInFixed, cameraInTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
+import { cameraToFixed, cameraToTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
-import { contains, spanInTarget } from "./views/fit";
+import { contains, spanToTarget } from "./views/fit";
 import { distanceBetween, type Span, type Vector } from "./views/vector";
 import type { Drag, ViewController, ViewValues } from "./views/view-controller";
 
@@ -25,12 +25,12 @@ export class ViewState {
   /** The saved views or the classes changed. */
   readonly listsChanged = new Signal();
   classes: readonly ViewClass[] = [];
-  saved: readonly SavedView[] = [];
+  savedViews: readonly SavedView[] = [];
   private view: View = { cls: ORBIT, name: CURRENT_NAME, values: controllerOf(ORBIT).zero() };
   private configured: View | null = null;
   private showsWholeRobot = false;
   /** The content for which the camera was last placed automatically; null once the user has placed it. */
-  private lookedAt: { readonly what: string; readonly box: Span | null } | null = null;
+  private fittedTarget: { readonly target: string; readonly box: Span | null } | null = null;
   /**
    * The map that the camera was fitted to, if a file placed the camera and the user has not moved it; "" for none yet,
    * null once the user has moved it.
@@ -52,7 +52,7 @@ export class ViewState {
       this.listsChanged.emit();
     });
     connection.on("saved_views", ({ views }) => {
-      this.saved = views;
+      this.savedViews = views;
       this.listsChanged.emit();
     });
     connection.on("view_state", ({ view, revision, whole_robot }) => this.configure(view, revision, whole_robot));
@@ -82,7 +82,7 @@ export class ViewState {
   get target(): Target {
     const name = this.view.values[TARGET_FRAME];
     if (typeof name !== "string" || name === FIXED_FRAME) return FIXED;
-    const row = this.frames.row(name);
+    const row = this.frames.rowOf(name);
     if (this.frames.has(row)) {
       const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = this.frames.poses.subarray(row * 7, row * 7 + 7);
       const yaw = Math.atan2(2 * (qx * qy + qw * qz), qw * qw + qx * qx - qy * qy - qz * qz);
@@ -93,28 +93,28 @@ export class ViewState {
 
   /** The camera in the fixed frame. */
   get camera(): Camera {
-    return cameraInFixed(this.controller.camera(this.view.values), this.target);
+    return cameraToFixed(this.controller.computeCamera(this.view.values), this.target);
   }
 
   propertiesOf(cls: string): readonly Property[] {
-    return this.classes.find((each) => each.cls === cls)?.properties ?? [];
+    return this.classes.find((viewClass) => viewClass.cls === cls)?.properties ?? [];
   }
 
   /**
    * Returns whether the user has not placed the camera, and the content differs from that for which it was last placed.
    */
-  awaitsFit(what: string): boolean {
-    return this.lookedAt !== null && what !== this.lookedAt.what;
+  awaitsFit(target: string): boolean {
+    return this.fittedTarget !== null && target !== this.fittedTarget.target;
   }
 
   /** Preserves the camera across reloads of the page. */
   preserveIn(memory: PageMemory): void {
-    const read = () => ({ view: this.view, revision: this.revision, lookedAt: this.lookedAt });
-    memory.preserve("view", read, (before: ReturnType<typeof read>) => Object.assign(this, before));
+    const readState = () => ({ view: this.view, revision: this.revision, lookedAt: this.fittedTarget });
+    memory.preserve("view", readState, (state: ReturnType<typeof readState>) => Object.assign(this, state));
   }
 
   /** Handles a restart of the program; if it shows other content, the camera starts from its default again. */
-  programRestarted(isSame: boolean): void {
+  onProgramRestarted(isSame: boolean): void {
     this.needsSize = true;
     if (!isSame) this.revision = null;
   }
@@ -131,7 +131,7 @@ export class ViewState {
 
   /** Keeps the camera in place from now on, because the user works with the view. */
   keepCamera(): void {
-    this.lookedAt = null;
+    this.fittedTarget = null;
     this.framedMap = null;
   }
 
@@ -141,10 +141,10 @@ export class ViewState {
   }
 
   /** Fits a box into view if the user has not placed the camera, and again when the box has grown. */
-  fitFirst(box: Span, size: ViewSize, what: string): void {
-    const before = this.lookedAt?.box;
-    if (!before || !contains(before, box)) this.update(this.fitValues(box, size));
-    this.lookedAt = { what, box: before && contains(before, box) ? before : box };
+  fitFirst(box: Span, size: ViewSize, target: string): void {
+    const previousBox = this.fittedTarget?.box;
+    if (!previousBox || !contains(previousBox, box)) this.update(this.fitValues(box, size));
+    this.fittedTarget = { target, box: previousBox && contains(previousBox, box) ? previousBox : box };
   }
 
   /**
@@ -158,7 +158,7 @@ export class ViewState {
   /** Fits a map into view, without changing the view of the file. */
   frameMap(box: Span, size: ViewSize, map: string): void {
     this.framedMap = map;
-    this.view = { ...this.view, values: { ...this.values, ...this.withinBounds(TOP_DOWN, this.fitValues(box, size)) } };
+    this.view = { ...this.view, values: { ...this.values, ...this.clampToBounds(TOP_DOWN, this.fitValues(box, size)) } };
     this.changed.emit();
   }
 
@@ -167,7 +167,7 @@ export class ViewState {
    * moved the camera or the program was restarted.
    */
   reportSize({ min, max }: Span, ground: number): void {
-    if (!this.needsSize && (this.lookedAt === null || this.reportedRevision === this.revision)) return;
+    if (!this.needsSize && (this.fittedTarget === null || this.reportedRevision === this.revision)) return;
     this.needsSize = false;
     this.reportedRevision = this.revision;
     this.connection.send({ type: "robot_measured", diagonal: distanceBetween(min, max), ground });
@@ -176,14 +176,14 @@ export class ViewState {
   /**
    * Sets the values of a camera that the user has not placed; unless `isLast`, it is placed again for further content.
    */
-  propose(values: ViewValues, what: string, isLast: boolean): void {
+  proposeValues(values: ViewValues, target: string, isLast: boolean): void {
     this.update(values);
-    if (!isLast) this.lookedAt = { what, box: null };
+    if (!isLast) this.fittedTarget = { target, box: null };
   }
 
   /** Sets values, limited to the bounds of their properties. */
   update(values: ViewValues): void {
-    this.change({ ...this.view, values: { ...this.view.values, ...this.withinBounds(this.view.cls, values) } });
+    this.change({ ...this.view, values: { ...this.view.values, ...this.clampToBounds(this.view.cls, values) } });
   }
 
   drag(drag: Drag): void {
@@ -191,8 +191,8 @@ export class ViewState {
   }
 
   /** Handles the wheel; `delta` is 120 per notch, positive away from the user. */
-  wheel(delta: number, shift: boolean): void {
-    this.update(this.controller.wheel(this.view.values, delta, shift));
+  wheel(delta: number, isShiftDown: boolean): void {
+    this.update(this.controller.applyWheel(this.view.values, delta, isShiftDown));
   }
 
   /** Moves the focal point, given in the fixed frame. */
@@ -203,20 +203,20 @@ export class ViewState {
   /** Changes the class of the view, and keeps the camera as far as the class permits. */
   setClass(cls: string): void {
     if (cls === this.view.cls) return;
-    const before = this.view;
+    const previousView = this.view;
     const inFixed = this.camera;
     const defaults = this.defaultsOf(cls);
-    const targetFrame = before.values[TARGET_FRAME];
-    this.view = { ...before, cls, values: targetFrame === undefined ? defaults : { ...defaults, [TARGET_FRAME]: targetFrame } };
-    const camera = cameraInTarget(inFixed, this.target);
-    this.update(this.controller.mimic({ cls: before.cls, values: before.values, camera }));
+    const targetFrame = previousView.values[TARGET_FRAME];
+    this.view = { ...previousView, cls, values: targetFrame === undefined ? defaults : { ...defaults, [TARGET_FRAME]: targetFrame } };
+    const camera = cameraToTarget(inFixed, this.target);
+    this.update(this.controller.mimic({ cls: previousView.cls, values: previousView.values, camera }));
   }
 
   /** Follows another frame without moving the camera. */
   setTargetFrame(name: string): void {
-    const before = this.target;
+    const previousTarget = this.target;
     this.view = { ...this.view, values: { ...this.view.values, [TARGET_FRAME]: name } };
-    this.update(this.controller.retarget(this.view.values, before, this.target));
+    this.update(this.controller.retarget(this.view.values, previousTarget, this.target));
   }
 
   /** Sets a property as its row in the Views panel does. */
@@ -248,20 +248,20 @@ export class ViewState {
 
   /** Applies a saved view. */
   use(id: string): void {
-    const saved = this.saved.find((each) => each.id === id);
-    if (saved) this.change({ ...copyOf(saved.view), name: CURRENT_NAME });
+    const savedView = this.savedViews.find((candidate) => candidate.id === id);
+    if (savedView) this.change({ ...copyOf(savedView.view), name: CURRENT_NAME });
   }
 
   rename(id: string, name: string): void {
-    const saved = this.saved.find((each) => each.id === id);
-    if (saved && name.trim() !== "") this.changeSaved(id, { ...copyOf(saved.view), name: name.trim() });
+    const savedView = this.savedViews.find((candidate) => candidate.id === id);
+    if (savedView && name.trim() !== "") this.changeSaved(id, { ...copyOf(savedView.view), name: name.trim() });
   }
 
   setSaved(id: string, path: string, value: PropertyValue): void {
-    const saved = this.saved.find((each) => each.id === id);
-    if (!saved) return;
-    const { cls, values } = saved.view;
-    this.changeSaved(id, { ...saved.view, values: { ...values, ...this.withinBounds(cls, { [path]: value }) } });
+    const savedView = this.savedViews.find((candidate) => candidate.id === id);
+    if (!savedView) return;
+    const { cls, values } = savedView.view;
+    this.changeSaved(id, { ...savedView.view, values: { ...values, ...this.clampToBounds(cls, { [path]: value }) } });
   }
 
   remove(id: string): void {
@@ -272,27 +272,27 @@ export class ViewState {
 
   /** Applies the view of a configuration once: a reconnect does not move the user's camera, but another file does. */
   private configure(view: View, revision: number, showsWholeRobot: boolean): void {
-    const known = this.revision === revision;
+    const isCurrent = this.revision === revision;
     this.configured = view;
     this.revision = revision;
     this.showsWholeRobot = showsWholeRobot;
-    if (known) return;
+    if (isCurrent) return;
     this.awaitFirstLook(showsWholeRobot);
     this.view = copyOf(view);
     this.changed.emit();
   }
 
-  private awaitFirstLook(awaits: boolean): void {
-    this.lookedAt = awaits ? { what: "", box: null } : null;
+  private awaitFirstLook(isAwaiting: boolean): void {
+    this.fittedTarget = isAwaiting ? { target: "", box: null } : null;
     this.framedMap = "";
   }
 
   private fitValues(box: Span, size: ViewSize): ViewValues {
-    return this.controller.fit(this.view.values, spanInTarget(box, this.target), size);
+    return this.controller.fit(this.view.values, spanToTarget(box, this.target), size);
   }
 
   private change(view: View): void {
-    this.lookedAt = null;
+    this.fittedTarget = null;
     this.framedMap = null;
     this.show(view);
   }
@@ -311,10 +311,10 @@ export class ViewState {
   }
 
   private defaultsOf(cls: string): ViewValues {
-    return this.classes.find((each) => each.cls === cls)?.defaults ?? controllerOf(cls).zero();
+    return this.classes.find((viewClass) => viewClass.cls === cls)?.defaults ?? controllerOf(cls).zero();
   }
 
-  private withinBounds(cls: string, values: ViewValues): ViewValues {
+  private clampToBounds(cls: string, values: ViewValues): ViewValues {
     const result: Record<string, PropertyValue> = {};
     for (const [path, value] of Object.entries(values)) {
       const property = find(this.propertiesOf(cls), path);
@@ -334,8 +334,8 @@ function copyOf(view: View): View {
 function find(properties: readonly Property[], id: string): Property | undefined {
   for (const property of properties) {
     if (property.id === id) return property;
-    const below = find(property.children, id);
-    if (below) return below;
+    const found = find(property.children, id);
+    if (found) return found;
   }
   return undefined;
 }

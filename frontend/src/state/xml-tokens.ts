@@ -34,12 +34,12 @@ export function tokenize(line: string, state: LineState): { tokens: Token[]; sta
 }
 
 /** Returns the state at the beginning of each line. */
-export function lineStates(lines: readonly string[]): LineState[] {
+export function computeLineStates(lines: readonly string[]): LineState[] {
   let state: LineState = "text";
   return lines.map((line) => {
-    const before = state;
+    const startState = state;
     if (state !== "text" || !PLAIN_LINE.test(line)) state = tokenize(line, state).state;
-    return before;
+    return startState;
   });
 }
 
@@ -64,16 +64,16 @@ class Scanner {
   }
 
   private readUntil(end: string): void {
-    const at = this.rest.indexOf(end);
+    const index = this.rest.indexOf(end);
     const kind = this.state === "cdata" ? "text" : "comment";
-    this.push(kind, at < 0 ? this.rest.length : at + end.length);
-    if (at >= 0) this.state = "text";
+    this.push(kind, index < 0 ? this.rest.length : index + end.length);
+    if (index >= 0) this.state = "text";
   }
 
   private readValue(quote: string): void {
-    const at = this.rest.indexOf(quote);
-    this.pushMixed("value", at < 0 ? this.rest.length : at);
-    if (at < 0) return;
+    const index = this.rest.indexOf(quote);
+    this.pushMixed("value", index < 0 ? this.rest.length : index);
+    if (index < 0) return;
     this.push("value", 1);
     this.state = "tag";
   }
@@ -93,9 +93,9 @@ class Scanner {
   }
 
   private readText(): void {
-    const at = this.rest.indexOf("<");
-    this.pushMixed("text", at < 0 ? this.rest.length : at);
-    if (at < 0) return;
+    const index = this.rest.indexOf("<");
+    this.pushMixed("text", index < 0 ? this.rest.length : index);
+    if (index < 0) return;
     const opening = OPENINGS.find(([text]) => this.rest.startsWith(text));
     if (opening) {
       this.state = opening[1];
@@ -108,13 +108,13 @@ class Scanner {
 
   /** Consumes text that may contain expressions. */
   private pushMixed(kind: TokenKind, length: number): void {
-    let at = 0;
+    let prefixLength = 0;
     for (const match of this.rest.slice(0, length).matchAll(EXPRESSION)) {
-      this.push(kind, match.index - at);
+      this.push(kind, match.index - prefixLength);
       this.push("expression", match[0].length);
-      at = match.index + match[0].length;
+      prefixLength = match.index + match[0].length;
     }
-    this.push(kind, length - at);
+    this.push(kind, length - prefixLength);
   }
 
   private push(kind: TokenKind, length: number): void {

@@ -13,9 +13,9 @@ export function propertyItem(node: PropertyNode, set: (id: string, value: Proper
     options: node.options,
     minimum: node.minimum,
     maximum: node.maximum,
-    readOnly: node.readOnly,
-    expanded: node.expanded,
+    readOnly: node.isReadOnly,
+    expanded: node.isExpanded,
     ...(node.children.length > 0 ? { children: () => node.children.map((child) => propertyItem(child, set)) } : {}),
-    ...(node.readOnly ? {} : { set: (value: PropertyValue) => set(node.id, value) }),
+    ...(node.isReadOnly ? {} : { set: (value: PropertyValue) => set(node.id, value) }),
   };
 }

@@ -17,8 +17,8 @@ export class UnitSwitch {
   }
 
   private show(): void {
-    const words = strings.joints;
-    this.element.replaceChildren(this.choice("rad", words.radians), this.choice("deg", words.degrees));
+    const texts = strings.joints;
+    this.element.replaceChildren(this.choice("rad", texts.radians), this.choice("deg", texts.degrees));
   }
 
   private choice(unit: AngleUnit, label: string): HTMLElement {

@@ -1,7 +1,7 @@
 import { button, coalesced, h } from "../../dom";
 import { icon, type IconName } from "../../icons";
 import type { ComparedItem, ComparedPlace } from "../../protocol";
-import { groupDifferences, MARK_COLORS, marksIn, type DifferenceGroup } from "../../state/comparison";
+import { groupDifferences, MARK_COLORS, usedMarks, type DifferenceGroup } from "../../state/comparison";
 import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -77,23 +77,23 @@ export class ComparisonPanel implements Panel {
   private show(): void {
     const { compared } = this.session.comparison;
     if (!compared) return;
-    const words = strings.comparison;
+    const texts = strings.comparison;
     for (const [tick, { label }] of [[this.old, compared.old], [this.new, compared.new]] as const) {
       const file = tick.querySelector(".comparison-file");
       if (file) file.textContent = shortPlace(label);
-      tick.title = `${tick === this.old ? words.showOld : words.showNew}\n${label}`;
+      tick.title = `${tick === this.old ? texts.showOld : texts.showNew}\n${label}`;
     }
-    const marks = marksIn([compared.new, compared.old]);
+    const marks = usedMarks([compared.new, compared.old]);
     this.legend.replaceChildren(
       ...marks.map((mark) => {
         const swatch = h("span", { class: "comparison-swatch" });
         swatch.style.background = MARK_COLORS[mark];
-        return h("li", { data: { mark } }, swatch, words.mark[mark]);
+        return h("li", { data: { mark } }, swatch, texts.mark[mark]);
       }),
     );
     const { items } = compared;
     this.element.classList.toggle("same", items.length === 0);
-    this.count.textContent = items.length === 0 ? words.same : words.count(items.length);
+    this.count.textContent = items.length === 0 ? texts.same : texts.count(items.length);
     const at = this.list.scrollTop;
     this.list.replaceChildren(...groupDifferences(items).map((group) => this.group(group)));
     this.list.scrollTop = at;
@@ -105,7 +105,7 @@ export class ComparisonPanel implements Panel {
     for (const [tick, side] of [[this.old, "old"], [this.new, "new"]] as const) {
       const display = this.display(side);
       tick.box.disabled = display === undefined;
-      tick.box.checked = display?.enabled ?? false;
+      tick.box.checked = display?.isEnabled ?? false;
     }
     const alpha = this.display("old")?.rows.number(1, "Alpha") ?? 1;
     this.alpha.disabled = !this.old.box.checked;
@@ -128,16 +128,16 @@ export class ComparisonPanel implements Panel {
   private group({ items, kind }: DifferenceGroup): HTMLElement {
     const [first] = items;
     if (!first) return h("div");
-    const words = strings.comparison;
+    const texts = strings.comparison;
     const { focus, comparison } = this.session;
     const element = comparison.elementOf(first);
-    const label = [icon(SUBJECT_ICONS[first.subject]), h("span", { class: "difference-kind" }, words.subjects[first.subject]), first.name] as const;
+    const label = [icon(SUBJECT_ICONS[first.subject]), h("span", { class: "difference-kind" }, texts.subjects[first.subject]), first.name] as const;
     const choose = (): void => {
       focus.select(element);
       this.look();
     };
     const header = element
-      ? button(words.select(first.name), choose, "difference-name", ...label)
+      ? button(texts.select(first.name), choose, "difference-name", ...label)
       : h("div", { class: "difference-name" }, ...label);
     const group = h(
       "div",
@@ -153,8 +153,8 @@ export class ComparisonPanel implements Panel {
   }
 
   private item(item: ComparedItem, choose: () => void): HTMLElement {
-    const words = strings.comparison;
-    const none = (text: string | null): string => text ?? words.nothing;
+    const texts = strings.comparison;
+    const none = (text: string | null): string => text ?? texts.nothing;
     const line =
       item.property === ""
         ? null

@@ -35,7 +35,7 @@ export class DiagramPanel implements Panel {
   private isPlaced = false;
 
   constructor(private readonly session: Session) {
-    const words = strings.description.diagram;
+    const texts = strings.description.diagram;
     this.svg.append(this.drawing);
     this.canvas.append(this.svg);
     this.panZoom = new PanZoom(
@@ -43,14 +43,14 @@ export class DiagramPanel implements Panel {
       (x, y, scale) => this.drawing.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`),
       () => this.fit(),
     );
-    const origins = button(words.originsHint, () => this.toggleOrigins(origins), "tool on", words.origins);
+    const origins = button(texts.originsHint, () => this.toggleOrigins(origins), "tool on", texts.origins);
     origins.setAttribute("aria-pressed", "true");
     const bar = h(
       "div",
       { class: "toolbar" },
-      button(words.fitHint, () => this.fit(), "tool", icon("fit"), words.fit),
-      button(words.zoomIn, () => this.panZoom.zoomBy(1.25), "tool bare", icon("plus")),
-      button(words.zoomOut, () => this.panZoom.zoomBy(0.8), "tool bare", icon("minus")),
+      button(texts.fitHint, () => this.fit(), "tool", icon("fit"), texts.fit),
+      button(texts.zoomIn, () => this.panZoom.zoomBy(1.25), "tool bare", icon("plus")),
+      button(texts.zoomOut, () => this.panZoom.zoomBy(0.8), "tool bare", icon("minus")),
       h("span", { class: "spacer" }),
       origins,
     );
@@ -99,9 +99,9 @@ export class DiagramPanel implements Panel {
     const edges = svg("g", { class: "edges" });
     const shapes = svg("g", {});
     for (const node of this.diagram.nodes) {
-      const { above } = node;
-      if (above) {
-        edges.append(svg("path", { d: edge(above, node), class: "edge" }), svg("path", { d: head(node), class: "edge-head" }));
+      const { parent } = node;
+      if (parent) {
+        edges.append(svg("path", { d: edge(parent, node), class: "edge" }), svg("path", { d: head(node), class: "edge-head" }));
       }
       const shape = this.node(node, model);
       this.nodes.set(key(node.element), shape);
@@ -150,7 +150,7 @@ export class DiagramPanel implements Panel {
     const { diagram } = this;
     if (!diagram || this.canvas.clientWidth === 0) return;
     const { current } = this.session.focus;
-    const node = (current && diagram.nodes.find(({ element }) => isSameElement(element, current))) ?? diagram.nodes.find(({ above }) => !above);
+    const node = (current && diagram.nodes.find(({ element }) => isSameElement(element, current))) ?? diagram.nodes.find(({ parent }) => !parent);
     this.panZoom.showLegibly(diagram.width, diagram.height, TEXT_PX, [node?.x ?? 0, node?.y ?? 0]);
   }
 

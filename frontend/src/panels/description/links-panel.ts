@@ -28,22 +28,22 @@ export class LinksPanel implements Panel {
   private flashing = new Set<string>();
 
   constructor(private readonly session: Session) {
-    const words = strings.description;
+    const texts = strings.description;
     this.tree.preserveIn(session.memory);
     this.search.type = "search";
-    this.search.placeholder = words.search;
-    this.search.setAttribute("aria-label", words.search);
+    this.search.placeholder = texts.search;
+    this.search.setAttribute("aria-label", texts.search);
     this.search.addEventListener("input", () => this.update());
     const bar = h(
       "div",
       { class: "toolbar" },
       this.count,
       h("span", { class: "spacer" }),
-      button(words.expandAll, () => this.fold(false), "tool bare", icon("expand")),
-      button(words.collapseAll, () => this.fold(true), "tool bare", icon("collapse")),
+      button(texts.expandAll, () => this.fold(false), "tool bare", icon("expand")),
+      button(texts.collapseAll, () => this.fold(true), "tool bare", icon("collapse")),
     );
     this.rows.element.setAttribute("role", "tree");
-    this.rows.element.setAttribute("aria-label", words.linksLabel);
+    this.rows.element.setAttribute("aria-label", texts.linksLabel);
     this.rows.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.rows.element.addEventListener("pointerleave", () => session.focus.setHovered(null));
     this.element = h("div", { class: "panel" }, bar, this.search, this.empty, this.rows.element);
@@ -90,7 +90,7 @@ export class LinksPanel implements Panel {
     const row = this.shown[index];
     const model = this.model;
     if (!row || !model) return h("div");
-    const { link, joint, depth, folded } = row;
+    const { link, joint, depth, isFolded } = row;
     const focus = this.session.focus.current;
     const name = (kind: "link" | "joint", of: string): ElementName => ({ display: model.display, kind, name: of });
     const self = name("link", link.name);
@@ -114,7 +114,7 @@ export class LinksPanel implements Panel {
     element.id = `link-row-${index}`;
     element.setAttribute("aria-level", String(depth + 1));
     element.setAttribute("aria-selected", String(isSameElement(focus, self)));
-    if (row.hasChildren) element.setAttribute("aria-expanded", String(!folded));
+    if (row.hasChildren) element.setAttribute("aria-expanded", String(!isFolded));
     element.classList.toggle("selected", link.name === this.focusedLink());
     element.classList.toggle("flash", this.flashing.has(link.name) || (joint !== null && this.flashing.has(joint.name)));
     element.addEventListener("click", () => this.select(index, self));
@@ -166,9 +166,9 @@ export class LinksPanel implements Panel {
     else if (event.key === "ArrowUp") goTo(index - 1);
     else if (event.key === "Home") goTo(0);
     else if (event.key === "End") goTo(this.shown.length - 1);
-    else if (event.key === "ArrowRight" && row?.hasChildren && row.folded) this.toggle(index);
+    else if (event.key === "ArrowRight" && row?.hasChildren && row.isFolded) this.toggle(index);
     else if (event.key === "ArrowRight") goTo(index + 1);
-    else if (event.key === "ArrowLeft" && row?.hasChildren && !row.folded) this.toggle(index);
+    else if (event.key === "ArrowLeft" && row?.hasChildren && !row.isFolded) this.toggle(index);
     else if (event.key === "ArrowLeft" && row?.joint) goTo(this.shown.findIndex((each) => each.link.name === row.joint?.parent));
     else if (event.key === "Enter" && row?.joint && this.model) {
       // Switch from a link to its joint, or back.

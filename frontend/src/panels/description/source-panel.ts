@@ -50,8 +50,8 @@ export class SourcePanel implements Panel {
   private pendingReveal: { expanded: number | null; origin: number | null } = { expanded: null, origin: null };
 
   constructor(private readonly session: Session) {
-    const words = strings.description.source;
-    this.files.setAttribute("aria-label", words.file);
+    const texts = strings.description.source;
+    this.files.setAttribute("aria-label", texts.file);
     this.files.addEventListener("change", () => this.openFile(this.files.value));
     const heading = (text: string, title: string, ...more: HTMLElement[]): HTMLElement =>
       h("div", { class: "source-heading" }, h("span", { class: "toolbar-label", title }, text), ...more);
@@ -65,14 +65,14 @@ export class SourcePanel implements Panel {
       h(
         "section",
         { class: "source-pane" },
-        heading(words.origin, words.file, this.files, this.editor.toggle),
+        heading(texts.origin, texts.file, this.files, this.editor.toggle),
         this.trail,
         this.editor.notice,
         this.notice,
         this.origin.element,
         this.editor.element,
       ),
-      h("section", { class: "source-pane" }, heading(words.expanded, words.expandedHint), this.expanded.element),
+      h("section", { class: "source-pane" }, heading(texts.expanded, texts.expandedHint), this.expanded.element),
     );
     this.element = h("div", { class: "panel source-panel" }, this.empty, this.panes);
     const { description, focus } = session;
@@ -186,9 +186,9 @@ export class SourcePanel implements Panel {
   private show(): void {
     const display = this.model?.display ?? "";
     const { expanded, origin } = this.writtenPlaces();
-    const words = strings.description.source;
-    if (this.model) this.fill(this.expanded, this.session.description.text(display, EXPANDED), marks(expanded), "expanded");
-    const text = this.file === "" ? null : this.session.description.text(this.requested?.file === this.file ? (this.requested.display ?? display) : display, this.file);
+    const texts = strings.description.source;
+    if (this.model) this.fill(this.expanded, this.session.description.textOf(display, EXPANDED), marks(expanded), "expanded");
+    const text = this.file === "" ? null : this.session.description.textOf(this.requested?.file === this.file ? (this.requested.display ?? display) : display, this.file);
     const marked = origin?.file === this.file ? marks(origin) : [];
     if (this.requested?.file === this.file) marked.push({ from: this.requested.line, to: this.requested.line, look: this.requested.look });
     const highlights = [...marked, ...this.problems()];
@@ -197,8 +197,8 @@ export class SourcePanel implements Panel {
     if (isEdited) this.pendingReveal.origin = null;
     this.notice.hidden = isEdited || typeof text === "string";
     this.origin.element.hidden = isEdited || text === null;
-    if (this.file === "") this.notice.textContent = words.noOrigin;
-    else this.notice.textContent = text === null ? words.gone : words.loading;
+    if (this.file === "") this.notice.textContent = texts.noOrigin;
+    else this.notice.textContent = text === null ? texts.gone : texts.loading;
     if (!isEdited) this.fill(this.origin, text, highlights, "origin");
     this.showTrail();
   }
@@ -246,17 +246,17 @@ export class SourcePanel implements Panel {
 
   /** Shows the macro calls and includes that lead to the element, each as a link to its place. */
   private showTrail(): void {
-    const words = strings.description.source;
+    const texts = strings.description.source;
     const { origin, calls } = this.writtenPlaces();
     const steps = calls.map(({ macro, file, line, column }) => {
-      const text = words.call(macro, placeText(shortPath(file, 1), line, null));
+      const text = texts.call(macro, placeText(shortPath(file, 1), line, null));
       return button(placeText(file, line, column), () => this.reveal(file, line, { look: "focus" }), "trail-step", text);
     });
     const back = origin && this.requested
-      ? button(words.origin, () => this.showFocus(), "tool bare", icon("reset"))
+      ? button(texts.origin, () => this.showFocus(), "tool bare", icon("reset"))
       : null;
     this.trail.hidden = steps.length === 0;
-    this.trail.replaceChildren(h("span", { class: "tag" }, words.made), ...steps, ...(back ? [back] : []));
+    this.trail.replaceChildren(h("span", { class: "tag" }, texts.made), ...steps, ...(back ? [back] : []));
   }
 
   /** Selects the element written on the line of the cursor, unless one of them is selected. */

@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { lineStates, tokenize, type LineState } from "../../state/xml-tokens";
+import { computeLineStates, tokenize, type LineState } from "../../state/xml-tokens";
 import { strings } from "../../strings";
 import { VirtualRows } from "../../widgets/virtual-rows";
 
@@ -49,7 +49,7 @@ export class SourceView {
     if (text === this.text) return;
     this.text = text;
     this.lines = text.replace(/\n$/, "").split(/\r\n?|\n/);
-    this.states = lineStates(this.lines);
+    this.states = computeLineStates(this.lines);
     const longest = this.lines.reduce((most, line) => Math.max(most, line.length), 0);
     this.rows.body.style.minWidth = `calc(${Math.min(longest, LONGEST_LINE) + 4}ch + 70px)`;
     this.rows.element.style.setProperty("--gutter", `${String(this.lines.length).length + 1}ch`);

@@ -36,30 +36,30 @@ export class AddDialog {
     private readonly session: Session,
     private readonly group: DisplayState | null,
   ) {
-    const words = strings.displays;
-    this.tabs = { type: this.makeTab("type", words.byType), topic: this.makeTab("topic", words.byTopic) };
+    const texts = strings.displays;
+    this.tabs = { type: this.makeTab("type", texts.byType), topic: this.makeTab("topic", texts.byTopic) };
     this.search.type = "search";
-    this.search.placeholder = words.search;
-    this.search.setAttribute("aria-label", words.search);
+    this.search.placeholder = texts.search;
+    this.search.setAttribute("aria-label", texts.search);
     this.search.addEventListener("input", () => this.fill());
     this.search.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
-    this.name.setAttribute("aria-label", words.displayName);
+    this.name.setAttribute("aria-label", texts.displayName);
     this.name.maxLength = 200;
     this.showAll.type = "checkbox";
     this.showAll.addEventListener("change", () => this.fill());
-    this.allBox = h("label", { class: "check-label" }, this.showAll, words.showAll);
+    this.allBox = h("label", { class: "check-label" }, this.showAll, texts.showAll);
     this.dialog = new Dialog(
-      words.addTitle,
+      texts.addTitle,
       [
         h("div", { class: "tabs", role: "tablist" }, this.tabs.type, this.tabs.topic),
         h("div", { class: "search-box" }, icon("search"), this.search),
         this.list,
         this.allBox,
-        h("label", { class: "form-field" }, h("span", {}, words.displayName), this.name),
-        ...(group ? [h("p", { class: "hint" }, words.into(group.name))] : []),
+        h("label", { class: "form-field" }, h("span", {}, texts.displayName), this.name),
+        ...(group ? [h("p", { class: "hint" }, texts.into(group.name))] : []),
       ],
-      [{ label: strings.shell.cancel }, { label: words.add, main: true, run: () => this.accept() }],
+      [{ label: strings.shell.cancel }, { label: texts.add, main: true, run: () => this.accept() }],
       "add-dialog",
     );
     this.stopListening = session.configuration.choicesArrived.on(() => {
@@ -115,9 +115,9 @@ export class AddDialog {
   }
 
   private emptyText(): string {
-    const words = strings.displays;
-    if (this.isWaiting) return words.asking;
-    return this.tab === "topic" && this.offered.topics.length === 0 ? words.noTopics : words.notFound;
+    const texts = strings.displays;
+    if (this.isWaiting) return texts.asking;
+    return this.tab === "topic" && this.offered.topics.length === 0 ? texts.noTopics : texts.notFound;
   }
 
   private get offered(): { classes: DisplayClass[]; topics: TopicChoice[] } {

@@ -1,7 +1,7 @@
 import type { JointScene } from "../../protocol";
 import type { DisplayState } from "../../state/displays";
 import type { FrameStore } from "../../state/frames";
-import { compose, relativeTo, type PoseNumbers } from "../../state/pose-numbers";
+import { compose, computeRelativePose, type PoseNumbers } from "../../state/pose-numbers";
 import type { PropertyNode } from "../../state/properties";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -32,14 +32,14 @@ export function detailRows(node: PropertyNode, display: DisplayState, session: S
 }
 
 function frameRows({ id, name }: PropertyNode, frames: FrameStore): TreeItem[] {
-  const parent = (): number => frames.parents[frames.row(name)] ?? -1;
+  const parent = (): number => frames.parents[frames.rowOf(name)] ?? -1;
   const relativePose = (): PoseNumbers | null => {
-    const [above, here] = [poseOf(frames, parent()), poseOf(frames, frames.row(name))];
-    return above && here ? relativeTo(above, here) : null;
+    const [above, here] = [poseOf(frames, parent()), poseOf(frames, frames.rowOf(name))];
+    return above && here ? computeRelativePose(above, here) : null;
   };
   return [
     textRow(`${id}#Parent`, "Parent", () => frames.names[parent()] ?? ""),
-    ...poseRows(id, () => poseOf(frames, frames.row(name))),
+    ...poseRows(id, () => poseOf(frames, frames.rowOf(name))),
     ...poseRows(id, relativePose, "Relative "),
   ];
 }
@@ -63,7 +63,7 @@ function effortRows({ id, name }: PropertyNode, display: DisplayState, session: 
   const latest = (): { effort: number; limit: number } | null => {
     let found: { effort: number; limit: number } | null = null;
     let stamp = -Infinity;
-    for (const { content, stamp: at } of session.data.of(display.id)) {
+    for (const { content, stamp: at } of session.data.contentsOf(display.id)) {
       if (content.kind !== "effort_rings" || at < stamp) continue;
       const i = content.joints.indexOf(name);
       if (i < 0) continue;
@@ -130,7 +130,7 @@ function textRow(key: string, name: string, text: () => string): TreeItem {
 
 function linkPose(name: string, display: DisplayState, { robots, frames }: Session): PoseNumbers | null {
   const link = robots.get(display.id)?.links.find((each) => each.name === name);
-  return link ? poseOf(frames, frames.row(link.frame)) : null;
+  return link ? poseOf(frames, frames.rowOf(link.frame)) : null;
 }
 
 function jointPose(joint: JointScene, display: DisplayState, session: Session): PoseNumbers | null {

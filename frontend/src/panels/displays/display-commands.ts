@@ -33,8 +33,8 @@ export class DisplayCommands {
     const display = this.selected();
     if (!display) return;
     const { configuration } = this.session;
-    const words = strings.displays;
-    askName(words.renameTitle, words.name, display.name, (name) => configuration.rename(display.id, name));
+    const texts = strings.displays;
+    askName(texts.renameTitle, texts.name, display.name, (name) => configuration.rename(display.id, name));
   }
 
   group(): void {
@@ -77,23 +77,23 @@ export class DisplayCommands {
 
   /** Returns the context menu of a display. */
   menu(display: DisplayState): MenuEntry[] {
-    const words = strings.displays;
+    const texts = strings.displays;
     const { session } = this;
     return [
       {
-        label: display.checked ? words.disable : words.enable,
+        label: display.isChecked ? texts.disable : texts.enable,
         icon: "check",
         run: () => {
-          for (const each of this.all()) session.setProperty(each.enabledId, !display.checked);
+          for (const each of this.all()) session.setProperty(each.enabledId, !display.isChecked);
         },
       },
-      { label: words.addHint, icon: "add", keys: keyText(SHORTCUTS.add), separate: true, run: () => this.add() },
-      { label: words.duplicate, icon: "duplicate", keys: keyText(SHORTCUTS.duplicate), run: () => this.duplicate() },
-      { label: words.rename, icon: "rename", keys: keyText(SHORTCUTS.rename), run: () => this.rename() },
-      { label: words.remove, icon: "remove", keys: keyText(SHORTCUTS.remove), run: () => this.remove() },
-      { label: words.group, icon: "Group", separate: true, run: () => this.group() },
-      { label: words.moveUp, keys: keyText(SHORTCUTS.moveUp), run: () => this.move(true) },
-      { label: words.moveDown, keys: keyText(SHORTCUTS.moveDown), run: () => this.move(false) },
+      { label: texts.addHint, icon: "add", keys: keyText(SHORTCUTS.add), separate: true, run: () => this.add() },
+      { label: texts.duplicate, icon: "duplicate", keys: keyText(SHORTCUTS.duplicate), run: () => this.duplicate() },
+      { label: texts.rename, icon: "rename", keys: keyText(SHORTCUTS.rename), run: () => this.rename() },
+      { label: texts.remove, icon: "remove", keys: keyText(SHORTCUTS.remove), run: () => this.remove() },
+      { label: texts.group, icon: "Group", separate: true, run: () => this.group() },
+      { label: texts.moveUp, keys: keyText(SHORTCUTS.moveUp), run: () => this.move(true) },
+      { label: texts.moveDown, keys: keyText(SHORTCUTS.moveDown), run: () => this.move(false) },
     ];
   }
 }

@@ -39,7 +39,7 @@ function displayItem(
 ): TreeItem {
   const drawn = isDrawn(display);
   const status: TreeItem[] = [];
-  if (display.enabled && display.status.length > 0) {
+  if (display.isEnabled && display.status.length > 0) {
     const level = session.displays.levelOf(display);
     const name = `${strings.tree.status}: ${strings.tree.levels[level]}`;
     status.push(statusItem(`${display.id}#status`, name, level, display.status, false));
@@ -52,16 +52,16 @@ function displayItem(
     key: display.id,
     name: display.name,
     kind: "bool",
-    value: display.checked,
+    value: display.isChecked,
     description: describe(display, drawn),
     icon: drawn ? displayIcon(display.drawing) : "unknown",
     strong: true,
     multiSelectable: true,
-    muted: !drawn || !display.enabled,
-    ...(drawn && display.enabled ? { level: worstWithin(session, display) } : {}),
+    muted: !drawn || !display.isEnabled,
+    ...(drawn && display.isEnabled ? { level: worstWithin(session, display) } : {}),
     ...(display.problems.length > 0 ? { hint: [display.name, ...display.problems.map(troubleText)].join("\n") } : {}),
     ...(drawn ? {} : { badge: strings.tree.notDrawn }),
-    expanded: display.isGroup || (display.enabled && isOnlyContent(session, display)),
+    expanded: display.isGroup || (display.isEnabled && isOnlyContent(session, display)),
     children: () => [...status, ...displayRows(display, session, set).map(withTopics), ...within()],
     set: (value) => set(display.enabledId, value),
   };
@@ -91,7 +91,7 @@ function offerTopics(
 }
 
 function isDrawn(display: DisplayState): boolean {
-  return display.isGroup || (display.supported && DRAWINGS.has(display.drawing));
+  return display.isGroup || (display.isSupported && DRAWINGS.has(display.drawing));
 }
 
 /** Returns a status row as one line. */
@@ -122,7 +122,7 @@ function isOnlyContent(session: Session, display: DisplayState): boolean {
 /** Returns the worst status of a display and, for a group, of its members. */
 function worstWithin(session: Session, display: DisplayState): ShownLevel {
   const levels = [display, ...session.displays.displays.filter((each) => each.isWithin(display))]
-    .filter((each) => each.enabled)
+    .filter((each) => each.isEnabled)
     .map((each) => each.level);
   return levels.includes("error") ? "error" : levels.includes("warn") ? "warn" : "ok";
 }

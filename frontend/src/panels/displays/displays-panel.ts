@@ -52,7 +52,7 @@ export class DisplaysPanel implements Panel {
   }
 
   private toolbar(): HTMLElement {
-    const words = strings.displays;
+    const texts = strings.displays;
     const { commands } = this;
     const tool = (label: string, name: Parameters<typeof icon>[0], keys: string, run: () => void): HTMLButtonElement => {
       const toolButton = button(`${label} (${keys})`, run, "tool bare", icon(name));
@@ -62,10 +62,10 @@ export class DisplaysPanel implements Panel {
     return h(
       "div",
       { class: "toolbar", role: "toolbar", aria: { label: strings.panels.displays } },
-      button(`${words.addHint} (${keyText(SHORTCUTS.add)})`, () => commands.add(), "tool", icon("add"), words.add),
-      tool(words.duplicate, "duplicate", keyText(SHORTCUTS.duplicate), () => commands.duplicate()),
-      tool(words.rename, "rename", keyText(SHORTCUTS.rename), () => commands.rename()),
-      tool(words.remove, "remove", keyText(SHORTCUTS.remove), () => commands.remove()),
+      button(`${texts.addHint} (${keyText(SHORTCUTS.add)})`, () => commands.add(), "tool", icon("add"), texts.add),
+      tool(texts.duplicate, "duplicate", keyText(SHORTCUTS.duplicate), () => commands.duplicate()),
+      tool(texts.rename, "rename", keyText(SHORTCUTS.rename), () => commands.rename()),
+      tool(texts.remove, "remove", keyText(SHORTCUTS.remove), () => commands.remove()),
     );
   }
 
@@ -146,13 +146,13 @@ export class DisplaysPanel implements Panel {
       if (!found || !display || (event.target instanceof Element && event.target.matches("input[type=text]"))) return;
       event.preventDefault();
       if (!tree.selections.includes(found.item.key)) found.element.focus();
-      const words = strings.displays;
+      const texts = strings.displays;
       const box = found.element.getBoundingClientRect();
       const [x, y] = event.clientX === 0 && event.clientY === 0 ? [box.left + 24, box.bottom] : [event.clientX, event.clientY];
       openMenuAt(x, y, found.element, [
         ...commands.menu(display),
-        { label: words.expandAll, icon: "expand", separate: true, run: () => tree.expandAll(found.item, true) },
-        { label: words.collapseAll, icon: "collapse", run: () => tree.expandAll(found.item, false) },
+        { label: texts.expandAll, icon: "expand", separate: true, run: () => tree.expandAll(found.item, true) },
+        { label: texts.collapseAll, icon: "collapse", run: () => tree.expandAll(found.item, false) },
       ]);
     });
     new DisplayDrag({
@@ -196,17 +196,17 @@ export class DisplaysPanel implements Panel {
 
   private selectLink(key: string): void {
     const found = linkOfKey(this.session, key);
-    const { selected } = this.session.selection;
+    const { selectedLink } = this.session.selection;
     // Revealing the row of a selected link must not clear the selection of other links.
-    if (found && selected?.display === found.display.id && selected.link.name === found.link) return;
+    if (found && selectedLink?.display === found.display.id && selectedLink.link.name === found.link) return;
     const link = found && this.session.robots.get(found.display.id)?.links.find((each) => each.name === found.link);
     if (found && link) this.session.selection.select({ display: found.display.id, link });
   }
 
   private showSelection(): void {
-    const { selected } = this.session.selection;
-    const display = selected && this.session.displays.find(selected.display);
-    const path = display && linkRowPath(display, this.session, selected.link.name);
+    const { selectedLink } = this.session.selection;
+    const display = selectedLink && this.session.displays.find(selectedLink.display);
+    const path = display && linkRowPath(display, this.session, selectedLink.link.name);
     if (path) this.tree.reveal(path);
   }
 }

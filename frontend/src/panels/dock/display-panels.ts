@@ -76,7 +76,7 @@ export class DisplayPanels implements PanelHost {
     if (!key.startsWith(PREFIX)) return null;
     const close = (): void => {
       const panel = this.panels.get(key);
-      if (panel) panel.closed();
+      if (panel) panel.onClosed();
       else this.remove(key);
     };
     return new PanelTab(this.panels.get(key)?.icon ?? "image", true, close);

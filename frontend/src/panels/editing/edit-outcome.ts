@@ -22,12 +22,12 @@ export class EditOutcome {
   private readonly redo: HTMLButtonElement;
 
   constructor(private readonly editing: EditingState) {
-    const words = strings.editing;
-    this.apply = button(words.applyHint, () => editing.apply(), "tool framed primary", words.apply);
-    this.discard = button(words.dropHint, () => editing.reset(), "tool framed", words.drop);
-    this.all = button(words.allHint, () => editing.changeAll(), "tool framed", words.all);
-    this.undo = button(words.undo, () => editing.undo(), "tool bare", icon("undo"));
-    this.redo = button(words.redo, () => editing.redo(), "tool bare", icon("redo"));
+    const texts = strings.editing;
+    this.apply = button(texts.applyHint, () => editing.apply(), "tool framed primary", texts.apply);
+    this.discard = button(texts.dropHint, () => editing.reset(), "tool framed", texts.drop);
+    this.all = button(texts.allHint, () => editing.changeAll(), "tool framed", texts.all);
+    this.undo = button(texts.undo, () => editing.undo(), "tool bare", icon("undo"));
+    this.redo = button(texts.redo, () => editing.redo(), "tool bare", icon("redo"));
     const bar = h("div", { class: "edit-bar" }, this.apply, this.discard, this.all, h("span", { class: "spacer" }), this.undo, this.redo);
     this.element = h("div", { class: "edit-outcome" }, this.text, bar);
     editing.changed.on(() => this.show());
@@ -37,9 +37,9 @@ export class EditOutcome {
 
   private show(): void {
     const { editing } = this;
-    const words = strings.editing;
-    const { preview, refusal, isOpen, written } = editing;
-    const writtenWords = editing.isWrittenToText ? words.writtenToText : words.written;
+    const texts = strings.editing;
+    const { preview, refusal, isOpen, writtenFiles } = editing;
+    const writtenWords = editing.isWrittenToText ? texts.writtenToText : texts.written;
     this.apply.disabled = !isOpen || (preview?.files.length ?? 0) === 0;
     this.discard.disabled = !isOpen;
     this.all.hidden = !isOpen || preview?.refusal?.code !== "EDIT104" || editing.isChangeOfAll;
@@ -48,9 +48,9 @@ export class EditOutcome {
     if (refusal) this.text.replaceChildren(refusalElement(refusal));
     else if (preview?.refusal) this.text.replaceChildren(refusalElement(preview.refusal));
     else if (preview) this.text.replaceChildren(...alsoElement(preview.also), ...preview.files.map(diff));
-    else if (isOpen) this.text.replaceChildren(h("p", { class: "hint" }, words.looking));
-    else if (written.length > 0) this.text.replaceChildren(h("p", { class: "hint" }, writtenWords(written.map((file) => shortPath(file)).join(", "))));
-    else this.text.replaceChildren(h("p", { class: "hint" }, words.idle));
+    else if (isOpen) this.text.replaceChildren(h("p", { class: "hint" }, texts.looking));
+    else if (writtenFiles.length > 0) this.text.replaceChildren(h("p", { class: "hint" }, writtenWords(writtenFiles.map((file) => shortPath(file)).join(", "))));
+    else this.text.replaceChildren(h("p", { class: "hint" }, texts.idle));
     this.element.classList.toggle("refused", refusal !== null || (preview?.refusal ?? null) !== null);
   }
 }

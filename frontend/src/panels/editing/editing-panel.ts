@@ -67,28 +67,28 @@ export class EditingPanel implements Panel {
 
   private update(): void {
     const { editing } = this.session;
-    const words = strings.editing;
-    const { chosen, parts, whyNot, current } = editing;
-    const why = current === null ? words.selectLink : whyNot !== "" ? whyNot : "";
+    const texts = strings.editing;
+    const { chosenPart, parts, unavailableReason: refusal, current } = editing;
+    const why = current === null ? texts.selectLink : refusal !== "" ? refusal : "";
     this.hint.hidden = why === "";
     this.hint.textContent = why;
     this.work.hidden = this.list.hidden = current === null || parts.length === 0;
     this.list.replaceChildren(...parts.map((part) => this.partRow(part)));
-    if (chosen !== this.shown) this.build(chosen);
+    if (chosenPart !== this.shown) this.build(chosenPart);
     for (const { input, value, isTyped } of this.inputs) {
-      input.disabled = whyNot !== "";
+      input.disabled = refusal !== "";
       if (!isTyped) input.value = formatNumber(value());
     }
-    for (const control of this.poseControls) control.hidden = chosen?.part === "axis";
+    for (const control of this.poseControls) control.hidden = chosenPart?.part === "axis";
     this.showModes();
   }
 
   private partRow(part: EditablePart): HTMLElement {
-    const words = strings.editing;
+    const texts = strings.editing;
     const { editing } = this.session;
-    const isChosen = part === editing.chosen;
-    const what = words.kinds[part.part];
-    const row = button(words.choose(what, part.title), () => editing.choose(part), "editing-part", h("strong", {}, what), " ", h("span", {}, part.part === "joint" || part.part === "axis" ? part.name : part.title));
+    const isChosen = part === editing.chosenPart;
+    const what = texts.kinds[part.part];
+    const row = button(texts.choose(what, part.title), () => editing.choose(part), "editing-part", h("strong", {}, what), " ", h("span", {}, part.part === "joint" || part.part === "axis" ? part.name : part.title));
     row.setAttribute("aria-pressed", String(isChosen));
     row.classList.toggle("selected", isChosen);
     return row;
@@ -107,22 +107,22 @@ export class EditingPanel implements Panel {
   }
 
   private showPlace(part: EditablePart): void {
-    const words = strings.editing;
+    const texts = strings.editing;
     const { file, line, written } = part;
     if (file !== "") {
       const show = (): void => this.session.description.placeRequested.emit({ file, line });
       const text = `${shortPath(file)}:${line}`;
-      this.place.append(button(`${file}:${line}`, show, "place", icon("file"), text), h("code", { title: written }, written === "" ? words.notWritten : written));
+      this.place.append(button(`${file}:${line}`, show, "place", icon("file"), text), h("code", { title: written }, written === "" ? texts.notWritten : written));
     }
   }
 
   private rows(part: EditablePart): HTMLElement[] {
-    const words = strings.editing;
-    if (part.part === "axis") return [this.row(words.axis, "xyz", ["x", "y", "z"], "")];
+    const texts = strings.editing;
+    if (part.part === "axis") return [this.row(texts.axis, "xyz", ["x", "y", "z"], "")];
     const degrees = this.session.angles.current === "deg";
     return [
-      this.row(words.position, "xyz", ["x", "y", "z"], "m"),
-      this.row(words.rotation, "rpy", words.angles, degrees ? strings.joints.degrees : strings.joints.radians),
+      this.row(texts.position, "xyz", ["x", "y", "z"], "m"),
+      this.row(texts.rotation, "rpy", texts.angles, degrees ? strings.joints.degrees : strings.joints.radians),
     ];
   }
 
@@ -171,13 +171,13 @@ export class EditingPanel implements Panel {
   }
 
   private currentValue(kind: "xyz" | "rpy", index: number): number {
-    const { draft, chosen } = this.session.editing;
-    return (draft ?? chosen)?.[kind][index] ?? 0;
+    const { draft, chosenPart } = this.session.editing;
+    return (draft ?? chosenPart)?.[kind][index] ?? 0;
   }
 
   private set(kind: "xyz" | "rpy", index: number, value: number): void {
     const { editing } = this.session;
-    const now = editing.draft ?? editing.chosen;
+    const now = editing.draft ?? editing.chosenPart;
     if (!now) return;
     // Converting typed degrees must not add digits to the file.
     const rounded = Number(value.toPrecision(12));
@@ -189,17 +189,17 @@ export class EditingPanel implements Panel {
   }
 
   private tools(): HTMLElement {
-    const words = strings.editing;
+    const texts = strings.editing;
     const { editing, angles } = this.session;
-    const frame = choice<HandleFrame>(words.frameHint, [["parent", words.parentFrame], ["own", words.ownFrame]], (value) => (editing.frame = value));
+    const frame = choice<HandleFrame>(texts.frameHint, [["parent", texts.parentFrame], ["own", texts.ownFrame]], (value) => (editing.frame = value));
     const steps = (values: readonly number[], unit: string): (readonly [string, string])[] => values.map((value) => [String(value), `${value}${unit}`]);
     const { snapping } = editing;
     const length = choice(strings.modeling.lengthStep, steps(LENGTH_STEPS_M, " m"), (value) => (snapping.meters = Number(value)));
     const angle = choice(strings.modeling.angleStep, steps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
-    const snap = button(words.snap, () => (snapping.enabled = !snapping.enabled), "tool bare", icon("magnet"));
+    const snap = button(texts.snap, () => (snapping.isEnabled = !snapping.isEnabled), "tool bare", icon("magnet"));
     const show = (): void => {
-      snap.setAttribute("aria-pressed", String(snapping.enabled));
-      snap.classList.toggle("active", snapping.enabled);
+      snap.setAttribute("aria-pressed", String(snapping.isEnabled));
+      snap.classList.toggle("active", snapping.isEnabled);
       length.value = String(snapping.meters);
       angle.value = String(snapping.degrees);
       frame.value = editing.frame;
@@ -212,9 +212,9 @@ export class EditingPanel implements Panel {
 
   private showModes(): void {
     const { editing } = this.session;
-    const words = strings.editing;
+    const texts = strings.editing;
     const make = (mode: "translate" | "rotate"): HTMLElement => {
-      const made = button(words.modeHints[mode], () => (editing.mode = mode), editing.mode === mode ? "on" : "", words.modes[mode]);
+      const made = button(texts.modeHints[mode], () => (editing.mode = mode), editing.mode === mode ? "on" : "", texts.modes[mode]);
       made.setAttribute("aria-pressed", String(editing.mode === mode));
       return made;
     };

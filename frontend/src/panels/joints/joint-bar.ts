@@ -6,12 +6,12 @@ import { UnitSwitch } from "../../widgets/unit-switch";
 
 /** Returns the controls of all joints: Randomize and Center as in joint_state_publisher_gui, and the unit of angles. */
 export function jointBar({ connection, angles }: Session): HTMLElement {
-  const words = strings.joints;
+  const texts = strings.joints;
   return h(
     "div",
     { class: "toolbar joint-tools" },
-    button(words.randomizeHint, () => connection.send({ type: "randomize_joints" }), "tool", icon("shuffle"), words.randomize),
-    button(words.centerHint, () => connection.send({ type: "center_joints" }), "tool", icon("center"), words.center),
+    button(texts.randomizeHint, () => connection.send({ type: "randomize_joints" }), "tool", icon("shuffle"), texts.randomize),
+    button(texts.centerHint, () => connection.send({ type: "center_joints" }), "tool", icon("center"), texts.center),
     h("span", { class: "spacer" }),
     new UnitSwitch(angles).element,
   );

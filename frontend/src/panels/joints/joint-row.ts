@@ -2,7 +2,7 @@ import { h } from "../../dom";
 import { icon } from "../../icons";
 import type { JointControl } from "../../protocol";
 import type { AngleUnits } from "../../state/angle-unit";
-import { mimicText } from "../../state/joint-table";
+import { formatMimic } from "../../state/joint-table";
 import { strings } from "../../strings";
 import { clamp, formatFixed, parseNumber } from "../../tree/numbers";
 
@@ -133,15 +133,15 @@ export class JointRow {
   }
 
   private get unitName(): string {
-    const words = strings.joints;
-    if (this.joint.kind === "prismatic") return words.meters;
-    return this.angles.current === "deg" ? words.degrees : words.radians;
+    const texts = strings.joints;
+    if (this.joint.kind === "prismatic") return texts.meters;
+    return this.angles.current === "deg" ? texts.degrees : texts.radians;
   }
 
   /** The relation of a mimic joint to its leading joint: `2 × elbow + 0.1 rad`. */
   private get relationText(): string {
     const { mimic, multiplier, offset } = this.joint;
-    return mimic === null ? "" : mimicText(mimic, multiplier, offset * this.scale, this.unitName);
+    return mimic === null ? "" : formatMimic(mimic, multiplier, offset * this.scale, this.unitName);
   }
 
   /** The step of an arrow key in the number field: 1 degree, 0.01 rad or 1 mm. */

@@ -1,7 +1,7 @@
 import { button, coalesced, h } from "../../dom";
 import type { JointDetails } from "../../protocol";
 import type { DescriptionModel } from "../../state/description-model";
-import { cellTexts, COLUMNS, sortJoints, type Column } from "../../state/joint-table";
+import { formatJointCells, COLUMNS, sortJoints, type Column } from "../../state/joint-table";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { UnitSwitch } from "../../widgets/unit-switch";
@@ -54,17 +54,17 @@ export class JointTablePanel implements Panel {
   }
 
   private heading(column: Column): HTMLElement {
-    const words = strings.description.table;
+    const texts = strings.description.table;
     const mine = this.order?.column === column;
     const sign = mine ? (this.order?.descending ? " ▾" : " ▴") : "";
-    const cell = h("th", {}, button(words.hints[column], () => this.sortBy(column), "", words[column] + sign));
+    const cell = h("th", {}, button(texts.hints[column], () => this.sortBy(column), "", texts[column] + sign));
     cell.scope = "col";
     cell.setAttribute("aria-sort", mine ? (this.order?.descending ? "descending" : "ascending") : "none");
     return cell;
   }
 
   private row(joint: JointDetails): HTMLElement {
-    const texts = cellTexts(joint, this.session.angles, strings.description);
+    const texts = formatJointCells(joint, this.session.angles, strings.description);
     const row = h(
       "tr",
       { tabIndex: 0, data: { joint: joint.name } },

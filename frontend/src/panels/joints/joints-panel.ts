@@ -21,10 +21,10 @@ export class JointsPanel implements Panel {
   private rows: JointRow[] = [];
 
   constructor(private readonly session: Session) {
-    const words = strings.joints;
+    const texts = strings.joints;
     const { joints, angles } = session;
-    this.filter.placeholder = words.filter;
-    this.filter.setAttribute("aria-label", words.filter);
+    this.filter.placeholder = texts.filter;
+    this.filter.setAttribute("aria-label", texts.filter);
     this.filter.addEventListener("input", () => this.applyFilter());
     const bar = jointBar(session);
     this.bars = h("div", { class: "joint-bars" }, new PoseBar(session).element, new SweepBar(joints).element);

@@ -1,6 +1,6 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
-import { fromSrdf, toSrdf, matchesPose, type NamedPose } from "../../state/named-poses";
+import { readSrdf, toSrdf, matchesPose, type NamedPose } from "../../state/named-poses";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { openMenu } from "../../widgets/menu";
@@ -15,9 +15,9 @@ export class PoseBar {
   private readonly picker = h("input");
 
   constructor(private readonly session: Session) {
-    const words = strings.description.poses;
-    this.name.placeholder = words.nameShort;
-    this.name.setAttribute("aria-label", words.name);
+    const texts = strings.description.poses;
+    this.name.placeholder = texts.nameShort;
+    this.name.setAttribute("aria-label", texts.name);
     this.name.maxLength = 60;
     this.name.addEventListener("keydown", (event) => {
       if (event.key === "Enter") this.save();
@@ -27,18 +27,18 @@ export class PoseBar {
     this.picker.accept = ".srdf,.xml,.xacro";
     this.picker.hidden = true;
     this.picker.addEventListener("change", () => void this.importFile());
-    const more = button(words.more, () => this.openMore(more), "tool bare", icon("more"));
+    const more = button(texts.more, () => this.openMore(more), "tool bare", icon("more"));
     more.setAttribute("aria-haspopup", "menu");
     const entry = h(
       "div",
       { class: "bar-row" },
-      h("span", { class: "bar-label", title: words.kept }, words.label),
+      h("span", { class: "bar-label", title: texts.kept }, texts.label),
       this.name,
-      button(words.saveHint, () => this.save(), "tool", words.save),
+      button(texts.saveHint, () => this.save(), "tool", texts.save),
       more,
     );
     this.notice.hidden = true;
-    this.element = h("div", { class: "joint-bar poses", role: "group", aria: { label: words.label } }, entry, this.chips, this.notice, this.picker);
+    this.element = h("div", { class: "joint-bar poses", role: "group", aria: { label: texts.label } }, entry, this.chips, this.notice, this.picker);
     const { poses, joints, robotChanged } = session;
     poses.changed.on(() => this.show());
     robotChanged.on(() => this.show());
@@ -56,12 +56,12 @@ export class PoseBar {
   }
 
   private chip(pose: NamedPose): HTMLElement {
-    const words = strings.description.poses;
+    const texts = strings.description.poses;
     return h(
       "span",
       { class: "chip", data: { pose: pose.name } },
-      button(words.recall(pose.name), () => this.session.joints.move(pose.positions), "chip-name", pose.name),
-      button(words.remove(pose.name), () => this.session.poses.remove(this.robot, pose.name), "chip-remove", icon("close")),
+      button(texts.recall(pose.name), () => this.session.joints.move(pose.positions), "chip-name", pose.name),
+      button(texts.remove(pose.name), () => this.session.poses.remove(this.robot, pose.name), "chip-remove", icon("close")),
     );
   }
 
@@ -90,10 +90,10 @@ export class PoseBar {
   }
 
   private openMore(anchor: HTMLElement): void {
-    const words = strings.description.poses;
+    const texts = strings.description.poses;
     openMenu(anchor, [
-      { label: words.export, run: () => this.export() },
-      { label: words.import, run: () => this.picker.click() },
+      { label: texts.export, run: () => this.export() },
+      { label: texts.import, run: () => this.picker.click() },
     ]);
   }
 
@@ -104,7 +104,7 @@ export class PoseBar {
   private async importFile(): Promise<void> {
     const file = this.picker.files?.[0];
     if (!file) return;
-    const poses = fromSrdf(await file.text());
+    const poses = readSrdf(await file.text());
     this.picker.value = "";
     this.notice.hidden = poses.length > 0;
     this.notice.textContent = strings.description.poses.nothingFound;

@@ -20,24 +20,24 @@ export class SweepBar {
   private sent: Readonly<Record<string, number>> = {};
 
   constructor(private readonly joints: JointsState) {
-    const words = strings.description.sweep;
-    fill(this.order, words.order, [
-      ["one", words.one],
-      ["all", words.all],
+    const texts = strings.description.sweep;
+    fill(this.order, texts.order, [
+      ["one", texts.one],
+      ["all", texts.all],
     ]);
-    fill(this.speed, words.speed, SPEEDS.map((speed) => [String(speed), `${speed}×`]));
+    fill(this.speed, texts.speed, SPEEDS.map((speed) => [String(speed), `${speed}×`]));
     this.speed.value = "1";
     this.order.addEventListener("change", () => this.sweep && this.begin());
-    this.start = button(words.start, () => (this.sweep ? this.end() : this.begin()), "tool bare", icon("play"));
+    this.start = button(texts.start, () => (this.sweep ? this.end() : this.begin()), "tool bare", icon("play"));
     const row = h(
       "div",
       { class: "bar-row" },
-      h("span", { class: "bar-label", title: words.hint }, words.label),
+      h("span", { class: "bar-label", title: texts.hint }, texts.label),
       this.order,
       this.speed,
       h("span", { class: "bar-buttons" }, dragSwitch(joints), this.start),
     );
-    this.element = h("div", { class: "joint-bar sweep", role: "group", aria: { label: words.label } }, row);
+    this.element = h("div", { class: "joint-bar sweep", role: "group", aria: { label: texts.label } }, row);
     joints.controlsChanged.on(() => this.end());
   }
 
@@ -68,10 +68,10 @@ export class SweepBar {
   };
 
   private showState(): void {
-    const words = strings.description.sweep;
+    const texts = strings.description.sweep;
     const running = this.sweep !== null;
     this.start.replaceChildren(icon(running ? "stop" : "play"));
-    this.start.title = running ? words.stop : words.start;
+    this.start.title = running ? texts.stop : texts.start;
     this.start.setAttribute("aria-label", this.start.title);
     this.start.classList.toggle("on", running);
   }

@@ -6,13 +6,13 @@ import { Dialog } from "../../widgets/dialog";
 
 /** Asks whether the steps before the shown one are to be taken over from the course, and lists the files to write. */
 export function askToCatchUp(state: CourseState, { new: created, replaced }: CatchUpFiles): void {
-  const words = strings.learning;
+  const texts = strings.learning;
   const folder = state.course?.folder ?? "";
   const list = (paths: readonly string[]): HTMLElement => h("ul", { class: "catch-up-files", tabIndex: 0 }, ...paths.map((path) => h("li", {}, path.slice(folder.length + 1))));
   const part = (text: string, paths: readonly string[]): HTMLElement[] => (paths.length > 0 ? [h("p", {}, text), list(paths)] : []);
   new Dialog(
-    words.catchUpTitle,
-    [h("p", {}, words.catchUpText), ...part(words.catchUpReplaced(replaced.length), replaced), ...part(words.catchUpNew(created.length), created)],
-    [{ label: strings.shell.cancel }, { label: words.catchUpTake, run: () => (state.catchUp(), undefined), main: true }],
+    texts.catchUpTitle,
+    [h("p", {}, texts.catchUpText), ...part(texts.catchUpReplaced(replaced.length), replaced), ...part(texts.catchUpNew(created.length), created)],
+    [{ label: strings.shell.cancel }, { label: texts.catchUpTake, run: () => (state.catchUp(), undefined), main: true }],
   ).open();
 }

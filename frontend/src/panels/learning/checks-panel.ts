@@ -22,16 +22,16 @@ export class ChecksPanel implements Panel {
   private readonly content: HTMLElement;
 
   constructor(private readonly state: CourseState) {
-    const words = strings.learning;
-    const check = button(`${words.checkHint} (${keyText(SHORTCUTS.checkStep)})`, () => state.check(), "tool framed", words.check);
-    this.next = button(`${words.nextHint} (${keyText(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed primary", words.nextStep);
-    this.offer = h("div", { class: "checks-offer" }, this.offerText, button(words.catchUpHint, () => state.askCatchUp(), "tool framed", words.catchUp));
+    const texts = strings.learning;
+    const check = button(`${texts.checkHint} (${keyText(SHORTCUTS.checkStep)})`, () => state.check(), "tool framed", texts.check);
+    this.next = button(`${texts.nextHint} (${keyText(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed primary", texts.nextStep);
+    this.offer = h("div", { class: "checks-offer" }, this.offerText, button(texts.catchUpHint, () => state.askCatchUp(), "tool framed", texts.catchUp));
     this.content = h(
       "div",
       { class: "checks" },
       h("header", { class: "checks-head" }, this.status, h("span", { class: "spacer" }), check, this.next),
       this.offer,
-      h("div", { class: "scroll", role: "group", tabIndex: 0, aria: { label: words.checks } }, this.list),
+      h("div", { class: "scroll", role: "group", tabIndex: 0, aria: { label: texts.checks } }, this.list),
     );
     this.element = h("div", { class: "panel checks-panel" }, this.empty, this.content);
     state.catchUpAnswered.on((files) => askToCatchUp(state, files));
@@ -49,18 +49,18 @@ export class ChecksPanel implements Panel {
     this.element.classList.toggle("passed", state.isPassed);
     this.offer.hidden = state.missingCount === 0;
     this.offerText.textContent = strings.learning.missingSteps(state.missingCount);
-    this.next.hidden = !state.isPassed || state.neighbor(1) === undefined;
+    this.next.hidden = !state.isPassed || state.stepAt(1) === undefined;
     this.list.replaceChildren(...(results?.checks ?? []).map((check) => row(check)));
   }
 
   private statusText(): string {
-    const words = strings.learning;
+    const texts = strings.learning;
     const { results } = this.state;
-    if (results === null || results.is_running) return results?.is_world_paused === true ? words.checkingAlone : words.checking;
+    if (results === null || results.is_running) return results?.is_world_paused === true ? texts.checkingAlone : texts.checking;
     if (results.checked_at === null) return "";
     const time = new Date(results.checked_at * 1000).toLocaleTimeString(languageTag);
     const passedCount = results.checks.filter(({ is_passed: isPassed }) => isPassed).length;
-    return this.state.isPassed ? words.allPassed(time) : words.somePassed(passedCount, results.checks.length, time);
+    return this.state.isPassed ? texts.allPassed(time) : texts.somePassed(passedCount, results.checks.length, time);
   }
 }
 

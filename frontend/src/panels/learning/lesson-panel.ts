@@ -32,14 +32,14 @@ export class LessonPanel implements Panel {
   private isOutlineShown = false;
 
   constructor(private readonly state: CourseState) {
-    const words = strings.learning;
+    const texts = strings.learning;
     this.outline = new Outline(state, () => this.showOutline(false));
-    this.outlineToggle = button(words.outlineHint, () => this.showOutline(!this.isOutlineShown), "tool framed", icon("tree"), words.outline);
-    this.back = button(`${words.backHint} (${keyText(SHORTCUTS.previousStep)})`, () => state.move(-1), "tool framed", words.back);
-    this.next = button(`${words.nextHint} (${keyText(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed", words.next);
-    this.hint = button(words.hintHint, () => state.takeHint(), "tool framed", icon("bulb"), words.hint);
-    this.solution = button(words.solutionHint, () => this.askForSolution(), "tool framed", words.solution);
-    this.answer.setAttribute("aria-label", words.answer);
+    this.outlineToggle = button(texts.outlineHint, () => this.showOutline(!this.isOutlineShown), "tool framed", icon("tree"), texts.outline);
+    this.back = button(`${texts.backHint} (${keyText(SHORTCUTS.previousStep)})`, () => state.move(-1), "tool framed", texts.back);
+    this.next = button(`${texts.nextHint} (${keyText(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed", texts.next);
+    this.hint = button(texts.hintHint, () => state.takeHint(), "tool framed", icon("bulb"), texts.hint);
+    this.solution = button(texts.solutionHint, () => this.askForSolution(), "tool framed", texts.solution);
+    this.answer.setAttribute("aria-label", texts.answer);
     this.answer.addEventListener("keydown", (event) => {
       event.stopPropagation();
       if (event.key === "Enter" && !event.isComposing) this.sendAnswer();
@@ -70,15 +70,15 @@ export class LessonPanel implements Panel {
     this.empty.hidden = step !== null;
     this.course.hidden = step === null;
     if (step === null) return;
-    const words = strings.learning;
+    const texts = strings.learning;
     const passedCount = state.steps.filter(({ is_passed: isPassed }) => isPassed).length;
-    this.place.replaceChildren(`${localText(step.lesson)} · `, h("span", {}, words.progress(passedCount, state.steps.length)));
-    this.back.disabled = state.neighbor(-1) === undefined;
-    this.next.disabled = state.neighbor(1) === undefined;
+    this.place.replaceChildren(`${localText(step.lesson)} · `, h("span", {}, texts.progress(passedCount, state.steps.length)));
+    this.back.disabled = state.stepAt(-1) === undefined;
+    this.next.disabled = state.stepAt(1) === undefined;
     this.next.classList.toggle("primary", state.isPassed);
     this.hint.hidden = step.hint_count === 0;
     this.hint.disabled = step.hints.length >= step.hint_count;
-    this.hint.lastChild?.replaceWith(words.hintOf(step.hints.length, step.hint_count));
+    this.hint.lastChild?.replaceWith(texts.hintOf(step.hints.length, step.hint_count));
     this.solution.hidden = !step.has_solution;
     this.problem.hidden = state.problem === null;
     this.problem.textContent = state.problem ? `${state.problem.message} ${state.problem.hint}`.trim() : "";
@@ -110,17 +110,17 @@ export class LessonPanel implements Panel {
 
   private fileRow(files: readonly string[]): HTMLElement[] {
     if (files.length === 0) return [];
-    const words = strings.learning;
-    const buttons = files.map((path) => button(words.openFile(path), () => this.state.fileRequested.emit(path), "tool framed", icon("file"), nameOf(path)));
-    return [h("div", { class: "lesson-row" }, h("span", { class: "toolbar-label" }, words.files), ...buttons)];
+    const texts = strings.learning;
+    const buttons = files.map((path) => button(texts.openFile(path), () => this.state.fileRequested.emit(path), "tool framed", icon("file"), nameOf(path)));
+    return [h("div", { class: "lesson-row" }, h("span", { class: "toolbar-label" }, texts.files), ...buttons)];
   }
 
   private answerRow(unit: string | null, answer: string | null): HTMLElement[] {
     if (unit === null) return [];
-    const words = strings.learning;
+    const texts = strings.learning;
     this.answer.value = answer ?? "";
-    const send = button(words.answerHint, () => this.sendAnswer(), "tool framed primary", words.sendAnswer);
-    return [h("div", { class: "lesson-row" }, h("span", { class: "toolbar-label" }, words.answer), this.answer, unit === "1" ? null : h("span", {}, unit), send)];
+    const send = button(texts.answerHint, () => this.sendAnswer(), "tool framed primary", texts.sendAnswer);
+    return [h("div", { class: "lesson-row" }, h("span", { class: "toolbar-label" }, texts.answer), this.answer, unit === "1" ? null : h("span", {}, unit), send)];
   }
 
   private sendAnswer(): void {
@@ -136,14 +136,14 @@ export class LessonPanel implements Panel {
   }
 
   private askForSolution(): void {
-    const words = strings.learning;
+    const texts = strings.learning;
     const folder = this.state.course?.folder ?? "";
     const files = (this.state.step?.solution ?? []).map((path) => path.slice(folder.length + 1));
-    const copied = [h("p", {}, words.solutionText), h("ul", {}, ...files.map((path) => h("li", {}, path)))];
-    const shown = (this.state.step?.unit ?? null) === null ? [] : [h("p", {}, words.solutionNumber)];
-    new Dialog(words.solutionTitle, [...(files.length > 0 ? copied : []), ...shown], [
+    const copied = [h("p", {}, texts.solutionText), h("ul", {}, ...files.map((path) => h("li", {}, path)))];
+    const shown = (this.state.step?.unit ?? null) === null ? [] : [h("p", {}, texts.solutionNumber)];
+    new Dialog(texts.solutionTitle, [...(files.length > 0 ? copied : []), ...shown], [
       { label: strings.shell.cancel },
-      { label: words.solutionTake, run: () => (this.state.takeSolution(), undefined), main: true },
+      { label: texts.solutionTake, run: () => (this.state.takeSolution(), undefined), main: true },
     ]).open();
   }
 }

@@ -36,9 +36,9 @@ export class Outline {
       this.state.open(address);
       this.onChosen();
     };
-    const words = strings.learning;
+    const texts = strings.learning;
     const mark = isPassed ? icon("check", "level-ok") : isTakenOver ? icon("download") : h("span", { class: "outline-mark" });
-    const title = isPassed ? words.passedStep(name) : isTakenOver ? words.takenOverStep(name) : name;
+    const title = isPassed ? texts.passedStep(name) : isTakenOver ? texts.takenOverStep(name) : name;
     const row = button(title, open, "outline-step", mark, name);
     if (address === this.state.step?.address) row.setAttribute("aria-current", "step");
     return row;

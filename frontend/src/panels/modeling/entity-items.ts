@@ -16,19 +16,19 @@ export function entityItems(modeling: Modeling, angles: AngleUnits): TreeItem[] 
   const entities = modeling.selectedEntities;
   const [first] = entities;
   if (!first) return [];
-  const words = strings.modeling;
+  const texts = strings.modeling;
   const edit = (change: (entity: WorldEntity) => Change): void => modeling.change(entities.map(change));
   const models = entities.every(({ kind }) => kind === "model");
   const alike = models && first.shape !== null && entities.every(({ shape }) => shape === first.shape);
   return [
-    entities.length === 1 ? nameItem(first, modeling) : note("count", words.several(entities.length)),
-    group("position", words.position, poseItems(entities, 0, ["X", "Y", "Z"], 1, edit)),
-    group("rotation", `${words.rotation}, ${angles.current === "deg" ? "°" : "rad"}`, poseItems(entities, ROLL, ["Roll", "Pitch", "Yaw"], angles.scale("revolute"), edit)),
-    ...(alike ? [group("size", words.size, sizeItems(entities, edit))] : []),
+    entities.length === 1 ? nameItem(first, modeling) : note("count", texts.several(entities.length)),
+    group("position", texts.position, poseItems(entities, 0, ["X", "Y", "Z"], 1, edit)),
+    group("rotation", `${texts.rotation}, ${angles.current === "deg" ? "°" : "rad"}`, poseItems(entities, ROLL, ["Roll", "Pitch", "Yaw"], angles.scale("revolute"), edit)),
+    ...(alike ? [group("size", texts.size, sizeItems(entities, edit))] : []),
     ...(models ? [staticItem(entities, edit)] : []),
     ...(entities.every(({ color }) => color !== null) ? [colorItem(first, edit)] : []),
-    ...(entities.length === 1 && first.address !== null ? [note("address", words.address, first.address)] : []),
-    ...(entities.length === 1 && first.parts.length > 0 ? [note("parts", words.parts, first.parts.join(", "))] : []),
+    ...(entities.length === 1 && first.address !== null ? [note("address", texts.address, first.address)] : []),
+    ...(entities.length === 1 && first.parts.length > 0 ? [note("parts", texts.parts, first.parts.join(", "))] : []),
   ];
 }
 

@@ -44,7 +44,7 @@ export class EntityList {
   }
 
   private reveal(): void {
-    const last = this.modeling.selected.at(-1);
+    const last = this.modeling.selectedNames.at(-1);
     const index = this.entities.findIndex(({ name }) => name === last);
     if (index >= 0 && index !== this.current) {
       this.current = this.anchor = index;
@@ -57,7 +57,7 @@ export class EntityList {
   private row(index: number): HTMLElement {
     const entity = this.entities[index];
     const name = entity?.name ?? "";
-    const selected = this.modeling.selected.includes(name);
+    const selected = this.modeling.selectedNames.includes(name);
     const row = h(
       "div",
       { class: selected ? "entity-row selected" : "entity-row", role: "option", title: name, aria: { selected: String(selected) } },

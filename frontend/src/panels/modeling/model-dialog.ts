@@ -15,16 +15,16 @@ export class ModelDialog {
   private chosen: ModelChoice | null = null;
 
   constructor(private readonly modeling: Modeling) {
-    const words = strings.modeling;
+    const texts = strings.modeling;
     this.search.type = "search";
-    this.search.placeholder = words.search;
-    this.search.setAttribute("aria-label", words.search);
+    this.search.placeholder = texts.search;
+    this.search.setAttribute("aria-label", texts.search);
     this.search.addEventListener("input", () => this.fill());
     for (const each of [this.search, this.list]) each.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.dialog = new Dialog(
-      words.models,
+      texts.models,
       [h("div", { class: "search-box" }, icon("search"), this.search), this.list],
-      [{ label: strings.shell.cancel }, { label: words.choose, main: true, run: () => this.accept() }],
+      [{ label: strings.shell.cancel }, { label: texts.choose, main: true, run: () => this.accept() }],
       "add-dialog",
     );
     const forget = modeling.modelsArrived.on((models) => {
@@ -41,12 +41,12 @@ export class ModelDialog {
   }
 
   private fill(): void {
-    const words = strings.modeling;
+    const texts = strings.modeling;
     const query = this.search.value.trim().toLowerCase();
     this.shown = (this.models ?? []).filter(({ name, address }) => `${name} ${address}`.toLowerCase().includes(query));
     this.list.replaceChildren(...this.shown.map((model) => this.row(model)));
     if (this.models && this.shown.length === 0) {
-      this.list.append(h("p", { class: "empty" }, this.models.length === 0 ? words.noModels : words.notFound));
+      this.list.append(h("p", { class: "empty" }, this.models.length === 0 ? texts.noModels : texts.notFound));
     }
     this.choose(this.shown.find(({ address }) => address === this.chosen?.address) ?? this.shown[0] ?? null);
   }
@@ -86,7 +86,7 @@ export class ModelDialog {
 
   private accept(): boolean {
     if (!this.chosen) return false;
-    this.modeling.place({ kind: "model", address: this.chosen.address });
+    this.modeling.startPlacing({ kind: "model", address: this.chosen.address });
     return true;
   }
 }

@@ -38,19 +38,19 @@ export class ModelingBar {
     private readonly modeling: Modeling,
     commands: WorldCommands,
   ) {
-    const words = strings.modeling;
+    const texts = strings.modeling;
     for (const [kind, name] of PALETTE) this.palette.set(kind, this.addButton(kind, name));
-    this.palette.set("model", tool(words.addModel, "library", () => new ModelDialog(modeling).open()));
+    this.palette.set("model", tool(texts.addModel, "library", () => new ModelDialog(modeling).open()));
     for (const [mode, name] of MODES) {
-      this.modes.set(mode, tool(withKeys(words.modes[mode], WORLD_KEYS[mode]), name, () => (modeling.gizmo = mode)));
+      this.modes.set(mode, tool(withKeys(texts.modes[mode], WORLD_KEYS[mode]), name, () => (modeling.gizmo = mode)));
     }
-    this.snap = tool(words.snap, "magnet", () => (modeling.snapping.enabled = !modeling.snapping.enabled));
-    this.undo = tool(withKeys(words.undo, WORLD_KEYS.undo), "undo", () => modeling.undo());
-    this.redo = tool(withKeys(words.redo, WORLD_KEYS.redo), "redo", () => modeling.redo());
-    this.save = tool(withKeys(words.save, WORLD_KEYS.save), "save", () => commands.save());
+    this.snap = tool(texts.snap, "magnet", () => (modeling.snapping.isEnabled = !modeling.snapping.isEnabled));
+    this.undo = tool(withKeys(texts.undo, WORLD_KEYS.undo), "undo", () => modeling.undo());
+    this.redo = tool(withKeys(texts.redo, WORLD_KEYS.redo), "redo", () => modeling.redo());
+    this.save = tool(withKeys(texts.save, WORLD_KEYS.save), "save", () => commands.save());
     const line = (): HTMLElement => h("span", { class: "bar-line" });
     const tools = [...this.palette.values(), line(), ...this.modes.values(), this.snap, line(), this.undo, this.redo, this.save];
-    this.element = h("div", { class: "simulation-tools modeling-tools", role: "toolbar", aria: { label: words.label } }, ...tools);
+    this.element = h("div", { class: "simulation-tools modeling-tools", role: "toolbar", aria: { label: texts.label } }, ...tools);
     for (const signal of [modeling.changed, modeling.selectionChanged, modeling.toolChanged, modeling.snapping.changed]) {
       signal.on(() => this.show());
     }
@@ -59,15 +59,15 @@ export class ModelingBar {
 
   private show(): void {
     const { modeling } = this;
-    this.element.hidden = !modeling.active;
+    this.element.hidden = !modeling.isActive;
     for (const [kind, each] of this.palette) setPressed(each, modeling.placing?.kind === kind);
     for (const [mode, each] of this.modes) setPressed(each, modeling.gizmo === mode);
     const scale = this.modes.get("scale");
-    if (scale) scale.disabled = modeling.selected.length > 0 && !modeling.canScale;
-    setPressed(this.snap, modeling.snapping.enabled);
+    if (scale) scale.disabled = modeling.selectedNames.length > 0 && !modeling.canScale;
+    setPressed(this.snap, modeling.snapping.isEnabled);
     this.undo.disabled = !modeling.canUndo;
     this.redo.disabled = !modeling.canRedo;
-    this.save.classList.toggle("unsaved", modeling.unsaved);
+    this.save.classList.toggle("unsaved", modeling.isUnsaved);
   }
 
   /**
@@ -76,21 +76,21 @@ export class ModelingBar {
    */
   private addButton(kind: Exclude<NewKind, "model">, name: IconName): HTMLButtonElement {
     const { modeling } = this;
-    const words = strings.modeling;
+    const texts = strings.modeling;
     const placing: Placing = { kind, address: "" };
-    const toolButton = tool(kind === "wall" ? words.addWall : words.add(words.kinds[kind]), name, () => undefined);
-    toolButton.setAttribute("aria-label", words.kinds[kind]);
+    const toolButton = tool(kind === "wall" ? texts.addWall : texts.add(texts.kinds[kind]), name, () => undefined);
+    toolButton.setAttribute("aria-label", texts.kinds[kind]);
     let wasDropped = false;
     toolButton.addEventListener("click", (event) => {
       if (wasDropped) return;
-      if (event.detail === 0) modeling.drop({ placing, at: null });
-      else modeling.place(modeling.placing?.kind === kind ? null : placing);
+      if (event.detail === 0) modeling.drop({ placing, position: null });
+      else modeling.startPlacing(modeling.placing?.kind === kind ? null : placing);
     });
     toolButton.addEventListener("pointerup", ({ clientX: x, clientY: y }) => {
       if (!(document.elementFromPoint(x, y) instanceof HTMLCanvasElement)) return;
       wasDropped = true; // a click follows
       setTimeout(() => (wasDropped = false));
-      modeling.drop({ placing, at: { x, y } });
+      modeling.drop({ placing, position: { x, y } });
     });
     // Without the capture, dragging a finger would scroll the page, and the button would receive no further events.
     toolButton.addEventListener("pointerdown", ({ pointerId }) => toolButton.setPointerCapture(pointerId));

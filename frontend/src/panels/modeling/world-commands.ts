@@ -48,8 +48,8 @@ export class WorldCommands {
       copy: () => modeling.copy(),
       paste: () => modeling.paste(),
       duplicate: () => modeling.duplicate(),
-      group: () => modeling.group(),
-      ungroup: () => modeling.ungroup(),
+      group: () => modeling.groupSelected(),
+      ungroup: () => modeling.ungroupSelected(),
       save: () => this.save(),
       saveAs: () => this.saveAs(),
       escape,
@@ -63,8 +63,8 @@ export class WorldCommands {
   }
 
   saveAs(): void {
-    const words = strings.modeling;
-    askName(words.saveAs, words.path, this.modeling.file ?? "", (path) => this.modeling.save(path));
+    const texts = strings.modeling;
+    askName(texts.saveAs, texts.path, this.modeling.file ?? "", (path) => this.modeling.save(path));
   }
 
   /** Binds the keys, with precedence over those of tools, views and the File menu while the world is modeled. */
@@ -72,7 +72,7 @@ export class WorldCommands {
     document.addEventListener(
       "keydown",
       (event) => {
-        if (!this.modeling.active || !this.runKey(event)) return;
+        if (!this.modeling.isActive || !this.runKey(event)) return;
         event.preventDefault();
         event.stopImmediatePropagation();
       },

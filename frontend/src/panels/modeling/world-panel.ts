@@ -31,20 +31,20 @@ export class WorldPanel implements Panel {
     angles: AngleUnits,
     commands: WorldCommands,
   ) {
-    const words = strings.modeling;
-    const begin = button(words.begin, () => modeling.setActive(true), "tool framed", words.start);
-    this.inactiveView = h("div", { class: "world-off" }, h("p", { class: "hint" }, words.off), begin);
-    const any = (): boolean => modeling.selected.length > 0;
+    const texts = strings.modeling;
+    const begin = button(texts.begin, () => modeling.setActive(true), "tool framed", texts.start);
+    this.inactiveView = h("div", { class: "world-off" }, h("p", { class: "hint" }, texts.off), begin);
+    const any = (): boolean => modeling.selectedNames.length > 0;
     this.actions = [
-      [action(words.duplicate, WORLD_KEYS.duplicate, "duplicate", () => modeling.duplicate()), any],
-      [action(words.remove, WORLD_KEYS.remove, "remove", () => modeling.remove()), any],
-      [action(words.group, WORLD_KEYS.group, "group", () => modeling.group()), () => modeling.canGroup],
-      [action(words.ungroup, WORLD_KEYS.ungroup, "ungroup", () => modeling.ungroup()), () => modeling.canUngroup],
+      [action(texts.duplicate, WORLD_KEYS.duplicate, "duplicate", () => modeling.duplicate()), any],
+      [action(texts.remove, WORLD_KEYS.remove, "remove", () => modeling.remove()), any],
+      [action(texts.group, WORLD_KEYS.group, "group", () => modeling.groupSelected()), () => modeling.canGroup],
+      [action(texts.ungroup, WORLD_KEYS.ungroup, "ungroup", () => modeling.ungroupSelected()), () => modeling.canUngroup],
     ];
-    const toolbar = h("div", { class: "toolbar", role: "toolbar", aria: { label: words.panel } }, ...this.actions.map(([made]) => made));
-    const saveAs = action(words.saveAs, WORLD_KEYS.saveAs, "download", () => commands.saveAs());
+    const toolbar = h("div", { class: "toolbar", role: "toolbar", aria: { label: texts.panel } }, ...this.actions.map(([made]) => made));
+    const saveAs = action(texts.saveAs, WORLD_KEYS.saveAs, "download", () => commands.saveAs());
     const head = h("div", { class: "world-head" }, icon("file"), this.file, this.mark, h("span", { class: "spacer" }), saveAs);
-    const tree = new TreeView(words.properties, () => entityItems(modeling, angles), () => []);
+    const tree = new TreeView(texts.properties, () => entityItems(modeling, angles), () => []);
     this.activeView = h("div", { class: "world-work" }, head, toolbar, this.empty, new EntityList(modeling).element, tree.element, this.grid(angles));
     this.element = h("div", { class: "panel world-panel" }, this.inactiveView, this.activeView);
     modeling.changed.on(() => this.show());
@@ -54,22 +54,22 @@ export class WorldPanel implements Panel {
   }
 
   private show(): void {
-    const { active, file, unsaved, entities } = this.modeling;
-    this.inactiveView.hidden = active;
-    this.activeView.hidden = !active;
+    const { isActive, file, isUnsaved, entities } = this.modeling;
+    this.inactiveView.hidden = isActive;
+    this.activeView.hidden = !isActive;
     this.file.textContent = file === null ? strings.modeling.untitled : shortPath(file);
     this.file.title = file ?? "";
-    this.mark.hidden = !unsaved;
+    this.mark.hidden = !isUnsaved;
     this.empty.hidden = entities.length > 0;
     for (const [made, possible] of this.actions) made.disabled = !possible();
   }
 
   private grid(angles: AngleUnits): HTMLElement {
-    const words = strings.modeling;
+    const texts = strings.modeling;
     const { snapping } = this.modeling;
     const steps = (values: readonly number[], unit: string): (readonly [string, string])[] => values.map((value) => [String(value), `${value}${unit}`]);
-    const length = choice(words.lengthStep, steps(LENGTH_STEPS, " m"), (value) => (snapping.meters = Number(value)));
-    const angle = choice(words.angleStep, steps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
+    const length = choice(texts.lengthStep, steps(LENGTH_STEPS, " m"), (value) => (snapping.meters = Number(value)));
+    const angle = choice(texts.angleStep, steps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
     const show = (): void => {
       length.value = String(snapping.meters);
       angle.value = String(snapping.degrees);

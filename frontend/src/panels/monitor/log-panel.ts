@@ -1,8 +1,8 @@
 import { button, coalesced, h } from "../../dom";
 import { icon } from "../../icons";
 import type { LogLine } from "../../protocol";
-import { clockText } from "../../state/monitor/figure-text";
-import { LEVELS, levelOf, lineText, type LogState } from "../../state/monitor/log";
+import { formatClock } from "../../state/monitor/figure-text";
+import { LEVELS, levelOf, formatLine, type LogState } from "../../state/monitor/log";
 import { strings } from "../../strings";
 import { textField } from "../../widgets/controls";
 import { copyText } from "../../widgets/copy-text";
@@ -26,14 +26,14 @@ export class LogPanel implements Panel {
   private nodes: string | null = null;
 
   constructor(private readonly state: LogState) {
-    const words = strings.monitor.log;
+    const texts = strings.monitor.log;
     this.list = new VirtualList<LogLine>(ROW_PX, (line) => this.row(line), () => this.showFollowing());
     this.list.element.setAttribute("role", "region");
-    this.list.element.setAttribute("aria-label", words.list);
+    this.list.element.setAttribute("aria-label", texts.list);
     this.list.element.addEventListener("keydown", (event) => this.onKeyDown(event));
-    this.pause = button(words.pauseHint, () => state.setPaused(!state.paused), "tool", strings.monitor.pause);
-    this.newest = button(words.newestHint, () => this.list.follow(), "tool", icon("follow"), words.newest);
-    const copy = button(words.copyHint, () => this.copy(copy), "tool", icon("copy"), words.copy);
+    this.pause = button(texts.pauseHint, () => state.setPaused(!state.isPaused), "tool", strings.monitor.pause);
+    this.newest = button(texts.newestHint, () => this.list.follow(), "tool", icon("follow"), texts.newest);
+    const copy = button(texts.copyHint, () => this.copy(copy), "tool", icon("copy"), texts.copy);
     this.node.addEventListener("change", () => state.setNode(this.node.value));
     const filters = h(
       "div",
@@ -48,13 +48,13 @@ export class LogPanel implements Panel {
       "div",
       { class: "toolbar" },
       this.pause,
-      button(words.clearHint, () => state.clear(), "tool", icon("clear"), strings.monitor.clear),
+      button(texts.clearHint, () => state.clear(), "tool", icon("clear"), strings.monitor.clear),
       copy,
       h("span", { class: "spacer" }),
       this.newest,
     );
     const head = h("div", { class: "log-row log-head" });
-    for (const text of [words.level, words.time, words.node, words.message, words.location]) head.append(h("span", {}, text));
+    for (const text of [texts.level, texts.time, texts.node, texts.message, texts.location]) head.append(h("span", {}, text));
     this.details.hidden = true;
     this.element = h("div", { class: "panel monitor log" }, bar, filters, head, this.list.element, this.details);
     state.changed.on(coalesced(() => this.show()));
@@ -95,18 +95,18 @@ export class LogPanel implements Panel {
   }
 
   private show(): void {
-    const words = strings.monitor.log;
-    const { lines, shown, missed, paused } = this.state;
-    this.list.show(shown);
-    const counted = words.shown(shown.length, lines.length);
-    this.count.textContent = missed > 0 ? `${counted}, ${words.missed(missed)}` : counted;
-    this.pause.replaceChildren(icon(paused ? "play" : "pause"), paused ? strings.monitor.resume : strings.monitor.pause);
-    this.pause.classList.toggle("on", paused);
+    const texts = strings.monitor.log;
+    const { lines, shownLines, missedCount, isPaused } = this.state;
+    this.list.show(shownLines);
+    const counted = texts.shown(shownLines.length, lines.length);
+    this.count.textContent = missedCount > 0 ? `${counted}, ${texts.missed(missedCount)}` : counted;
+    this.pause.replaceChildren(icon(isPaused ? "play" : "pause"), isPaused ? strings.monitor.resume : strings.monitor.pause);
+    this.pause.classList.toggle("on", isPaused);
     const { nodes } = this.state;
     if (nodes.join("\n") === this.nodes) return;
     this.nodes = nodes.join("\n");
     const chosen = this.node.value;
-    this.node.replaceChildren(new Option(words.allNodes, ""), ...nodes.map((name) => new Option(name)));
+    this.node.replaceChildren(new Option(texts.allNodes, ""), ...nodes.map((name) => new Option(name)));
     this.node.value = nodes.includes(chosen) ? chosen : "";
   }
 
@@ -121,7 +121,7 @@ export class LogPanel implements Panel {
       "div",
       { class: `log-row log-level-${level}`, title: line.message },
       h("span", { class: "log-level" }, strings.monitor.log.names[level]),
-      h("span", { class: "note" }, clockText(line.time)),
+      h("span", { class: "note" }, formatClock(line.time)),
       h("span", {}, line.node),
       h("span", { class: "log-message" }, line.message),
       h("span", { class: "note" }, placeOf(line)),
@@ -133,10 +133,10 @@ export class LogPanel implements Panel {
 
   /** Moves to the previous or next record with the arrow keys. */
   private onKeyDown(event: KeyboardEvent): void {
-    const { shown } = this.state;
-    const at = this.chosen ? shown.indexOf(this.chosen) : shown.length;
-    if (event.key === "ArrowUp") this.choose(shown[Math.max(0, at - 1)] ?? null);
-    else if (event.key === "ArrowDown") this.choose(shown[Math.min(shown.length - 1, at + 1)] ?? null);
+    const { shownLines } = this.state;
+    const at = this.chosen ? shownLines.indexOf(this.chosen) : shownLines.length;
+    if (event.key === "ArrowUp") this.choose(shownLines[Math.max(0, at - 1)] ?? null);
+    else if (event.key === "ArrowDown") this.choose(shownLines[Math.min(shownLines.length - 1, at + 1)] ?? null);
     else if (event.key === "Escape") this.choose(null);
     else if (event.key === "End") this.list.follow();
     else return;
@@ -148,7 +148,7 @@ export class LogPanel implements Panel {
   /** Shows a record in full below the list. */
   private choose(line: LogLine | null): void {
     this.chosen = line;
-    this.list.show(this.state.shown);
+    this.list.show(this.state.shownLines);
     this.details.hidden = line === null;
     if (!line) return;
     const place = line.file === "" ? "" : `${line.file}:${line.line} ${line.function}`;
@@ -156,7 +156,7 @@ export class LogPanel implements Panel {
   }
 
   private copy(from: HTMLButtonElement): void {
-    const text = this.state.shown.map((line) => lineText(line, strings.monitor.log.names[levelOf(line)])).join("\n");
+    const text = this.state.shownLines.map((line) => formatLine(line, strings.monitor.log.names[levelOf(line)])).join("\n");
     void copyText(text).then((copied) => {
       from.classList.toggle("done", copied);
       from.title = copied ? strings.monitor.log.copied : strings.monitor.log.copyHint;

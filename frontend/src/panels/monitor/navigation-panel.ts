@@ -19,7 +19,7 @@ export class NavigationPanel implements Panel {
   private readonly problem = h("p", { class: "note wrong", aria: { live: "polite" } });
 
   constructor(private readonly state: NavigationState) {
-    const words = strings.monitor.navigation;
+    const texts = strings.monitor.navigation;
     const value = (): HTMLElement => h("output", { class: "navigation-value numeric" });
     this.values = {
       navigation: value(),
@@ -31,7 +31,7 @@ export class NavigationPanel implements Panel {
       recoveries: value(),
     };
     const make = (command: NavigationCommand): HTMLButtonElement =>
-      button(words.hints[command], () => state.command(command), "tool", words.commands[command]);
+      button(texts.hints[command], () => state.sendCommand(command), "tool", texts.commands[command]);
     this.buttons = {
       startup: make("startup"),
       pause: make("pause"),
@@ -46,7 +46,7 @@ export class NavigationPanel implements Panel {
         "div",
         { class: "scroll navigation" },
         h("div", { class: "toolbar navigation-buttons" }, ...Object.values(this.buttons)),
-        h("dl", { class: "navigation-rows" }, ...ROWS.flatMap((row) => [h("dt", { class: "toolbar-label" }, words.rows[row]), h("dd", {}, this.values[row])])),
+        h("dl", { class: "navigation-rows" }, ...ROWS.flatMap((row) => [h("dt", { class: "toolbar-label" }, texts.rows[row]), h("dd", {}, this.values[row])])),
         this.problem,
       ),
     );
@@ -56,23 +56,23 @@ export class NavigationPanel implements Panel {
   }
 
   private show(): void {
-    const words = strings.monitor.navigation;
+    const texts = strings.monitor.navigation;
     const { lastState } = this.state;
     const put = (row: Row, text: string, kind = ""): void => {
       this.values[row].textContent = text;
       this.values[row].dataset["state"] = kind;
     };
-    const seconds = (value: number | null | undefined): string => (value === null || value === undefined ? words.none : words.duration(value));
+    const seconds = (value: number | null | undefined): string => (value === null || value === undefined ? texts.none : texts.duration(value));
     for (const manager of ["navigation", "localization"] as const) {
       const state = lastState?.[manager] ?? "unknown";
-      put(manager, words.states[state], state);
+      put(manager, texts.states[state], state);
     }
     const goal = lastState?.goal ?? "none";
-    put("goal", words.goals[goal], goal);
+    put("goal", texts.goals[goal], goal);
     put("eta", seconds(lastState?.eta));
     put("taken", seconds(lastState?.taken));
-    put("distance", lastState?.distance === null || lastState?.distance === undefined ? words.none : `${lastState.distance.toFixed(2)} m`);
-    put("recoveries", lastState?.recoveries === null || lastState?.recoveries === undefined ? words.none : String(lastState.recoveries));
+    put("distance", lastState?.distance === null || lastState?.distance === undefined ? texts.none : `${lastState.distance.toFixed(2)} m`);
+    put("recoveries", lastState?.recoveries === null || lastState?.recoveries === undefined ? texts.none : String(lastState.recoveries));
     this.problem.textContent = lastState?.problem ?? "";
     this.enable();
   }

@@ -61,7 +61,7 @@ export class NodeGraphDrawing {
   mark(id: string | null): void {
     this.marked = id;
     const { edges } = this.graph;
-    const near = new Set(edges.flatMap(({ from, to }) => (from === id ? [to] : to === id ? [from] : [])));
+    const near = new Set(edges.flatMap(({ source, target }) => (source === id ? [target] : target === id ? [source] : [])));
     this.element.classList.toggle("marked", id !== null);
     for (const shape of this.scene.querySelectorAll<SVGElement>("[data-id]")) {
       const own = shape.dataset["id"] ?? "";
@@ -92,7 +92,7 @@ export class NodeGraphDrawing {
   /** Returns the box of the vertex with the most edges. */
   private busiest(): PlacedBox | undefined {
     const degrees = new Map<string, number>();
-    for (const id of this.graph.edges.flatMap(({ from, to }) => [from, to])) degrees.set(id, (degrees.get(id) ?? 0) + 1);
+    for (const id of this.graph.edges.flatMap(({ source, target }) => [source, target])) degrees.set(id, (degrees.get(id) ?? 0) + 1);
     const [first] = [...degrees].sort(([, a], [, b]) => b - a);
     return this.boxes.get(first?.[0] ?? "");
   }
@@ -119,8 +119,8 @@ export class NodeGraphDrawing {
     return shape;
   }
 
-  private topicsOf({ from, to }: Route): string {
-    const edge = this.graph.edges.find((each) => each.from === from && each.to === to);
+  private topicsOf({ source, target }: Route): string {
+    const edge = this.graph.edges.find((each) => each.source === source && each.target === target);
     return edge?.topics.join("\n") ?? "";
   }
 
@@ -146,7 +146,7 @@ function labelOf(vertex: GraphVertex | undefined): string {
   return vertex.kind === "group" ? `${vertex.label} (${vertex.count})` : vertex.label;
 }
 
-function drawRoute({ from, to, points }: Route, topics: string): SVGElement {
+function drawRoute({ source, target, points }: Route, topics: string): SVGElement {
   const [first, ...rest] = points;
   let [x, y] = first ?? [0, 0];
   let path = `M${x} ${y}`;
@@ -155,7 +155,7 @@ function drawRoute({ from, to, points }: Route, topics: string): SVGElement {
     path += `C${x + bend} ${y} ${nextX - bend} ${nextY} ${nextX} ${nextY}`;
     [x, y] = [nextX, nextY];
   }
-  const edge = make("path", { class: "edge", d: path, "data-from": from, "data-to": to, "marker-end": "url(#graph-arrow)" });
+  const edge = make("path", { class: "edge", d: path, "data-from": source, "data-to": target, "marker-end": "url(#graph-arrow)" });
   if (topics !== "") {
     const title = make("title", {});
     title.textContent = topics;

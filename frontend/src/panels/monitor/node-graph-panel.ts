@@ -1,6 +1,6 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
-import { drawnGraph, type GraphMode, type GraphOptions, type GraphVertex } from "../../state/monitor/graph-model";
+import { buildGraph, type GraphMode, type GraphOptions, type GraphVertex } from "../../state/monitor/graph-model";
 import type { NodeGraphState } from "../../state/monitor/node-graph";
 import { strings } from "../../strings";
 import { choice, tickBox } from "../../widgets/controls";
@@ -26,14 +26,14 @@ export class NodeGraphPanel implements Panel {
   private chosen: string | null = null;
 
   constructor(private readonly state: NodeGraphState) {
-    const words = strings.monitor.graph;
-    this.drawing = new NodeGraphDrawing(words.label, (vertex) => this.choose(vertex));
+    const texts = strings.monitor.graph;
+    this.drawing = new NodeGraphDrawing(texts.label, (vertex) => this.choose(vertex));
     const modes: [GraphMode, string][] = [
-      ["nodes", words.modes.nodes],
-      ["active", words.modes.active],
-      ["all", words.modes.all],
+      ["nodes", texts.modes.nodes],
+      ["active", texts.modes.active],
+      ["all", texts.modes.all],
     ];
-    const mode = choice(words.mode, modes, (value) => {
+    const mode = choice(texts.mode, modes, (value) => {
       this.options.mode = value;
       this.show();
     });
@@ -51,11 +51,11 @@ export class NodeGraphPanel implements Panel {
       "div",
       { class: "toolbar" },
       mode,
-      tick("tf", words.tf, words.tfHint),
-      tick("debug", words.debug, words.debugHint),
-      tick("grouped", words.groups, words.groupsHint),
+      tick("tf", texts.tf, texts.tfHint),
+      tick("debug", texts.debug, texts.debugHint),
+      tick("grouped", texts.groups, texts.groupsHint),
       h("span", { class: "spacer" }),
-      button(words.fitHint, () => this.drawing.fit(), "tool", icon("center"), words.fit),
+      button(texts.fitHint, () => this.drawing.fit(), "tool", icon("center"), texts.fit),
     );
     const stage = h("div", { class: "graph-stage" }, this.empty);
     stage.append(this.drawing.element);
@@ -66,7 +66,7 @@ export class NodeGraphPanel implements Panel {
   }
 
   private show(): void {
-    const graph = drawnGraph(this.state.graph, this.options);
+    const graph = buildGraph(this.state.graph, this.options);
     this.empty.hidden = graph.vertices.length > 0;
     this.drawing.show(graph);
     if (!graph.vertices.some(({ id }) => id === this.chosen)) this.chosen = null;
@@ -86,7 +86,7 @@ export class NodeGraphPanel implements Panel {
   }
 
   private showDetails(): void {
-    const words = strings.monitor.graph;
+    const texts = strings.monitor.graph;
     const [kind, name] = split(this.chosen);
     const { topics } = this.state.graph;
     const list = (text: string, names: readonly string[]): HTMLElement | null =>
@@ -96,17 +96,17 @@ export class NodeGraphPanel implements Panel {
     if (kind === "node") {
       const publishes = topics.filter((topic) => topic.publishers.includes(name)).map((topic) => topic.name);
       const subscribes = topics.filter((topic) => topic.subscribers.includes(name)).map((topic) => topic.name);
-      this.fill(h("strong", {}, name), list(words.publishes, publishes), list(words.subscribes, subscribes));
+      this.fill(h("strong", {}, name), list(texts.publishes, publishes), list(texts.subscribes, subscribes));
     } else if (kind === "topic") {
       const topic = topics.find((each) => each.name === name);
       const types = h("code", { class: "code" }, topic?.types.join(", ") ?? "");
       const title = h("strong", {}, name, " ", types);
       const ends = [
-        list(words.publishedBy, topic?.publishers ?? []),
-        list(words.subscribedBy, topic?.subscribers ?? []),
+        list(texts.publishedBy, topic?.publishers ?? []),
+        list(texts.subscribedBy, topic?.subscribers ?? []),
       ] as const;
       this.fill(title, ...ends);
-    } else this.fill(h("span", { class: "note" }, words.hint));
+    } else this.fill(h("span", { class: "note" }, texts.hint));
   }
 
   private fill(...children: readonly (HTMLElement | null)[]): void {

@@ -1,6 +1,6 @@
 import { h } from "../../dom";
 import type { ParameterKind, ParameterRow } from "../../protocol";
-import { parameterText, parameterValues } from "../../state/monitor/parameter-text";
+import { formatParameter, parseParameter } from "../../state/monitor/parameter-text";
 import { strings } from "../../strings";
 
 /**
@@ -18,7 +18,7 @@ export class ParameterLine {
     row: ParameterRow,
     private readonly set: (name: string, kind: ParameterKind, values: string[]) => void,
   ) {
-    const words = strings.monitor.parameters;
+    const texts = strings.monitor.parameters;
     this.row = row;
     this.editor = row.kind === "bool" ? h("input", { class: "check" }) : h("input", { class: "field" });
     this.editor.type = row.kind === "bool" ? "checkbox" : "text";
@@ -31,9 +31,9 @@ export class ParameterLine {
     }
     this.slider = this.makeSlider();
     this.bindInputs();
-    const range = row.minimum === "" ? "" : words.range(row.minimum, row.maximum, row.step);
+    const range = row.minimum === "" ? "" : texts.range(row.minimum, row.maximum, row.step);
     const hint = [row.description, row.constraints].filter((text) => text !== "").join(" ");
-    const notes = [words.kinds[row.kind], row.read_only ? words.readOnly : "", range].filter((text) => text !== "");
+    const notes = [texts.kinds[row.kind], row.read_only ? texts.readOnly : "", range].filter((text) => text !== "");
     this.element = h(
       "div",
       { class: "parameter", data: { parameter: row.name }, title: hint },
@@ -72,7 +72,7 @@ export class ParameterLine {
   }
 
   private editorText(): string {
-    return this.row.kind === "not_set" ? strings.monitor.parameters.notSet : parameterText(this.row.kind, this.row.values);
+    return this.row.kind === "not_set" ? strings.monitor.parameters.notSet : formatParameter(this.row.kind, this.row.values);
   }
 
   private makeSlider(): HTMLInputElement | null {
@@ -106,7 +106,7 @@ export class ParameterLine {
 
   private sendText(): void {
     if (this.editor.value === this.editorText()) return;
-    const values = parameterValues(this.row.kind, this.editor.value);
+    const values = parseParameter(this.row.kind, this.editor.value);
     if (values === null) this.showResult(false, strings.monitor.parameters.unreadable);
     else this.send(values);
   }

@@ -22,8 +22,8 @@ export class ParametersPanel implements Panel {
   private filter = "";
 
   constructor(private readonly state: ParametersState) {
-    const words = strings.monitor.parameters;
-    this.dump = button(words.dumpHint, () => state.dump(), "tool", icon("download"), words.dump);
+    const texts = strings.monitor.parameters;
+    this.dump = button(texts.dumpHint, () => state.dump(), "tool", icon("download"), texts.dump);
     const filter = textField(strings.monitor.filter, (text) => {
       this.filter = text.trim().toLowerCase();
       this.show();
@@ -79,7 +79,7 @@ export class ParametersPanel implements Panel {
   }
 
   private show(): void {
-    const words = strings.monitor.parameters;
+    const texts = strings.monitor.parameters;
     const { node, parameters } = this.state;
     this.dump.disabled = node === null;
     if (node !== this.shownNode) {
@@ -97,9 +97,9 @@ export class ParametersPanel implements Panel {
     });
     const same = elements.length === this.rows.childElementCount && elements.every((element, at) => element === this.rows.children[at]);
     if (!same) this.rows.replaceChildren(...elements);
-    if (node === null) this.showNote(words.choose);
-    else if (parameters === null) this.showNote(words.asking);
-    else this.showNote(parameters.error ?? (shown.length === 0 ? words.none : ""));
+    if (node === null) this.showNote(texts.choose);
+    else if (parameters === null) this.showNote(texts.asking);
+    else this.showNote(parameters.error ?? (shown.length === 0 ? texts.none : ""));
   }
 
   private showNote(text: string): void {

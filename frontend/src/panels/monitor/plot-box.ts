@@ -1,7 +1,7 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
-import { fieldText, valueText } from "../../state/monitor/field-text";
-import { csvText } from "../../state/monitor/plot-table";
+import { formatField, formatValue } from "../../state/monitor/field-text";
+import { formatCsv } from "../../state/monitor/plot-table";
 import type { Plot, PlotsState, Series } from "../../state/monitor/plots";
 import type { TopicsState } from "../../state/monitor/topics";
 import { strings } from "../../strings";
@@ -25,7 +25,7 @@ export class PlotBox {
     private readonly topics: TopicsState,
     readonly plot: Plot,
   ) {
-    const words = strings.monitor.plot;
+    const texts = strings.monitor.plot;
     this.chart = new PlotChart(state, plot, () => this.showValues());
     const head = h(
       "header",
@@ -33,11 +33,11 @@ export class PlotBox {
       this.legend,
       h("span", { class: "spacer" }),
       this.range,
-      button(words.addSeries, () => this.openPicker(), "tool bare", icon("plus")),
-      button(words.csvHintOf, () => this.saveCsv(), "tool bare", icon("download")),
-      button(words.removePlot, () => state.removePlot(plot), "tool bare", icon("close")),
+      button(texts.addSeries, () => this.openPicker(), "tool bare", icon("plus")),
+      button(texts.csvHintOf, () => this.saveCsv(), "tool bare", icon("download")),
+      button(texts.removePlot, () => state.removePlot(plot), "tool bare", icon("close")),
     );
-    const label = { label: words.diagram };
+    const label = { label: texts.diagram };
     this.element = h("section", { class: "plot", aria: label }, head, this.pickerBox, this.chart.element);
     this.element.addEventListener("dblclick", (event) => {
       if (this.chart.element.contains(event.target as Node)) state.setPaused(false);
@@ -47,19 +47,19 @@ export class PlotBox {
 
   /** Updates after series, errors or settings have changed. */
   show(): void {
-    const words = strings.monitor.plot;
+    const texts = strings.monitor.plot;
     this.values.clear();
     const chips = this.plot.series.map((series, index) => {
       const value = h("output", { class: "plot-value" });
       this.values.set(series, value);
-      const name = fieldText(series);
+      const name = formatField(series);
       const mark = h("span", { class: "plot-mark" });
       mark.style.background = seriesColor(index);
-      const remove = button(words.removeSeries(name), () => this.state.removeSeries(this.plot, series), "tool bare", icon("close"));
+      const remove = button(texts.removeSeries(name), () => this.state.removeSeries(this.plot, series), "tool bare", icon("close"));
       const hint = series.error ?? name;
       return h("span", { class: series.error === null ? "chip" : "chip wrong", title: hint }, mark, name, value, remove);
     });
-    if (!this.picker && chips.length === 0) chips.push(h("span", { class: "note" }, words.empty));
+    if (!this.picker && chips.length === 0) chips.push(h("span", { class: "note" }, texts.empty));
     this.legend.replaceChildren(...chips);
     this.showRange();
     this.draw();
@@ -98,27 +98,27 @@ export class PlotBox {
       const output = this.values.get(series);
       const { atCursor } = this.chart;
       const value = atCursor ? (atCursor[index] ?? null) : series.buffer.lastValue;
-      const text = series.error ?? valueText(value);
+      const text = series.error ?? formatValue(value);
       if (output && output.textContent !== text) output.textContent = text;
     });
   }
 
   private showRange(): void {
-    const words = strings.monitor.plot;
+    const texts = strings.monitor.plot;
     const { range } = this.plot;
     const toggle = button(
-      words.rangeHint,
+      texts.rangeHint,
       () => this.state.setRange(this.plot, range ? null : this.shownRange()),
       range ? "tool on" : "tool",
-      range ? words.fixed : words.auto,
+      range ? texts.fixed : texts.auto,
     );
     toggle.setAttribute("aria-pressed", String(range !== null));
     this.range.replaceChildren(toggle);
     if (!range) return;
     const [low, high] = range;
     this.range.append(
-      numberField(words.lowest, low, [-Infinity, high], (value) => this.state.setRange(this.plot, [value, high])),
-      numberField(words.highest, high, [low, Infinity], (value) => this.state.setRange(this.plot, [low, value])),
+      numberField(texts.lowest, low, [-Infinity, high], (value) => this.state.setRange(this.plot, [value, high])),
+      numberField(texts.highest, high, [low, Infinity], (value) => this.state.setRange(this.plot, [low, value])),
     );
   }
 
@@ -139,7 +139,7 @@ export class PlotBox {
     const { window: shown, source } = this.state;
     const { series } = this.plot;
     if (!shown) return;
-    const text = csvText(series.map(fieldText), series.map((each) => each.buffer), source, ...shown);
+    const text = formatCsv(series.map(formatField), series.map((each) => each.buffer), source, ...shown);
     saveText("plot.csv", text, "text/csv");
   }
 }

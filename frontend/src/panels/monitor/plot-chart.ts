@@ -1,7 +1,7 @@
 import type uPlot from "uplot";
 import { h } from "../../dom";
-import { valueText } from "../../state/monitor/field-text";
-import { plotTable } from "../../state/monitor/plot-table";
+import { formatValue } from "../../state/monitor/field-text";
+import { tabulatePlot } from "../../state/monitor/plot-table";
 import type { Plot, PlotsState } from "../../state/monitor/plots";
 
 const COLORS = 8;
@@ -47,7 +47,7 @@ export class PlotChart {
     if (!chart) return;
     const [from, to] = state.window ?? [0, state.seconds];
     const columns = Math.max(16, Math.round(width - Y_AXIS_PX));
-    const table = plotTable(plot.series.map((each) => each.buffer), state.source, from, to, columns);
+    const table = tabulatePlot(plot.series.map((each) => each.buffer), state.source, from, to, columns);
     chart.batch(() => {
       chart.setData(table, false);
       chart.setScale("x", { min: from, max: to });
@@ -112,7 +112,7 @@ export class PlotChart {
         ],
         axes: [
           { ...axis, size: 24, space: 70, values: (_, times) => times.map(timeText) },
-          { ...axis, size: Y_AXIS_PX, values: (_, values) => values.map((value) => valueText(value)) },
+          { ...axis, size: Y_AXIS_PX, values: (_, values) => values.map((value) => formatValue(value)) },
         ],
         hooks: {
           setCursor: [(chart) => this.readCursor(chart)],
@@ -147,7 +147,7 @@ export class PlotChart {
 }
 
 /** Returns the minimum and maximum of a table, with a margin; equal values are centered. */
-function rangeOf([, ...columns]: ReturnType<typeof plotTable>): [number, number] {
+function rangeOf([, ...columns]: ReturnType<typeof tabulatePlot>): [number, number] {
   let [low, high] = [Infinity, -Infinity];
   for (const column of columns) {
     for (const value of column) {

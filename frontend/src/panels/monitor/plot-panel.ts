@@ -25,24 +25,24 @@ export class PlotPanel implements Panel {
     private readonly state: PlotsState,
     private readonly topics: TopicsState,
   ) {
-    const words = strings.monitor.plot;
-    this.pause = button(words.pauseHint, () => state.setPaused(!state.paused), "tool", strings.monitor.pause);
-    const seconds = WINDOWS.map((count) => [String(count), words.seconds(count)] as const);
-    this.seconds = choice(words.windowHint, seconds, (count) => state.setSeconds(Number(count)));
+    const texts = strings.monitor.plot;
+    this.pause = button(texts.pauseHint, () => state.setPaused(!state.isPaused), "tool", strings.monitor.pause);
+    const seconds = WINDOWS.map((count) => [String(count), texts.seconds(count)] as const);
+    this.seconds = choice(texts.windowHint, seconds, (count) => state.setSeconds(Number(count)));
     const sources: [TimeSource, string][] = [
-      ["received", words.sources.received],
-      ["stamp", words.sources.stamp],
+      ["received", texts.sources.received],
+      ["stamp", texts.sources.stamp],
     ];
-    this.source = choice(words.sourceHint, sources, (source) => state.setSource(source));
+    this.source = choice(texts.sourceHint, sources, (source) => state.setSource(source));
     const bar = h(
       "div",
       { class: "toolbar" },
-      button(words.addPlotHint, () => this.add(), "tool", icon("plus"), words.addPlot),
+      button(texts.addPlotHint, () => this.add(), "tool", icon("plus"), texts.addPlot),
       this.pause,
-      button(words.clearHint, () => state.clear(), "tool", icon("clear"), strings.monitor.clear),
+      button(texts.clearHint, () => state.clear(), "tool", icon("clear"), strings.monitor.clear),
       h("span", { class: "spacer" }),
-      h("label", { class: "named" }, words.window, this.seconds),
-      h("label", { class: "named" }, words.source, this.source),
+      h("label", { class: "named" }, texts.window, this.seconds),
+      h("label", { class: "named" }, texts.source, this.source),
     );
     this.element = h("div", { class: "panel monitor" }, bar, this.list);
     state.changed.on(() => this.show());
@@ -68,7 +68,7 @@ export class PlotPanel implements Panel {
   }
 
   private show(): void {
-    const { plots, paused } = this.state;
+    const { plots, isPaused } = this.state;
     for (const [plot, box] of this.boxes) {
       if (plots.includes(plot)) {
         box.show();
@@ -84,10 +84,10 @@ export class PlotPanel implements Panel {
       this.boxes.set(plot, box);
       this.list.append(box.element);
     }
-    const words = strings.monitor;
-    this.pause.replaceChildren(icon(paused ? "play" : "pause"), paused ? words.resume : words.pause);
-    this.pause.title = paused ? words.plot.resumeHint : words.plot.pauseHint;
-    this.pause.classList.toggle("on", paused);
+    const texts = strings.monitor;
+    this.pause.replaceChildren(icon(isPaused ? "play" : "pause"), isPaused ? texts.resume : texts.pause);
+    this.pause.title = isPaused ? texts.plot.resumeHint : texts.plot.pauseHint;
+    this.pause.classList.toggle("on", isPaused);
     this.seconds.value = String(this.state.seconds);
     this.source.value = this.state.source;
   }

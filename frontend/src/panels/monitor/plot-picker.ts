@@ -1,6 +1,6 @@
 import { h } from "../../dom";
 import type { TopicFields } from "../../protocol";
-import { fieldText, parseField, type FieldName } from "../../state/monitor/field-text";
+import { formatField, parseField, type FieldName } from "../../state/monitor/field-text";
 import type { PlotsState } from "../../state/monitor/plots";
 import type { TopicsState } from "../../state/monitor/topics";
 import { strings } from "../../strings";
@@ -31,9 +31,9 @@ export class PlotPicker {
     private readonly chosen: (field: FieldName) => void,
     private readonly closed: () => void,
   ) {
-    const words = strings.monitor.plot;
-    this.input.placeholder = words.choose;
-    for (const each of [this.input, this.list]) each.setAttribute("aria-label", words.choose);
+    const texts = strings.monitor.plot;
+    this.input.placeholder = texts.choose;
+    for (const each of [this.input, this.list]) each.setAttribute("aria-label", texts.choose);
     this.list.id = "picker-list";
     this.input.setAttribute("aria-controls", this.list.id);
     this.input.setAttribute("aria-expanded", "true");
@@ -92,7 +92,7 @@ export class PlotPicker {
       this.asked === null
         ? this.topics.topics.map(({ name, types }) => ({ text: name, note: types.join(", "), isField: false }))
         : (this.fields?.fields ?? []).map(({ path, kind }) => ({
-            text: fieldText({ topic: this.asked ?? "", path }),
+            text: formatField({ topic: this.asked ?? "", path }),
             note: kind,
             isField: true,
           }));
@@ -102,7 +102,7 @@ export class PlotPicker {
   }
 
   private show(): void {
-    const words = strings.monitor.plot;
+    const texts = strings.monitor.plot;
     const rows = this.offers.map((offer, index) => {
       const row = h("li", { role: "option" }, h("span", {}, offer.text), h("span", { class: "note" }, offer.note));
       row.id = `picker-${index}`;
@@ -110,7 +110,7 @@ export class PlotPicker {
       row.addEventListener("click", () => this.choose(offer));
       return row;
     });
-    const nothing = this.asked === null ? (this.topics.known ? words.noTopics : words.asking) : this.fields ? (this.fields.error ?? words.noFields) : words.waiting;
+    const nothing = this.asked === null ? (this.topics.isKnown ? texts.noTopics : texts.asking) : this.fields ? (this.fields.error ?? texts.noFields) : texts.waiting;
     this.list.replaceChildren(...(rows.length > 0 ? rows : [h("li", { class: "note", role: "option", aria: { disabled: "true" } }, nothing)]));
     this.input.setAttribute("aria-activedescendant", rows.length > 0 ? `picker-${this.active}` : "");
     rows[this.active]?.scrollIntoView({ block: "nearest" });

@@ -6,7 +6,7 @@ import { showNotice } from "../../widgets/dialog";
 /** Adds the obvious display of a topic, unless an enabled display shows the topic already. */
 export function showTopic(session: Session, topic: string): void {
   const { configuration, displays } = session;
-  if (displays.displays.some(({ enabled, rows }) => enabled && rows.text("", "Topic") === topic)) return;
+  if (displays.displays.some(({ isEnabled, rows }) => isEnabled && rows.text("", "Topic") === topic)) return;
   const stop = configuration.choicesArrived.on(() => {
     stop();
     const choice = configuration.choices?.topics.find((each) => each.topic === topic && each.classes.length > 0);

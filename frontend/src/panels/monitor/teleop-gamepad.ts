@@ -1,5 +1,5 @@
 import type { TeleopState } from "../../state/monitor/teleop";
-import { STILL, stickDeflection } from "../../state/monitor/teleop-keys";
+import { STILL, computeDeflection } from "../../state/monitor/teleop-keys";
 
 /** LB and RB in the standard layout; one of them must be held to drive. */
 const DEAD_MAN_BUTTONS = [4, 5];
@@ -32,7 +32,7 @@ export class TeleopGamepad {
       this.nameChanged(name);
     }
     const held = pad !== null && DEAD_MAN_BUTTONS.some((button) => pad.buttons[button]?.pressed === true);
-    const axis = (index: number): number => stickDeflection(pad?.axes[index] ?? 0);
+    const axis = (index: number): number => computeDeflection(pad?.axes[index] ?? 0);
     const motion = held ? { x: -axis(1), y: -axis(2), z: 0, turn: -axis(0) } : STILL;
     this.state.move("gamepad", { ...motion, x: motion.x || 0, y: motion.y || 0, turn: motion.turn || 0 });
   }

@@ -13,10 +13,10 @@ export class TeleopPad {
   private pointer: number | null = null;
 
   constructor(private readonly state: TeleopState) {
-    const words = strings.monitor.teleop;
+    const texts = strings.monitor.teleop;
     this.element = h(
       "div",
-      { class: "pad", tabIndex: 0, role: "application", title: words.keys, aria: { label: words.pad } },
+      { class: "pad", tabIndex: 0, role: "application", title: texts.keys, aria: { label: texts.pad } },
       h("div", { class: "pad-cross" }),
       this.knob,
     );

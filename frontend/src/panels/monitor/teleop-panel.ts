@@ -1,7 +1,7 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
 import type { TwistKind } from "../../protocol";
-import { valueText } from "../../state/monitor/field-text";
+import { formatValue } from "../../state/monitor/field-text";
 import type { TeleopState } from "../../state/monitor/teleop";
 import { strings } from "../../strings";
 import { choice, numberField, tickBox } from "../../widgets/controls";
@@ -32,15 +32,15 @@ export class TeleopPanel implements Panel {
   private isVisible = false;
 
   constructor(private readonly state: TeleopState) {
-    const words = strings.monitor.teleop;
+    const texts = strings.monitor.teleop;
     const { settings } = state;
     this.pad = new TeleopPad(state);
-    this.gamepad = new TeleopGamepad(state, (name) => (this.gamepadName.textContent = name ?? words.noGamepad));
+    this.gamepad = new TeleopGamepad(state, (name) => (this.gamepadName.textContent = name ?? texts.noGamepad));
     this.limits = {
-      linear: numberField(words.linearHint, settings.linear, [0, FASTEST], (linear) => state.configure({ linear })),
-      angular: numberField(words.angularHint, settings.angular, [0, FASTEST], (angular) => state.configure({ angular })),
+      linear: numberField(texts.linearHint, settings.linear, [0, FASTEST], (linear) => state.configure({ linear })),
+      angular: numberField(texts.angularHint, settings.angular, [0, FASTEST], (angular) => state.configure({ angular })),
     };
-    const stop = button(words.stopHint, () => this.pad.letGo(), "tool stop", icon("stop"), words.stop);
+    const stop = button(texts.stopHint, () => this.pad.letGo(), "tool stop", icon("stop"), texts.stop);
     const focus = h("div", { class: "note teleop-focus" }, this.focus.active, this.focus.inactive);
     const side = h("div", { class: "teleop-side" }, this.velocity, stop, focus);
     this.element = h(
@@ -50,7 +50,7 @@ export class TeleopPanel implements Panel {
         "div",
         { class: "scroll teleop" },
         h("div", { class: "teleop-main" }, this.pad.element, side),
-        h("p", { class: "note" }, words.keys),
+        h("p", { class: "note" }, texts.keys),
         this.aim,
         this.form(),
       ),
@@ -61,60 +61,60 @@ export class TeleopPanel implements Panel {
       this.isVisible = seen;
       if (!seen) this.pad.letGo();
       state.setOpen(seen);
-      this.gamepad.run(seen && state.settings.gamepad);
+      this.gamepad.run(seen && state.settings.usesGamepad);
     });
     this.show();
     this.showFocus();
   }
 
   private form(): HTMLElement {
-    const words = strings.monitor.teleop;
+    const texts = strings.monitor.teleop;
     const { settings } = this.state;
-    const topic = h("input", { class: "field", aria: { label: words.topic } });
-    const frame = h("input", { class: "field", title: words.frameHint, aria: { label: words.frameHint } });
+    const topic = h("input", { class: "field", aria: { label: texts.topic } });
+    const frame = h("input", { class: "field", title: texts.frameHint, aria: { label: texts.frameHint } });
     topic.value = settings.topic;
     frame.value = settings.frameId;
     topic.addEventListener("change", () => this.state.configure({ topic: topic.value.trim() }));
     frame.addEventListener("change", () => this.state.configure({ frameId: frame.value.trim() }));
-    const kinds = (["auto", "Twist", "TwistStamped"] as const).map((kind) => [kind, words.types[kind]] as const);
-    const kind = choice<TwistKind>(words.type, kinds, (chosen) => this.state.configure({ kind: chosen }));
+    const kinds = (["auto", "Twist", "TwistStamped"] as const).map((kind) => [kind, texts.types[kind]] as const);
+    const kind = choice<TwistKind>(texts.type, kinds, (chosen) => this.state.configure({ kind: chosen }));
     kind.value = settings.kind;
-    const rates = RATES.map((rate) => [String(rate), words.hertz(rate)] as const);
-    const rate = choice(words.rateHint, rates, (chosen) => this.state.configure({ rate: Number(chosen) }));
+    const rates = RATES.map((rate) => [String(rate), texts.hertz(rate)] as const);
+    const rate = choice(texts.rateHint, rates, (chosen) => this.state.configure({ rate: Number(chosen) }));
     rate.value = String(settings.rate);
-    const gamepad = tickBox(words.gamepad, words.gamepadHint, (ticked) => {
-      this.state.configure({ gamepad: ticked });
+    const gamepad = tickBox(texts.gamepad, texts.gamepadHint, (ticked) => {
+      this.state.configure({ usesGamepad: ticked });
       this.gamepad.run(ticked && this.isVisible);
       if (!ticked) this.gamepadName.textContent = "";
     });
-    gamepad.box.checked = settings.gamepad;
+    gamepad.box.checked = settings.usesGamepad;
     const row = (text: string, ...parts: readonly (HTMLElement | string)[]): HTMLElement =>
       h("label", { class: "teleop-row" }, h("span", { class: "toolbar-label" }, text), h("span", {}, ...parts));
     return h(
       "div",
       { class: "teleop-form" },
-      row(words.linear, this.limits.linear, h("span", { class: "unit" }, words.linearUnit)),
-      row(words.angular, this.limits.angular, h("span", { class: "unit" }, words.angularUnit)),
-      row(words.topic, topic),
-      row(words.type, kind),
-      row(words.frame, frame),
-      row(words.rate, rate),
+      row(texts.linear, this.limits.linear, h("span", { class: "unit" }, texts.linearUnit)),
+      row(texts.angular, this.limits.angular, h("span", { class: "unit" }, texts.angularUnit)),
+      row(texts.topic, topic),
+      row(texts.type, kind),
+      row(texts.frame, frame),
+      row(texts.rate, rate),
       h("div", { class: "teleop-row" }, gamepad, this.gamepadName),
     );
   }
 
   private show(): void {
-    const words = strings.monitor.teleop;
+    const texts = strings.monitor.teleop;
     const { aim, settings, motion } = this.state;
     const { linear, angular } = settings;
     if (document.activeElement !== this.limits.linear) this.limits.linear.value = String(linear);
     if (document.activeElement !== this.limits.angular) this.limits.angular.value = String(angular);
-    this.aim.textContent = aim === null ? "" : (aim.error ?? `${aim.topic}: ${words.listeners(aim.subscribers, aim.kind)}`);
+    this.aim.textContent = aim === null ? "" : (aim.error ?? `${aim.topic}: ${texts.listeners(aim.subscribers, aim.kind)}`);
     this.aim.classList.toggle("wrong", (aim?.error ?? null) !== null);
-    const parts = [`${valueText(motion.x * linear)} m/s`];
-    if (motion.y !== 0) parts.push(`y ${valueText(motion.y * linear)} m/s`);
-    if (motion.z !== 0) parts.push(`z ${valueText(motion.z * linear)} m/s`);
-    this.velocity.replaceChildren(...[...parts, `${valueText(motion.turn * angular)} rad/s`].map((text) => h("div", {}, text)));
+    const parts = [`${formatValue(motion.x * linear)} m/s`];
+    if (motion.y !== 0) parts.push(`y ${formatValue(motion.y * linear)} m/s`);
+    if (motion.z !== 0) parts.push(`z ${formatValue(motion.z * linear)} m/s`);
+    this.velocity.replaceChildren(...[...parts, `${formatValue(motion.turn * angular)} rad/s`].map((text) => h("div", {}, text)));
   }
 
   private showFocus(): void {

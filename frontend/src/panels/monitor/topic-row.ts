@@ -1,7 +1,7 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
 import type { TopicMessage, TopicRow, TopicTraffic } from "../../protocol";
-import { bandwidthText, clockText, rateText } from "../../state/monitor/figure-text";
+import { formatBandwidth, formatClock, formatRate } from "../../state/monitor/figure-text";
 import { strings } from "../../strings";
 import { MessageTree } from "./message-tree";
 
@@ -28,11 +28,11 @@ export class TopicLine {
     readonly name: string,
     events: TopicRowEvents,
   ) {
-    const words = strings.monitor.topics;
+    const texts = strings.monitor.topics;
     this.box.type = "checkbox";
-    this.box.setAttribute("aria-label", words.measure(name));
+    this.box.setAttribute("aria-label", texts.measure(name));
     this.box.addEventListener("change", () => events.measured(name, this.box.checked));
-    this.expander = button(words.open(name), () => events.opened(name, this.body.hidden === true), "expander", icon("chevron"));
+    this.expander = button(texts.open(name), () => events.opened(name, this.body.hidden === true), "expander", icon("chevron"));
     this.tree = new MessageTree((path) => events.plotted(name, path));
     this.cells = {
       type: h("td", { class: "note" }),
@@ -41,7 +41,7 @@ export class TopicLine {
       rate: h("td", { class: "numeric" }),
       bandwidth: h("td", { class: "numeric" }),
     };
-    const label = button(words.show, () => events.shown(name), "text-link", name);
+    const label = button(texts.show, () => events.shown(name), "text-link", name);
     const title = h("span", { class: "topic-title" }, this.box, this.expander, label);
     this.head = h("tr", { data: { topic: name } }, h("td", { title: name }, title), ...Object.values(this.cells));
     const inside = h("td", {}, this.received, this.tree.element);
@@ -68,14 +68,14 @@ export class TopicLine {
   showTraffic(traffic: TopicTraffic | undefined): void {
     const { rate, bandwidth } = this.cells;
     const error = traffic?.error ?? null;
-    rate.textContent = typeof traffic?.rate !== "number" ? "" : strings.monitor.topics.hertz(rateText(traffic.rate));
-    bandwidth.textContent = typeof traffic?.bandwidth !== "number" ? "" : bandwidthText(traffic.bandwidth);
+    rate.textContent = typeof traffic?.rate !== "number" ? "" : strings.monitor.topics.hertz(formatRate(traffic.rate));
+    bandwidth.textContent = typeof traffic?.bandwidth !== "number" ? "" : formatBandwidth(traffic.bandwidth);
     this.head.classList.toggle("wrong", error !== null);
     if (error !== null) this.received.textContent = error;
   }
 
   showMessage({ received, fields }: TopicMessage): void {
-    this.received.textContent = strings.monitor.topics.ago(clockText(received));
+    this.received.textContent = strings.monitor.topics.ago(formatClock(received));
     this.tree.show(fields);
   }
 }

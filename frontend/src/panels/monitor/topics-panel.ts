@@ -25,12 +25,12 @@ export class TopicsPanel implements Panel {
     private readonly plot: (topic: string, path: string) => void,
     private readonly showInScene: (topic: string) => void,
   ) {
-    const words = strings.monitor.topics;
+    const texts = strings.monitor.topics;
     const filter = textField(strings.monitor.filter, (text) => {
       this.filter = text.trim().toLowerCase();
       this.show();
     });
-    const hidden = tickBox(words.hidden, words.hiddenHint, (ticked) => {
+    const hidden = tickBox(texts.hidden, texts.hiddenHint, (ticked) => {
       this.showsHidden = ticked;
       this.show();
     });
@@ -46,12 +46,12 @@ export class TopicsPanel implements Panel {
         h(
           "tr",
           {},
-          head(words.name, words.measureHint, false),
-          head(words.type, words.type, false),
-          head(words.publishers, words.publishersHint),
-          head(words.subscribers, words.subscribersHint),
-          head(words.rate),
-          head(words.bandwidth),
+          head(texts.name, texts.measureHint, false),
+          head(texts.type, texts.type, false),
+          head(texts.publishers, texts.publishersHint),
+          head(texts.subscribers, texts.subscribersHint),
+          head(texts.rate),
+          head(texts.bandwidth),
         ),
       ),
       this.body,

@@ -23,17 +23,17 @@ export class ArgumentFormCard {
   }
 
   private show(form: ArgumentForm): void {
-    const words = strings.scene.arguments;
+    const texts = strings.scene.arguments;
     const { file, names, values, choices } = form;
     this.element.hidden = file === "";
     if (file === "") return;
     this.fields = new Map(names.map((name) => [name, field(name, values[name] ?? "")]));
-    const submit = h("button", { class: "tool framed primary" }, words.show);
+    const submit = h("button", { class: "tool framed primary" }, texts.show);
     submit.type = "submit";
     const rows = [...this.fields].map(([name, input]) => h("label", { class: "argument-row" }, h("span", {}, name), input));
     this.element.replaceChildren(
-      h("h2", {}, words.title(file)),
-      h("p", {}, choices.length > 0 ? words.known : words.unknown),
+      h("h2", {}, texts.title(file)),
+      h("p", {}, choices.length > 0 ? texts.known : texts.unknown),
       ...(choices.length > 1 ? [this.choice(form)] : []),
       h("div", { class: "argument-rows" }, ...rows),
       h("footer", {}, submit),
@@ -43,8 +43,8 @@ export class ArgumentFormCard {
 
   /** Returns a choice of the argument sets found in launch files; choosing one fills the fields. */
   private choice({ choices, names }: ArgumentForm): HTMLElement {
-    const words = strings.scene.arguments;
-    const select = h("select", { class: "choice", aria: { label: words.choose } });
+    const texts = strings.scene.arguments;
+    const select = h("select", { class: "choice", aria: { label: texts.choose } });
     select.append(...choices.map(({ label }, index) => new Option(label, String(index))));
     select.addEventListener("change", () => {
       const values = choices[Number(select.value)]?.values ?? {};
@@ -53,7 +53,7 @@ export class ArgumentFormCard {
         if (input) input.value = values[name] ?? "";
       }
     });
-    return h("label", { class: "argument-row" }, h("span", {}, words.choose), select);
+    return h("label", { class: "argument-row" }, h("span", {}, texts.choose), select);
   }
 
   /** Sends the values. Empty fields are omitted: the file then uses its default, or reports the missing argument. */

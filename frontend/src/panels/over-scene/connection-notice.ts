@@ -13,14 +13,14 @@ export class ConnectionNotice {
 
   private update(): void {
     const { state } = this.connection;
-    const words = strings.connection;
+    const texts = strings.connection;
     this.element.hidden = state === "connecting" || state === "connected";
     this.element.dataset["state"] = state;
     this.element.replaceChildren(
       h("span", { class: "pulse" }),
-      h("strong", {}, words[state]),
-      state === "ended" ? h("span", {}, words.endedHint) : "",
-      state === "refused" ? h("span", {}, words.refusedHint) : "",
+      h("strong", {}, texts[state]),
+      state === "ended" ? h("span", {}, texts.endedHint) : "",
+      state === "refused" ? h("span", {}, texts.refusedHint) : "",
     );
   }
 }

@@ -45,11 +45,11 @@ export class DiagnosticsBanner {
     const first = errors[0] ?? all.find(({ code, message }) => EXPLAINING_CODES.has(code) && !this.closed.has(message));
     this.element.hidden = !first;
     if (!first) return;
-    const words = strings.diagnostics;
+    const texts = strings.diagnostics;
     const isError = first.severity === "error";
     this.element.classList.toggle("warning", !isError);
     const place = first.file === null ? "" : placeText(shortPath(first.file, 2), first.line, first.column);
-    const more = errors.length > 1 ? ` ${words.more(errors.length - 1)}` : "";
+    const more = errors.length > 1 ? ` ${texts.more(errors.length - 1)}` : "";
     this.element.replaceChildren(
       icon(LEVEL_ICONS[first.severity], `level-${first.severity}`),
       h(
@@ -57,18 +57,18 @@ export class DiagnosticsBanner {
         { class: "banner-text" },
         h("strong", {}, first.message + more),
         h("span", {}, place ? h("span", { class: "place" }, place) : null, first.hints[0] ?? ""),
-        isError && this.keepsRobot(first) ? h("span", {}, words.lastGood) : null,
+        isError && this.keepsRobot(first) ? h("span", {}, texts.lastGood) : null,
       ),
       ...(first.code === SLOW_CODE && this.imageDisplays.length > 0
-        ? [button(words.withoutImages, () => this.switchOffImages(), "tool", words.withoutImages)]
+        ? [button(texts.withoutImages, () => this.switchOffImages(), "tool", texts.withoutImages)]
         : []),
-      button(words.show, this.showAll, "tool", words.show),
-      ...(isError ? [] : [button(words.close, () => this.close(first), "tool", icon("close"))]),
+      button(texts.show, this.showAll, "tool", texts.show),
+      ...(isError ? [] : [button(texts.close, () => this.close(first), "tool", icon("close"))]),
     );
   }
 
   private get imageDisplays(): readonly DisplayState[] {
-    return this.session.displays.displays.filter(({ cls, enabled }) => enabled && IMAGE_DISPLAYS.test(cls));
+    return this.session.displays.displays.filter(({ cls, isEnabled }) => isEnabled && IMAGE_DISPLAYS.test(cls));
   }
 
   private switchOffImages(): void {

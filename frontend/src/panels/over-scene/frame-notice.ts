@@ -54,17 +54,17 @@ export class FrameNotice {
   }
 
   private show(): void {
-    const words = strings.scene.frame;
+    const texts = strings.scene.frame;
     const root = largestRoot(this.session.frames);
     if (this.missingFrame === null || root === null) return;
     const close = button(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", icon("close"));
     const { robotTopic } = this;
     const adds = robotTopic !== null && !this.session.displays.displays.some(({ cls }) => cls === ROBOT_MODEL);
-    const label = adds ? words.useWithRobot(root) : words.use(root);
+    const label = adds ? texts.useWithRobot(root) : texts.use(root);
     const use = button(label, () => this.use(root, adds ? robotTopic.topic : null), "tool framed primary", label);
     this.element.replaceChildren(
-      h("header", {}, h("strong", {}, words.missing(this.missingFrame)), close),
-      h("div", {}, words.hint),
+      h("header", {}, h("strong", {}, texts.missing(this.missingFrame)), close),
+      h("div", {}, texts.hint),
       h("div", { class: "notice-choices" }, use),
     );
     this.element.hidden = false;

@@ -11,10 +11,10 @@ export class GoalNotice {
   readonly element = h("div", { class: "line-notice failed", role: "alert", data: { notice: "goal" } });
 
   constructor(navigation: NavigationState) {
-    const words = strings.monitor.navigation;
+    const texts = strings.monitor.navigation;
     const reason = h("div");
     const close = button(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", icon("close"));
-    this.element.append(h("header", {}, h("strong", {}, words.failed), close), reason);
+    this.element.append(h("header", {}, h("strong", {}, texts.failed), close), reason);
     this.element.hidden = true;
     navigation.outcomeChanged.on((outcome) => {
       reason.textContent = outcome.reason;

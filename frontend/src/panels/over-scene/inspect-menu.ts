@@ -28,8 +28,8 @@ export class InspectMenu {
     private readonly session: Session,
     private readonly resized: () => void,
   ) {
-    const words = strings.description.inspect;
-    this.open = button(words.hint, () => this.toggle(this.card.hidden !== false), "tool", icon("inspect"), words.button);
+    const texts = strings.description.inspect;
+    this.open = button(texts.hint, () => this.toggle(this.card.hidden !== false), "tool", icon("inspect"), texts.button);
     this.card.append(...CHOICES.map((choice) => this.choice(choice)), this.depthRow(), this.scaleRow(), this.facts);
     this.element.append(this.open, this.card);
     const { inspect, description, robotChanged } = session;
@@ -56,12 +56,12 @@ export class InspectMenu {
   }
 
   private choice(what: keyof Inspected): HTMLElement {
-    const words = strings.description.inspect;
+    const texts = strings.description.inspect;
     const box = h("input", { class: "check" });
     box.type = "checkbox";
     box.addEventListener("change", () => this.session.inspect.set(what, box.checked));
     this.boxes.set(what, box);
-    const label = h("label", { title: words[`${what}Hint`], data: { inspect: what } }, box, words[what]);
+    const label = h("label", { title: texts[`${what}Hint`], data: { inspect: what } }, box, texts[what]);
     return label;
   }
 
@@ -71,7 +71,7 @@ export class InspectMenu {
     this.depth.min = "0";
     this.depth.addEventListener("input", () => {
       const level = Number(this.depth.value);
-      inspect.deepest = level >= Number(this.depth.max) ? null : level;
+      inspect.maxDepth = level >= Number(this.depth.max) ? null : level;
     });
     return h("label", { class: "inspect-depth" }, strings.description.inspect.depth, this.depth, this.depthText);
   }
@@ -91,10 +91,10 @@ export class InspectMenu {
     const model = currentModel(this.session);
     for (const [what, box] of this.boxes) box.checked = inspect.current[what];
     this.open.classList.toggle("on", inspect.isActive);
-    const deepest = model?.deepest ?? 0;
+    const deepest = model?.maxDepth ?? 0;
     this.depth.parentElement?.toggleAttribute("hidden", !inspect.current.frames);
     this.depth.max = String(deepest);
-    this.depth.value = String(inspect.deepest ?? deepest);
+    this.depth.value = String(inspect.maxDepth ?? deepest);
     this.depthText.textContent = this.depth.value;
     this.scale.value = String(Math.log2(inspect.scale));
     for (const slider of [this.depth, this.scale]) {
@@ -115,18 +115,18 @@ export class InspectMenu {
 
   /** Returns the reasons why enabled choices show nothing. */
   private missing(): string[] {
-    const words = strings.description.inspect;
+    const texts = strings.description.inspect;
     const { robot, inspect } = this.session;
     if (!robot) return [];
     const { contrast, joints } = inspect.current;
     const found: string[] = [];
-    if (joints && robot.joints.every(({ kind }) => kind === "fixed")) found.push(words.noJoints);
-    if (contrast && robot.links.every(({ collisions }) => collisions.length === 0)) found.push(words.noCollisions);
+    if (joints && robot.joints.every(({ kind }) => kind === "fixed")) found.push(texts.noJoints);
+    if (contrast && robot.links.every(({ collisions }) => collisions.length === 0)) found.push(texts.noCollisions);
     return found;
   }
 
   private massFacts(): HTMLElement[] {
-    const words = strings.description.inspect;
+    const texts = strings.description.inspect;
     const model = currentModel(this.session);
     const { centers, boxes, ellipsoids } = this.session.inspect.current;
     if (!model || !(centers || boxes || ellipsoids)) return [];
@@ -134,15 +134,15 @@ export class InspectMenu {
     const findings = this.session.description.findingsOf(model.display);
     const links = new Set(findings.map(({ link }) => link));
     const weightless = links.size === 0 && [...model.links.values()].every(({ inertia }) => inertia === null);
-    if (weightless) return [h("div", { class: "missing" }, words.noInertials)];
+    if (weightless) return [h("div", { class: "missing" }, texts.noInertials)];
     const rows = findings.map(({ link, code, message, hint }) => {
       const name = { display: model.display, kind: "link" as const, name: link };
       const row = button(hint || message, () => this.session.focus.select(name), "finding", h("strong", {}, link), ` ${message} `, h("code", { class: "code" }, code));
       return h("li", { data: { link } }, row);
     });
     return [
-      h("div", {}, words.mass(formatGeneral(mass))),
-      h("div", {}, links.size > 0 ? words.implausible(links.size) : words.plausible),
+      h("div", {}, texts.mass(formatGeneral(mass))),
+      h("div", {}, links.size > 0 ? texts.implausible(links.size) : texts.plausible),
       h("ul", {}, ...rows),
     ];
   }

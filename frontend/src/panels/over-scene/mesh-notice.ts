@@ -16,18 +16,18 @@ export class MeshNotice {
   }
 
   private update(): void {
-    const words = strings.meshes.progress;
+    const texts = strings.meshes.progress;
     const { loads } = this.progress;
     this.element.hidden = loads.length === 0;
     const lines = loads.slice(0, MAX_LINES).map((load) => h("div", {}, h("b", {}, load.name), ` ${progressText(load)}`));
-    const more = loads.length > MAX_LINES ? h("div", {}, words.more(String(loads.length - MAX_LINES))) : "";
-    this.element.replaceChildren(h("strong", {}, words.title), ...lines, more);
+    const more = loads.length > MAX_LINES ? h("div", {}, texts.more(String(loads.length - MAX_LINES))) : "";
+    this.element.replaceChildren(h("strong", {}, texts.title), ...lines, more);
   }
 }
 
 /** Returns the progress of a file: bytes of the total, or that it is being read. */
 export function progressText({ bytes, total, stage }: Readonly<MeshLoad>): string {
-  const words = strings.meshes.progress;
-  if (stage === "reading") return words.reading;
-  return total === null ? bytesText(bytes) : words.of(bytesText(bytes), bytesText(total));
+  const texts = strings.meshes.progress;
+  if (stage === "reading") return texts.reading;
+  return total === null ? bytesText(bytes) : texts.of(bytesText(bytes), bytesText(total));
 }

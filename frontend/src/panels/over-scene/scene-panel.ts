@@ -64,7 +64,7 @@ export class ScenePanel implements Panel {
     bindSceneMenus(this.box, session.sceneMenu);
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);
     const update = (): void => {
-      const awaited = session.displays.displays.some(({ cls, enabled }) => enabled && cls.endsWith("/RobotModel"));
+      const awaited = session.displays.displays.some(({ cls, isEnabled }) => isEnabled && cls.endsWith("/RobotModel"));
       // If a description has an error, the banner explains why no robot appears.
       this.waiting.hidden = session.robot !== null || !awaited || banner.hasError;
     };

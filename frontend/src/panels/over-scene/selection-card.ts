@@ -28,36 +28,36 @@ export class SelectionCard {
   }
 
   private update(): void {
-    const { selected } = this.session.selection;
+    const { selectedLink } = this.session.selection;
     const wasHidden = this.element.hidden;
     // While the link is edited, the Editing panel shows it, and its handles need the space.
-    this.element.hidden = !selected || this.session.editing.active;
-    if (!selected || this.session.editing.active) {
+    this.element.hidden = !selectedLink || this.session.editing.isActive;
+    if (!selectedLink || this.session.editing.isActive) {
       if (!wasHidden && !this.folded) this.column.changed();
       return;
     }
     if (wasHidden) this.folded = this.column.isOverRobots;
-    const { link } = selected;
-    const words = strings.selection;
-    const clear = button(words.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
+    const { link } = selectedLink;
+    const texts = strings.selection;
+    const clear = button(texts.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
     const edit = this.edit && button(strings.editing.editHint, this.edit, "tool bare edit-link", icon("handles"));
     this.element.replaceChildren(
-      h("header", {}, icon("cube"), h("strong", { title: words.title }, link.name), h("span", { class: "spacer" }), edit, this.foldButton(), clear),
+      h("header", {}, icon("cube"), h("strong", { title: texts.title }, link.name), h("span", { class: "spacer" }), edit, this.foldButton(), clear),
       ...details(link),
       place(link, (file, line) => this.session.description.placeRequested.emit({ file, line })),
       ...trail(link),
     );
-    if (link.place) this.session.connection.send({ type: "ask_provenance", display: selected.display, link: link.name });
+    if (link.place) this.session.connection.send({ type: "ask_provenance", display: selectedLink.display, link: link.name });
   }
 
   /** Returns the button that folds the card to the link's name, or unfolds it. */
   private foldButton(): HTMLButtonElement {
-    const words = strings.selection;
+    const texts = strings.selection;
     const turn = (): void => {
       show(!this.folded);
       this.column.changed();
     };
-    const fold: HTMLButtonElement = button(words.fold, turn, "tool bare fold", icon("chevron"));
+    const fold: HTMLButtonElement = button(texts.fold, turn, "tool bare fold", icon("chevron"));
     const show = (folded: boolean): void => {
       this.folded = folded;
       this.element.classList.toggle("folded", folded);
@@ -69,7 +69,7 @@ export class SelectionCard {
 
   /** Replaces the plain trail by the calls and values, which the server sends a moment later. */
   private show(provenance: LinkProvenance): void {
-    const selected = this.session.selection.selected;
+    const selected = this.session.selection.selectedLink;
     if (selected?.display !== provenance.display || selected.link.name !== provenance.link) return;
     for (const old of this.element.querySelectorAll(".trail, .provenance")) old.remove();
     const [, ...lines] = provenance.lines; // the first is the place, which the card shows already
@@ -78,24 +78,24 @@ export class SelectionCard {
 }
 
 function details(link: LinkScene): HTMLElement[] {
-  const words = strings.selection;
+  const texts = strings.selection;
   const rows: [string, string][] = [];
-  if (link.parent_joint !== null) rows.push([words.joint, link.parent_joint]);
-  if (link.frame !== link.name) rows.push([words.frame, link.frame]);
+  if (link.parent_joint !== null) rows.push([texts.joint, link.parent_joint]);
+  if (link.frame !== link.name) rows.push([texts.frame, link.frame]);
   return rows.map(([name, value]) => h("div", { class: "detail" }, h("span", {}, name), h("span", {}, value)));
 }
 
 function place(link: LinkScene, show: (file: string, line: number) => void): HTMLElement {
-  const words = strings.selection;
+  const texts = strings.selection;
   const at = link.place;
-  if (!at) return h("p", { class: "hint" }, words.noPlace);
+  if (!at) return h("p", { class: "hint" }, texts.noPlace);
   const full = placeText(at.file, at.line, at.column);
   const copy = button(
-    words.copy,
+    texts.copy,
     () => {
       void navigator.clipboard.writeText(full).then(() => {
         copy.classList.add("done");
-        copy.title = words.copied;
+        copy.title = texts.copied;
       });
     },
     "tool bare",

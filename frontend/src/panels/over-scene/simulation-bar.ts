@@ -26,13 +26,13 @@ export class SimulationBar {
     private readonly modeling: Modeling,
     commands: WorldCommands,
   ) {
-    const words = strings.simulation;
-    this.play = button(words.pause, () => simulation.control(simulation.paused ? "play" : "pause"), "scene-tool small", icon("pause"));
-    this.step = button(words.step, () => simulation.control("step"), "scene-tool small", icon("step"));
-    const reset = button(words.reset, () => simulation.control("reset"), "scene-tool small", icon("reset"));
-    const add = button(words.spawn, () => this.askSpawn(simulation.freePlace()), "scene-tool small", icon("plus"));
-    this.modelButton = button(strings.modeling.begin, () => modeling.setActive(!modeling.active), "scene-tool small", icon("build"));
-    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: words.label } }, this.play, this.step, reset, add, this.modelButton, this.factor, this.time);
+    const texts = strings.simulation;
+    this.play = button(texts.pause, () => simulation.sendControl(simulation.isPaused ? "play" : "pause"), "scene-tool small", icon("pause"));
+    this.step = button(texts.step, () => simulation.sendControl("step"), "scene-tool small", icon("step"));
+    const reset = button(texts.reset, () => simulation.sendControl("reset"), "scene-tool small", icon("reset"));
+    const add = button(texts.spawn, () => this.askSpawn(simulation.freePlace()), "scene-tool small", icon("plus"));
+    this.modelButton = button(strings.modeling.begin, () => modeling.setActive(!modeling.isActive), "scene-tool small", icon("build"));
+    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: texts.label } }, this.play, this.step, reset, add, this.modelButton, this.factor, this.time);
     this.element = h("div", { class: "simulation-bar" }, bar, new ModelingBar(modeling, commands).element, this.notice);
     simulation.changed.on(() => this.show());
     modeling.changed.on(() => this.show());
@@ -42,29 +42,29 @@ export class SimulationBar {
   }
 
   private show(): void {
-    const { present, paused, time, factor } = this.simulation;
-    const words = strings.simulation;
-    this.element.hidden = !present;
-    const label = paused ? words.play : words.pause;
+    const { isPresent, isPaused, time, factor } = this.simulation;
+    const texts = strings.simulation;
+    this.element.hidden = !isPresent;
+    const label = isPaused ? texts.play : texts.pause;
     if (this.play.title !== label) {
       this.play.title = label;
       this.play.setAttribute("aria-label", label);
-      this.play.replaceChildren(icon(paused ? "play" : "pause"));
+      this.play.replaceChildren(icon(isPaused ? "play" : "pause"));
     }
-    this.step.disabled = !paused;
+    this.step.disabled = !isPaused;
     this.showModeling();
     this.factor.textContent = factor === null ? "–" : `${factor.toFixed(2)}×`;
     this.time.textContent = time === null ? "–" : `${time.toFixed(1)} s`;
   }
 
   private showModeling(): void {
-    const { available, active } = this.modeling;
-    const label = active ? strings.modeling.end : strings.modeling.begin;
-    this.modelButton.hidden = !available;
+    const { isAvailable, isActive } = this.modeling;
+    const label = isActive ? strings.modeling.end : strings.modeling.begin;
+    this.modelButton.hidden = !isAvailable;
     this.modelButton.title = label;
     this.modelButton.setAttribute("aria-label", label);
-    this.modelButton.setAttribute("aria-pressed", String(active));
-    this.modelButton.classList.toggle("active", active);
+    this.modelButton.setAttribute("aria-pressed", String(isActive));
+    this.modelButton.classList.toggle("active", isActive);
   }
 
   private showNotice(text: string): void {

@@ -29,14 +29,14 @@ export class SlowNotice {
 
   private update(): void {
     const { slowConnection, slowness, drawingPace } = this.session;
-    const { reduced } = slowConnection;
-    const words = strings.sharing;
-    const cause = causeOf(slowness.cause, this.slowPageNotice === "now", reduced.length);
-    this.element.hidden = reduced.length === 0 && this.slowPageNotice !== "now";
-    const lines = reduced.map((each) => h("div", {}, h("b", {}, this.name(each)), ` ${reductionText(each)}`));
-    if (this.slowPageNotice === "now" && drawingPace.software !== null) lines.push(h("div", {}, words.software(drawingPace.software)));
-    if (this.slowPageNotice === "now" && this.isLitAutomatically) lines.push(h("div", {}, words.plainLight));
-    this.element.replaceChildren(h("strong", {}, words.slow[cause]), h("div", {}, words.slowHints[cause]), ...lines);
+    const { reduced: reducedDisplays } = slowConnection;
+    const texts = strings.sharing;
+    const cause = causeOf(slowness.cause, this.slowPageNotice === "now", reducedDisplays.length);
+    this.element.hidden = reducedDisplays.length === 0 && this.slowPageNotice !== "now";
+    const lines = reducedDisplays.map((each) => h("div", {}, h("b", {}, this.name(each)), ` ${reductionText(each)}`));
+    if (this.slowPageNotice === "now" && drawingPace.software !== null) lines.push(h("div", {}, texts.software(drawingPace.software)));
+    if (this.slowPageNotice === "now" && this.isLitAutomatically) lines.push(h("div", {}, texts.plainLight));
+    this.element.replaceChildren(h("strong", {}, texts.slow[cause]), h("div", {}, texts.slowHints[cause]), ...lines);
   }
 
   /** Whether any light is set to Automatic, which means the camera's light where the page is slow. */
@@ -68,7 +68,7 @@ export function causeOf(cause: SlowCause, isNoticeShown: boolean, reduced: numbe
 }
 
 function reductionText({ reduction, rate }: Reduced): string {
-  const words = strings.sharing;
-  const what = reduction.kind === "points" ? words.points(reduction.step) : words.image(reduction);
+  const texts = strings.sharing;
+  const what = reduction.kind === "points" ? texts.points(reduction.step) : texts.image(reduction);
   return rate === null ? what : `${what}, ${rate.toFixed(1)} Hz`;
 }

@@ -23,8 +23,8 @@ export class SpawnDialog {
     position: readonly number[],
     closed: () => void,
   ) {
-    const words = strings.simulation;
-    this.address.placeholder = words.addressHint;
+    const texts = strings.simulation;
+    this.address.placeholder = texts.addressHint;
     this.address.addEventListener("input", () => this.onAddressChanged());
     this.positionFields = position.map((value, axis) => {
       const field = h("input", { class: "field number", aria: { label: "xyz"[axis] ?? "" } });
@@ -32,13 +32,13 @@ export class SpawnDialog {
       return field;
     });
     const rows = [
-      h("label", { class: "spawn-row" }, h("span", {}, words.address), this.address),
+      h("label", { class: "spawn-row" }, h("span", {}, texts.address), this.address),
       this.list,
-      h("div", { class: "spawn-row" }, h("span", {}, words.position), h("span", { class: "spawn-places" }, ...this.positionFields)),
+      h("div", { class: "spawn-row" }, h("span", {}, texts.position), h("span", { class: "spawn-places" }, ...this.positionFields)),
       this.problem,
     ];
-    const choices = [{ label: strings.shell.cancel }, { label: words.spawn, main: true, run: () => this.run() }];
-    this.dialog = new Dialog(words.spawnTitle, rows, choices, "spawn-dialog");
+    const choices = [{ label: strings.shell.cancel }, { label: texts.spawn, main: true, run: () => this.run() }];
+    this.dialog = new Dialog(texts.spawnTitle, rows, choices, "spawn-dialog");
     const forget = [
       modeling.modelsArrived.on((models) => {
         this.models = models;
@@ -65,7 +65,7 @@ export class SpawnDialog {
 
   /** Lists the models whose names contain the typed text; all models once one of them is chosen. */
   private fill(): void {
-    const words = strings.simulation;
+    const texts = strings.simulation;
     const typed = this.address.value.trim();
     const models = this.models ?? [];
     const chosen = models.some(({ address }) => address === typed);
@@ -73,7 +73,7 @@ export class SpawnDialog {
     this.list.replaceChildren(...shown.map((model) => this.row(model, model.address === typed)));
     this.list.role = shown.length > 0 ? "listbox" : "group"; // a listbox without options is none
     if (this.models && shown.length === 0) {
-      this.list.append(h("p", { class: "empty" }, models.length === 0 ? words.noModels : words.notListed));
+      this.list.append(h("p", { class: "empty" }, models.length === 0 ? texts.noModels : texts.notListed));
     }
   }
 

@@ -34,26 +34,26 @@ export class Toolbar {
 
   private build(): void {
     const { tools } = this;
-    const words = strings.tools;
+    const texts = strings.tools;
     this.buttons.clear();
     for (const tool of tools.tools) this.buttons.set(tool, this.buttonOf(tool));
     const add: HTMLButtonElement = button(
-      words.add,
+      texts.add,
       () => openMenu(add, tools.classes.map((tool) => ({ label: toolName(tool), run: () => tools.add(tool.cls) }))),
       "scene-tool small",
       icon("plus"),
     );
     const remove: HTMLButtonElement = button(
-      words.remove,
+      texts.remove,
       () => openMenu(remove, tools.tools.map((each) => ({ label: toolName(each), run: () => tools.remove(each.id) }))),
       "scene-tool small",
       icon("minus"),
     );
     remove.disabled = tools.tools.length === 0;
     for (const each of [add, remove]) each.setAttribute("aria-haspopup", "menu");
-    const fit = button(words.withKey(words.fitHint, FIT_KEY), this.fit, "scene-tool small fit", icon("fit"), h("span", { class: "tool-name" }, words.fit));
-    fit.setAttribute("aria-label", words.fit);
-    const help = button(words.help, this.showKeys, "scene-tool small", icon("keys"));
+    const fit = button(texts.withKey(texts.fitHint, FIT_KEY), this.fit, "scene-tool small fit", icon("fit"), h("span", { class: "tool-name" }, texts.fit));
+    fit.setAttribute("aria-label", texts.fit);
+    const help = button(texts.help, this.showKeys, "scene-tool small", icon("keys"));
     this.element.replaceChildren(...this.buttons.values(), add, remove, h("span", { class: "spacer" }), fit, this.talk, help);
     this.mark();
   }
@@ -61,12 +61,12 @@ export class Toolbar {
   private buttonOf(tool: ToolState): HTMLButtonElement {
     const entry = TOOLS.get(tool.cls);
     const name = toolName(tool);
-    const words = strings.tools;
-    const label = tool.supported && entry ? words.withKey(name, entry.key) : words.unknown(tool.cls);
+    const texts = strings.tools;
+    const label = tool.isSupported && entry ? texts.withKey(name, entry.key) : texts.unknown(tool.cls);
     const sign = icon(entry?.icon ?? "unknown");
     const toolButton = button(label, () => this.tools.choose(tool), "scene-tool", sign, h("span", { class: "tool-name" }, name));
     toolButton.setAttribute("aria-label", name);
-    toolButton.disabled = !tool.supported;
+    toolButton.disabled = !tool.isSupported;
     if (entry) toolButton.setAttribute("aria-keyshortcuts", entry.key);
     return toolButton;
   }

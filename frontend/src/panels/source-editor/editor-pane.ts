@@ -40,8 +40,8 @@ export class EditorPane {
     private readonly onChanged: (file: string | null) => void,
   ) {
     this.isWanted = storage.getItem(KEY) === ON;
-    const words = strings.sourceEditor;
-    this.toggle = button(words.editHint, () => this.setWanted(!this.isWanted), "tool framed", icon("code"), words.edit);
+    const texts = strings.sourceEditor;
+    this.toggle = button(texts.editHint, () => this.setWanted(!this.isWanted), "tool framed", icon("code"), texts.edit);
     this.element.hidden = true;
     this.notice.hidden = true;
     this.showToggle();
@@ -132,9 +132,9 @@ export class EditorPane {
   }
 
   private showToggle(): void {
-    const words = strings.sourceEditor;
+    const texts = strings.sourceEditor;
     this.toggle.setAttribute("aria-pressed", String(this.isWanted));
-    this.toggle.title = this.isWanted ? words.view : words.editHint;
+    this.toggle.title = this.isWanted ? texts.view : texts.editHint;
   }
 
   private load(): Promise<void> {

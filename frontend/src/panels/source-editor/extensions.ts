@@ -14,8 +14,8 @@ import { pageTheme } from "./theme";
 
 /** Returns everything of an editor that needs no language server. */
 export function baseExtensions(path: string, text: string, isReadOnly: boolean): Extension {
-  const words = strings.sourceEditor;
-  const label = words.text(shortPath(path, 2));
+  const texts = strings.sourceEditor;
+  const label = texts.text(shortPath(path, 2));
   return [
     lineNumbers(),
     foldGutter(),
@@ -42,7 +42,7 @@ export function baseExtensions(path: string, text: string, isReadOnly: boolean):
     indentUnit.of(indentation(text)),
     EditorState.phrases.of(phrases),
     EditorState.readOnly.of(isReadOnly),
-    EditorView.contentAttributes.of({ "aria-label": label, "aria-description": words.keys, tabindex: "0" }),
+    EditorView.contentAttributes.of({ "aria-label": label, "aria-description": texts.keys, tabindex: "0" }),
     tooltips({ parent: document.body }), // the dock cuts what is outside of a panel
     markedLines,
     pageTheme,

@@ -32,18 +32,18 @@ export class FileTree {
     private readonly onChosen: (path: string) => void,
     onCreated: (path: string) => void,
   ) {
-    const words = strings.sourceEditor;
-    this.name.placeholder = words.newFilePath;
-    this.name.setAttribute("aria-label", words.newFilePath);
+    const texts = strings.sourceEditor;
+    this.name.placeholder = texts.newFilePath;
+    this.name.setAttribute("aria-label", texts.newFilePath);
     this.name.hidden = true;
-    const add = button(words.newFileHint, () => this.askName(), "tool bare", icon("plus"), words.newFile);
+    const add = button(texts.newFileHint, () => this.askName(), "tool bare", icon("plus"), texts.newFile);
     this.name.addEventListener("keydown", (event) => {
       if (event.key === "Escape") this.name.hidden = true;
       if (event.key !== "Enter" || this.name.value.trim() === "") return;
       onCreated(join(this.root, this.name.value.trim()));
       this.name.hidden = true;
     });
-    this.element = h("nav", { class: "file-tree", aria: { label: words.tree } }, h("div", { class: "file-tree-head" }, add), this.name, this.list);
+    this.element = h("nav", { class: "file-tree", aria: { label: texts.tree } }, h("div", { class: "file-tree-head" }, add), this.name, this.list);
     this.element.hidden = true;
     this.list.addEventListener("click", (event) => this.activate(itemOf(event.target)));
     this.list.addEventListener("keydown", (event) => this.onKeyDown(event));

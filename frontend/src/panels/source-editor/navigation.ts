@@ -41,23 +41,23 @@ export class Navigation {
 
   /** Goes to the definition of the name at a position; lists the definitions if there are several. */
   goToDefinition(view: EditorView, position = view.state.selection.main.head): boolean {
-    const words = strings.sourceEditor;
+    const texts = strings.sourceEditor;
     void this.ask(view, "textDocument/definition", position, {}).then(async (found) => {
       const [first, ...others] = found;
-      if (!first) this.tell(words.noDefinition);
+      if (!first) this.tell(texts.noDefinition);
       else if (others.length === 0) await this.open(first);
-      else await this.show(words.definitions(found.length), found);
+      else await this.show(texts.definitions(found.length), found);
     }).catch((error: unknown) => this.tell(messageOf(error)));
     return true;
   }
 
   /** Lists the uses of the name at the cursor, its definition included. */
   listReferences(view: EditorView): boolean {
-    const words = strings.sourceEditor;
+    const texts = strings.sourceEditor;
     const { head } = view.state.selection.main;
     void this.ask(view, "textDocument/references", head, { context: { includeDeclaration: true } }).then(async (found) => {
-      if (found.length === 0) this.tell(words.noReferences);
-      else await this.show(words.references(found.length), found);
+      if (found.length === 0) this.tell(texts.noReferences);
+      else await this.show(texts.references(found.length), found);
     }).catch((error: unknown) => this.tell(messageOf(error)));
     return true;
   }

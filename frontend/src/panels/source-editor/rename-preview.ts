@@ -20,7 +20,7 @@ const MAX_LINES = 400;
  * @param remarks - what the server tells about the rename, such as mentions that stay as they are.
  */
 export function confirmRename(name: string, newName: string, files: readonly RenamedFile[], remarks: readonly string[]): Promise<boolean> {
-  const words = strings.sourceEditor;
+  const texts = strings.sourceEditor;
   const count = files.reduce((sum, { edits }) => sum + edits.length, 0);
   let left = MAX_LINES;
   const lists = files.flatMap(({ document, edits }) => {
@@ -28,16 +28,16 @@ export function confirmRename(name: string, newName: string, files: readonly Ren
     left -= shown.length;
     return shown.length === 0 ? [] : [fileList(document, shown)];
   });
-  const region = h("div", { class: "rename-lines", role: "group", tabIndex: 0, aria: { label: words.changedLines } }, ...lists);
-  if (count > MAX_LINES) region.append(h("p", {}, words.moreLines(count - MAX_LINES)));
+  const region = h("div", { class: "rename-lines", role: "group", tabIndex: 0, aria: { label: texts.changedLines } }, ...lists);
+  if (count > MAX_LINES) region.append(h("p", {}, texts.moreLines(count - MAX_LINES)));
   const notes = remarks.map((remark) => h("p", { class: "rename-remark" }, remark));
   return new Promise((resolve) => {
     let isWanted = false;
     const accept = (): undefined => void (isWanted = true);
     const dialog = new Dialog(
-      words.renameTitle(name, newName),
-      [h("p", {}, words.renameCount(count, files.length)), region, ...notes],
-      [{ label: strings.shell.cancel }, { label: words.rename, run: accept, main: true }],
+      texts.renameTitle(name, newName),
+      [h("p", {}, texts.renameCount(count, files.length)), region, ...notes],
+      [{ label: strings.shell.cancel }, { label: texts.rename, run: accept, main: true }],
       "rename-preview",
     );
     dialog.element.addEventListener("close", () => resolve(isWanted));

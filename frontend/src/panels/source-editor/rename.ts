@@ -19,13 +19,13 @@ export function renameAtCursor(view: EditorView, service: LanguageService, docum
 }
 
 async function rename(view: EditorView, { client, message }: LanguageService, documents: Documents): Promise<string> {
-  const words = strings.sourceEditor;
+  const texts = strings.sourceEditor;
   const { shown } = documents;
   if (!shown) return "";
   client.sync();
   const place = { textDocument: { uri: shown.uri }, position: placeOf(view.state.doc, view.state.selection.main.head) };
   const named = await client.request<object, RenamedPlace | null>("textDocument/prepareRename", place);
-  if (named === null) return words.nothingToRename;
+  if (named === null) return texts.nothingToRename;
   const oldName = "placeholder" in named ? named.placeholder : rangeText(view.state.doc, named);
   const newName = await askName(view, oldName);
   if (newName === null || newName === oldName) return "";
@@ -34,10 +34,10 @@ async function rename(view: EditorView, { client, message }: LanguageService, do
   const stop = message.on((remark) => remarks.push(remark));
   const edit = await client.request<object, WorkspaceEdit | null>("textDocument/rename", { ...place, newName }).finally(stop);
   const files = edit === null ? [] : await renamedFiles(edit, documents);
-  if (edit === null || files.length === 0) return [words.nothingToRename, ...remarks].join(" ");
-  if (!(await confirmRename(oldName, newName, files, remarks))) return words.notRenamed;
+  if (edit === null || files.length === 0) return [texts.nothingToRename, ...remarks].join(" ");
+  if (!(await confirmRename(oldName, newName, files, remarks))) return texts.notRenamed;
   const changed = await applyWorkspaceEdit(client, edit, documents, "rename");
-  return words.renamed(newName, changed.length);
+  return texts.renamed(newName, changed.length);
 }
 
 async function renamedFiles(edit: WorkspaceEdit, documents: Documents): Promise<RenamedFile[]> {
@@ -53,12 +53,12 @@ async function renamedFiles(edit: WorkspaceEdit, documents: Documents): Promise<
 }
 
 async function askName(view: EditorView, name: string): Promise<string | null> {
-  const words = strings.sourceEditor;
+  const texts = strings.sourceEditor;
   const { close, result } = showDialog(view, {
-    label: words.newName,
-    input: { name: "name", value: name, "aria-label": words.newName },
+    label: texts.newName,
+    input: { name: "name", value: name, "aria-label": texts.newName },
     focus: true,
-    submitLabel: words.rename,
+    submitLabel: texts.rename,
     class: "cm-lsp-rename-panel",
     top: true,
   });

@@ -65,7 +65,7 @@ export class SourceEditor implements Documents {
     private readonly session: Session,
     private readonly onLine: (file: string, line: number) => void,
   ) {
-    const words = strings.sourceEditor;
+    const texts = strings.sourceEditor;
     const { connection } = session;
     const tell = (message: string): void => this.tell(message);
     this.service = new LanguageService(connection, this);
@@ -73,15 +73,15 @@ export class SourceEditor implements Documents {
     this.actions = new CodeActions(this.service.client, this, (uri) => this.found.get(uri) ?? [], tell);
     this.navigation = new Navigation(this.service.client, this, this.places, tell);
     this.live = new LiveTexts(connection, this, () => this.changed.emit());
-    this.save = button(words.saveHint, () => this.saveAll(), "tool framed editor-save", icon("save"), words.save);
-    this.list = button(words.findingsHint, () => openLintPanel(this.view), "tool framed", words.findings(0));
+    this.save = button(texts.saveHint, () => this.saveAll(), "tool framed editor-save", icon("save"), texts.save);
+    this.list = button(texts.findingsHint, () => openLintPanel(this.view), "tool framed", texts.findings(0));
     this.tree = new FileTree(connection, (path) => void this.show(path), (path) => void this.createAndShow(path));
-    const files = button(words.filesHint, () => this.tree.toggle(), "tool framed", icon("tree"), words.files);
-    const format = button(words.formatHint, () => formatDocument(this.view), "tool framed", words.format);
-    const actions = button(words.actionsHint, () => this.actions.open(this.view), "tool framed", icon("bulb"), words.actions);
-    const symbols = button(words.symbolsHint, () => this.searchSymbols(), "tool framed", words.symbols);
+    const files = button(texts.filesHint, () => this.tree.toggle(), "tool framed", icon("tree"), texts.files);
+    const format = button(texts.formatHint, () => formatDocument(this.view), "tool framed", texts.format);
+    const actions = button(texts.actionsHint, () => this.actions.open(this.view), "tool framed", icon("bulb"), texts.actions);
+    const symbols = button(texts.symbolsHint, () => this.searchSymbols(), "tool framed", texts.symbols);
     const buttons = [files, symbols, this.save, actions, format, this.list];
-    const bar = h("div", { class: "editor-bar", role: "toolbar", aria: { label: words.label } }, ...buttons, this.scene, this.status);
+    const bar = h("div", { class: "editor-bar", role: "toolbar", aria: { label: texts.label } }, ...buttons, this.scene, this.status);
     this.tree.shownChanged.on((isShown) => files.setAttribute("aria-expanded", String(isShown)));
     this.view = new EditorView({ extensions: EditorView.editable.of(false), dispatchTransactions: (transactions, view) => this.dispatch(transactions, view) });
     const body = h("div", { class: "editor-body" }, this.tree.element, this.view.dom);
@@ -106,7 +106,7 @@ export class SourceEditor implements Documents {
     this.changed.on(coalesced(() => this.refresh()));
     connection.on("description_changed", () => {
       if (this.live.outcome !== null) return; // the language server has the unsaved texts
-      const shownFiles = session.description.of(this.shownDisplay)?.description.files ?? [];
+      const shownFiles = session.description.modelOf(this.shownDisplay)?.description.files ?? [];
       this.service.filesChanged(this.open.filter(({ path }) => shownFiles.includes(path)).map(({ uri }) => uri));
     });
     // a course checks its step again when programs, such as those in the terminal, changed files
@@ -174,7 +174,7 @@ export class SourceEditor implements Documents {
 
   isShownInScene(path: string): boolean {
     const { description, robots, diagnostics } = this.session;
-    return diagnostics.some(({ file }) => file === path) || [...robots.keys()].some((display) => description.of(display)?.description.files.includes(path) === true);
+    return diagnostics.some(({ file }) => file === path) || [...robots.keys()].some((display) => description.modelOf(display)?.description.files.includes(path) === true);
   }
 
   /** Applies an edit that was made in the scene to the unsaved text. */
@@ -325,17 +325,17 @@ export class SourceEditor implements Documents {
   }
 
   private refresh(): void {
-    const words = strings.sourceEditor;
+    const texts = strings.sourceEditor;
     const { shown } = this;
     const { unsaved } = this.files;
     this.save.disabled = unsaved.every(({ conflict }) => conflict !== null);
     this.element.classList.toggle("unsaved", unsaved.length > 0);
-    this.save.lastChild?.replaceWith(unsaved.length > 1 ? words.saveMany(unsaved.length) : words.save);
+    this.save.lastChild?.replaceWith(unsaved.length > 1 ? texts.saveMany(unsaved.length) : texts.save);
     const count = diagnosticCount(this.view.state);
-    this.list.replaceChildren(words.findings(count));
+    this.list.replaceChildren(texts.findings(count));
     this.list.disabled = count === 0;
     const { outcome } = this.live;
-    const scene = outcome === null ? "" : words.scene[outcome];
+    const scene = outcome === null ? "" : texts.scene[outcome];
     if (this.scene.textContent !== scene) this.scene.textContent = scene;
     this.scene.classList.toggle("errors", outcome === "errors");
     this.showNotice(shown);
@@ -344,12 +344,12 @@ export class SourceEditor implements Documents {
   }
 
   private showNotice(shown: SourceDocument | null): void {
-    const words = strings.sourceEditor;
+    const texts = strings.sourceEditor;
     this.notice.hidden = !shown || (shown.conflict === null && shown.whyNot === "" && !shown.isNew);
     if (!shown || this.notice.hidden) return;
     this.notice.classList.toggle("plain", shown.isNew);
     if (shown.conflict === null) {
-      this.notice.replaceChildren(shown.whyNot || words.isNew);
+      this.notice.replaceChildren(shown.whyNot || texts.isNew);
       return;
     }
     const settle = (spec: TransactionSpec | null): void => {
@@ -361,8 +361,8 @@ export class SourceEditor implements Documents {
       shown.keepMine();
       settle(null);
     };
-    const mine = button(words.keepMineHint, keep, "tool framed", words.keepMine);
-    const theirs = button(words.takeDiskHint, () => settle(shown.takeDisk()), "tool framed", words.takeDisk);
-    this.notice.replaceChildren(h("span", {}, words.conflict), mine, theirs);
+    const mine = button(texts.keepMineHint, keep, "tool framed", texts.keepMine);
+    const theirs = button(texts.takeDiskHint, () => settle(shown.takeDisk()), "tool framed", texts.takeDisk);
+    this.notice.replaceChildren(h("span", {}, texts.conflict), mine, theirs);
   }
 }

@@ -96,10 +96,10 @@ export class SourceFiles {
 
   /** Writes all files that have changed. */
   saveAll(): void {
-    const words = strings.sourceEditor;
+    const texts = strings.sourceEditor;
     const { connection } = this.session;
     if (connection.state !== "connected") {
-      this.host.tell(words.disconnected);
+      this.host.tell(texts.disconnected);
       return;
     }
     for (const document of this.unsaved) {
@@ -107,7 +107,7 @@ export class SourceFiles {
       const text = document.beginWriting();
       if (!fitsMessage(text)) {
         document.endWriting(null);
-        this.host.tell(words.tooLong(nameOf(document.path)));
+        this.host.tell(texts.tooLong(nameOf(document.path)));
         continue;
       }
       this.number += 1;

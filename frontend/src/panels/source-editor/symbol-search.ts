@@ -54,22 +54,22 @@ export class SymbolSearch {
     private readonly documents: Documents,
     open: (location: ServerLocation) => void,
   ) {
-    const words = strings.sourceEditor;
+    const texts = strings.sourceEditor;
     this.scopes = [
-      button(words.symbolsOfFile, () => this.setWide(false), "tool framed", words.symbolsOfFile),
-      button(words.symbolsOfAll, () => this.setWide(true), "tool framed", words.symbolsOfAll),
+      button(texts.symbolsOfFile, () => this.setWide(false), "tool framed", texts.symbolsOfFile),
+      button(texts.symbolsOfAll, () => this.setWide(true), "tool framed", texts.symbolsOfAll),
     ];
-    const attributes = { "aria-label": words.symbolName, "aria-controls": this.id, "aria-expanded": "true", "aria-autocomplete": "list", autocomplete: "off" };
+    const attributes = { "aria-label": texts.symbolName, "aria-controls": this.id, "aria-expanded": "true", "aria-autocomplete": "list", autocomplete: "off" };
     for (const [name, value] of Object.entries(attributes)) this.field.setAttribute(name, value);
-    this.field.placeholder = words.symbolName;
+    this.field.placeholder = texts.symbolName;
     this.list.id = this.id;
-    this.list.setAttribute("aria-label", words.symbols);
+    this.list.setAttribute("aria-label", texts.symbols);
     const go = (): undefined => {
       const symbol = this.listed[this.chosen];
       if (symbol) open(symbol.location);
     };
-    const scopes = h("div", { class: "symbol-scopes", role: "group", aria: { label: words.symbolsIn } }, ...this.scopes);
-    this.dialog = new Dialog(words.symbols, [scopes, this.field, this.list, this.status], [{ label: strings.shell.cancel }, { label: words.goTo, run: go, main: true }], "symbol-search");
+    const scopes = h("div", { class: "symbol-scopes", role: "group", aria: { label: texts.symbolsIn } }, ...this.scopes);
+    this.dialog = new Dialog(texts.symbols, [scopes, this.field, this.list, this.status], [{ label: strings.shell.cancel }, { label: texts.goTo, run: go, main: true }], "symbol-search");
     this.field.addEventListener("input", () => this.later());
     this.dialog.element.addEventListener("keydown", (event) => this.onKeyDown(event), true);
     this.list.addEventListener("click", ({ target }) => {

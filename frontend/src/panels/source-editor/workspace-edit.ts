@@ -57,7 +57,7 @@ export function editsByFile(edit: WorkspaceEdit): FileEdits {
  * changed then.
  */
 export async function applyWorkspaceEdit(client: LSPClient, edit: WorkspaceEdit, documents: Documents, userEvent: string): Promise<SourceDocument[]> {
-  const words = strings.sourceEditor;
+  const texts = strings.sourceEditor;
   const { edits, created, versions } = editsByFile(edit);
   client.sync();
   const isOutdated = (uri: string): boolean => versions.has(uri) && client.workspace.getFile(uri)?.version !== versions.get(uri);
@@ -67,8 +67,8 @@ export async function applyWorkspaceEdit(client: LSPClient, edit: WorkspaceEdit,
     const path = pathOf(uri);
     if (path !== null && created.includes(uri)) await documents.create(path);
     const document = path === null ? null : await documents.load(path);
-    if (!document || document.whyNot !== "") throw new Error(words.notEditable(path ?? uri, document?.whyNot ?? ""));
-    if (isOutdated(uri) || before.get(uri)?.eq(document.state.doc) === false) throw new Error(words.changedMeanwhile);
+    if (!document || document.whyNot !== "") throw new Error(texts.notEditable(path ?? uri, document?.whyNot ?? ""));
+    if (isOutdated(uri) || before.get(uri)?.eq(document.state.doc) === false) throw new Error(texts.changedMeanwhile);
     changed.push([document, edits.get(uri) ?? []]);
   }
   for (const [document, own] of changed) {

@@ -40,20 +40,20 @@ export class TerminalDeck {
     private readonly theme: ThemeState,
     private readonly storage: TextStorage,
   ) {
-    const words = strings.terminal;
+    const texts = strings.terminal;
     this.usesReader = storage.getItem(READER_KEY) === ON;
-    this.noticeButton = button(words.restart, () => this.runNotice(), "tool framed", words.restart);
+    this.noticeButton = button(texts.restart, () => this.runNotice(), "tool framed", texts.restart);
     this.notice.append(this.noticeText, this.noticeButton);
-    this.closeButton = button(words.closeHint, () => this.close(), "tool", icon("close"), words.close);
-    this.reader = button(words.readerHint, () => this.toggleReader(), "tool", icon("speech"));
-    const copy = button(words.copyHint, () => void this.screen?.copy(), "tool", icon("copy"));
+    this.closeButton = button(texts.closeHint, () => this.close(), "tool", icon("close"), texts.close);
+    this.reader = button(texts.readerHint, () => this.toggleReader(), "tool", icon("speech"));
+    const copy = button(texts.copyHint, () => void this.screen?.copy(), "tool", icon("copy"));
     const bar = h(
       "div",
       { class: "toolbar" },
       this.tabs,
-      button(words.newHint, () => this.openNew(), "tool", icon("plus"), words.new),
+      button(texts.newHint, () => this.openNew(), "tool", icon("plus"), texts.new),
       h("span", { class: "spacer" }),
-      h("span", { class: "note terminal-keys" }, words.keys),
+      h("span", { class: "note terminal-keys" }, texts.keys),
       copy,
       this.reader,
       this.closeButton,
@@ -124,7 +124,7 @@ export class TerminalDeck {
   private update(): void {
     const { items } = this.state;
     this.discard((id) => this.state.find(id) === undefined);
-    if (this.requested !== null && this.state.whyNot !== "") this.requested = null;
+    if (this.requested !== null && this.state.unavailableReason !== "") this.requested = null;
     if (this.requested === 0) {
       const opened = items.findLast(({ id, shown }) => shown === "here" && id !== this.current);
       if (opened) this.choose(opened.id);
@@ -133,7 +133,7 @@ export class TerminalDeck {
     this.showTabs();
     this.showNotice();
     if (!this.isVisible || document.hidden) return;
-    if (this.current === null && this.state.whyNot === "") this.openNew();
+    if (this.current === null && this.state.unavailableReason === "") this.openNew();
     this.showScreen();
     if (this.item?.shown === "nowhere" && this.requested !== this.current) this.request();
   }
@@ -226,12 +226,12 @@ export class TerminalDeck {
 
   /** Shows why the terminal cannot be used now, and what the user can do. */
   private showNotice(): void {
-    const words = strings.terminal;
+    const texts = strings.terminal;
     const { item } = this;
-    let [text, action] = [this.state.isConnected ? this.state.whyNot : words.disconnected, ""];
-    if (text === "" && item?.shown === "elsewhere") [text, action] = [words.elsewhere, words.showHere];
-    else if (text === "" && item && item.status !== null) [text, action] = [words.endedWith(item.status), words.restart];
-    else if (text === "" && this.lostInput === this.current && item) text = words.inputLost;
+    let [text, action] = [this.state.isConnected ? this.state.unavailableReason : texts.disconnected, ""];
+    if (text === "" && item?.shown === "elsewhere") [text, action] = [texts.elsewhere, texts.showHere];
+    else if (text === "" && item && item.status !== null) [text, action] = [texts.endedWith(item.status), texts.restart];
+    else if (text === "" && this.lostInput === this.current && item) text = texts.inputLost;
     this.noticeText.textContent = text;
     this.noticeButton.textContent = action;
     this.noticeButton.title = action;

@@ -22,21 +22,21 @@ export class RecordButton {
     this.button = button(strings.recording.record, () => this.click(), "timeline-live timeline-record", "");
     this.element = h("span", { class: "timeline-recorder" }, this.problem, this.button);
     recording.changed.on(() => this.show());
-    recording.made.on((file) => this.showFile(file));
+    recording.finished.on((file) => this.showFile(file));
     recording.refused.on((why) => showNotice(strings.recording.refused, why));
     this.show();
   }
 
   private show(): void {
-    const { isRecording, length, size, saved, problem, path, possible } = this.session.recording;
-    const words = strings.recording;
-    this.element.hidden = !possible;
+    const { isRecording, length, size, savedBytes, problem, path, isPossible } = this.session.recording;
+    const texts = strings.recording;
+    this.element.hidden = !isPossible;
     this.button.classList.toggle("on", isRecording);
-    const text = isRecording ? amountText(length, size) : saved === null ? words.record : words.saving(Math.floor(100 * saved));
+    const text = isRecording ? amountText(length, size) : savedBytes === null ? texts.record : texts.saving(Math.floor(100 * savedBytes));
     if (this.button.textContent !== text) this.button.textContent = text;
-    const label = isRecording ? words.stopHint(path) : words.recordHint;
+    const label = isRecording ? texts.stopHint(path) : texts.recordHint;
     this.button.title = label;
-    this.button.setAttribute("aria-label", isRecording ? `${words.stop}: ${text}` : text);
+    this.button.setAttribute("aria-label", isRecording ? `${texts.stop}: ${text}` : text);
     if (isRecording) this.button.removeAttribute("aria-haspopup");
     else this.button.setAttribute("aria-haspopup", "menu");
     const shown = isRecording ? "" : problem;
@@ -52,33 +52,33 @@ export class RecordButton {
   private entries(): MenuEntry[] {
     const { recording, timeline } = this.session;
     const { extent, mark } = timeline;
-    const words = strings.recording;
-    const saving = recording.saved !== null;
+    const texts = strings.recording;
+    const saving = recording.savedBytes !== null;
     const minutes: MenuEntry[] = [
       {
-        label: words.saveMinutes(extent ? lengthText(extent.end - extent.start) : ""),
-        hint: words.saveHint,
+        label: texts.saveMinutes(extent ? lengthText(extent.end - extent.start) : ""),
+        hint: texts.saveHint,
         separate: true,
         disabled: saving || extent === null,
         run: () => recording.save(null, null),
       },
       {
-        label: words.savePart(mark ? lengthText(mark.end - mark.start) : ""),
-        hint: mark ? words.saveHint : words.markHint,
+        label: texts.savePart(mark ? lengthText(mark.end - mark.start) : ""),
+        hint: mark ? texts.saveHint : texts.markHint,
         disabled: saving || mark === null,
         run: () => mark && recording.save(mark.start, mark.end),
       },
-      { label: words.markStart, keys: "[", hint: words.markHint, run: () => timeline.markHere("start") },
-      { label: words.markEnd, keys: "]", hint: words.markHint, run: () => timeline.markHere("end") },
-      ...(mark ? [{ label: words.unmark, run: () => timeline.setMark(null) }] : []),
+      { label: texts.markStart, keys: "[", hint: texts.markHint, run: () => timeline.markHere("start") },
+      { label: texts.markEnd, keys: "]", hint: texts.markHint, run: () => timeline.markHere("end") },
+      ...(mark ? [{ label: texts.unmark, run: () => timeline.setMark(null) }] : []),
     ];
     return [
-      { label: words.all, icon: "record", hint: words.allHint, run: () => recording.record([]) },
-      { label: words.chosen, run: () => chooseTopics(this.session) },
+      { label: texts.all, icon: "record", hint: texts.allHint, run: () => recording.record([]) },
+      { label: texts.chosen, run: () => chooseTopics(this.session) },
       ...(timeline.timeline?.live === true ? minutes : []),
       ...recording.files.slice(0, MAX_FILES).map(
         (file, number): MenuEntry => ({
-          label: words.fetch(file.name),
+          label: texts.fetch(file.name),
           hint: `${file.path}\n${amountText(file.length, file.size)}`,
           icon: "download",
           separate: number === 0,
@@ -90,19 +90,19 @@ export class RecordButton {
 
   /** Shows where a recording was saved, and offers to open or download it. */
   private showFile(file: RecordedFile): void {
-    const words = strings.recording;
+    const texts = strings.recording;
     new Dialog(
-      words.made,
+      texts.made,
       [
-        h("p", {}, words.madeHint(amountText(file.length, file.size))),
-        file.simulated === null ? "" : h("p", {}, words.simulated(secondsText(file.length), secondsText(file.simulated))),
+        h("p", {}, texts.madeHint(amountText(file.length, file.size))),
+        file.simulated === null ? "" : h("p", {}, texts.simulated(secondsText(file.length), secondsText(file.simulated))),
         h("pre", { class: "copyable" }, file.path),
-        h("p", {}, words.openHint),
+        h("p", {}, texts.openHint),
         h("pre", { class: "copyable" }, `linkwright view ${file.name}`),
       ],
       [
         {
-          label: words.download,
+          label: texts.download,
           run: () => {
             downloadFile(file);
             return undefined;
@@ -110,7 +110,7 @@ export class RecordButton {
         },
         { label: strings.shell.ok },
         {
-          label: words.openHere,
+          label: texts.openHere,
           main: true,
           run: () => {
             this.session.recording.viewRequested.emit(file);

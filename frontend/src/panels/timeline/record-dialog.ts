@@ -6,17 +6,17 @@ import { Dialog } from "../../widgets/dialog";
 
 /** Lets the user choose the topics to record. */
 export function chooseTopics(session: Session): void {
-  const words = strings.recording;
+  const texts = strings.recording;
   const { topics } = session.monitor;
   const chosen = new Set<string>();
-  const list = h("div", { class: "choices record-topics", role: "group", aria: { label: words.topics } });
+  const list = h("div", { class: "choices record-topics", role: "group", aria: { label: texts.topics } });
   const dialog = new Dialog(
-    words.chooseTitle,
-    [h("p", {}, words.chooseHint), list],
+    texts.chooseTitle,
+    [h("p", {}, texts.chooseHint), list],
     [
       { label: strings.shell.cancel },
       {
-        label: words.begin,
+        label: texts.begin,
         main: true,
         run: () => {
           session.recording.record([...chosen]);

@@ -17,8 +17,8 @@ export class TimeFold {
     const show = (): void => {
       this.element.hidden = !strip.exists;
       this.element.setAttribute("aria-expanded", String(strip.isUnfolded));
-      this.element.classList.toggle("active", time.paused);
-      word.textContent = time.paused ? strings.time.paused : "";
+      this.element.classList.toggle("active", time.isPaused);
+      word.textContent = time.isPaused ? strings.time.paused : "";
     };
     strip.changed.on(show);
     time.changed.on(show);

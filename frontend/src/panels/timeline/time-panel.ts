@@ -30,22 +30,22 @@ export class TimePanel implements Panel {
     private readonly time: TimeControlState,
     close: () => void,
   ) {
-    const words = strings.time;
-    this.pause = button(words.pauseHint, () => time.set({ paused: !time.paused }), "tool", icon("pause"), words.pause);
-    this.mode.append(...MODES.map((mode) => new Option(words.modes[mode], mode)));
-    this.mode.setAttribute("aria-label", words.sync);
-    this.source.setAttribute("aria-label", words.source);
+    const texts = strings.time;
+    this.pause = button(texts.pauseHint, () => time.set({ paused: !time.isPaused }), "tool", icon("pause"), texts.pause);
+    this.mode.append(...MODES.map((mode) => new Option(texts.modes[mode], mode)));
+    this.mode.setAttribute("aria-label", texts.sync);
+    this.source.setAttribute("aria-label", texts.source);
     this.mode.addEventListener("change", () => time.set({ mode: this.mode.value as SyncMode }));
     this.source.addEventListener("change", () => time.set({ source: this.source.value }));
     this.element = h(
       "div",
       { class: "panel time-panel" },
       this.pause,
-      labeled(words.sync, this.mode),
-      labeled(words.source, this.source),
-      ...this.figures.map(({ name, output }) => labeled(words[name], output, name)),
+      labeled(texts.sync, this.mode),
+      labeled(texts.source, this.source),
+      ...this.figures.map(({ name, output }) => labeled(texts[name], output, name)),
       h("span", { class: "spacer" }),
-      button(words.resetHint, () => time.reset(), "tool", icon("reset"), words.reset),
+      button(texts.resetHint, () => time.reset(), "tool", icon("reset"), texts.reset),
       button(strings.close, close, "tool bare strip-close", icon("close")),
     );
     time.changed.on(() => this.update());
@@ -60,9 +60,9 @@ export class TimePanel implements Panel {
   }
 
   private update(): void {
-    const { paused, mode, source, sources } = this.time;
-    this.pause.setAttribute("aria-pressed", String(paused));
-    this.pause.classList.toggle("active", paused);
+    const { isPaused, mode, source, sources } = this.time;
+    this.pause.setAttribute("aria-pressed", String(isPaused));
+    this.pause.classList.toggle("active", isPaused);
     this.mode.value = mode;
     const names = source === "" || sources.includes(source) ? sources : [...sources, source];
     this.source.replaceChildren(...["", ...names].map((name) => new Option(name)));
@@ -72,7 +72,7 @@ export class TimePanel implements Panel {
   }
 
   private tick(): void {
-    const times = document.hidden ? null : this.time.times();
+    const times = document.hidden ? null : this.time.currentTimes();
     if (!times) return;
     for (const { name, output } of this.figures) {
       const text = times[name].toFixed(2);

@@ -52,17 +52,17 @@ export class TimelineBar {
     const { timeline } = session;
     this.timeline = timeline;
     this.recording = session.recording;
-    const words = strings.timeline;
-    this.play = button(words.play, () => timeline.play(!timeline.playing), "tool bare", icon("play"));
-    this.loop = button(words.loop, () => timeline.setLoop(!timeline.loop), "tool bare", icon("loop"));
-    this.live = button(words.live, () => timeline.goLive(), "timeline-live");
-    this.live.textContent = words.liveShort;
-    this.back = button(words.back, () => timeline.step(false), "tool bare", icon("stepBack"));
-    this.forward = button(words.forward, () => timeline.step(true), "tool bare", icon("step"));
+    const texts = strings.timeline;
+    this.play = button(texts.play, () => timeline.play(!timeline.isPlaying), "tool bare", icon("play"));
+    this.loop = button(texts.loop, () => timeline.setLoop(!timeline.isLooping), "tool bare", icon("loop"));
+    this.live = button(texts.live, () => timeline.goLive(), "timeline-live");
+    this.live.textContent = texts.liveShort;
+    this.back = button(texts.back, () => timeline.step(false), "tool bare", icon("stepBack"));
+    this.forward = button(texts.forward, () => timeline.step(true), "tool bare", icon("step"));
     this.speed.append(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed))));
     this.speed.addEventListener("change", () => timeline.setSpeed(Number(this.speed.value)));
     this.steps.addEventListener("change", () => (timeline.stepTopic = this.steps.value));
-    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: words.position } }, this.marks, this.markedPart, this.head);
+    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: texts.position } }, this.marks, this.markedPart, this.head);
     this.track.addEventListener("pointerdown", (event) => this.drag(event));
     this.track.addEventListener("pointermove", (event) => {
       if (!this.track.hasPointerCapture(event.pointerId)) return;
@@ -72,7 +72,7 @@ export class TimelineBar {
     this.track.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.element = h(
       "section",
-      { class: "timeline-bar", aria: { label: words.label } },
+      { class: "timeline-bar", aria: { label: texts.label } },
       this.back,
       this.play,
       this.forward,
@@ -95,25 +95,25 @@ export class TimelineBar {
   }
 
   private show(): void {
-    const { timeline, playing, speed, loop, problem } = this.timeline;
-    const words = strings.timeline;
+    const { timeline, isPlaying, speed, isLooping, problem } = this.timeline;
+    const texts = strings.timeline;
     const minutes = timeline?.live ?? false;
     this.updateVisibility();
     this.element.classList.toggle("minutes", minutes);
     this.live.hidden = !minutes;
-    this.live.setAttribute("aria-pressed", String(this.timeline.live));
-    this.forward.hidden = this.speed.hidden = minutes && this.timeline.live;
+    this.live.setAttribute("aria-pressed", String(this.timeline.isLive));
+    this.forward.hidden = this.speed.hidden = minutes && this.timeline.isLive;
     this.loop.hidden = minutes;
-    this.track.setAttribute("aria-label", minutes ? words.minutes : words.position);
+    this.track.setAttribute("aria-label", minutes ? texts.minutes : texts.position);
     this.offerSteps();
-    const label = playing ? words.pause : words.play;
+    const label = isPlaying ? texts.pause : texts.play;
     if (this.play.title !== label) {
       this.play.title = label;
       this.play.setAttribute("aria-label", label);
-      this.play.replaceChildren(icon(playing ? "pause" : "play"));
+      this.play.replaceChildren(icon(isPlaying ? "pause" : "play"));
     }
-    this.loop.setAttribute("aria-pressed", String(loop));
-    this.loop.classList.toggle("on", loop);
+    this.loop.setAttribute("aria-pressed", String(isLooping));
+    this.loop.classList.toggle("on", isLooping);
     this.speed.value = String(speed);
     this.problem.textContent = problem;
     this.problem.title = problem;
@@ -132,20 +132,20 @@ export class TimelineBar {
 
   private updateVisibility(): void {
     const without = this.timeline.timeline === null;
-    this.element.hidden = without && !this.recording.possible;
+    this.element.hidden = without && !this.recording.isPossible;
     this.element.classList.toggle("recorder-only", without);
   }
 
   private showPosition(): void {
-    const { timeline, position, live, extent } = this.timeline;
+    const { timeline, position, isLive, extent } = this.timeline;
     if (!timeline) return;
     const { start, end } = timeline;
     const part = end > start ? Math.min(1, Math.max(0, (position - start) / (end - start))) : 1;
     this.head.style.left = `${(part * 100).toFixed(3)}%`;
     // The age cannot identify the displayed moment, because it keeps growing while time is paused.
-    const passed = extent ? (live ? extentText(extent) : momentText(position)) : elapsedText(position - start, end - start);
+    const passed = extent ? (isLive ? extentText(extent) : momentText(position)) : elapsedText(position - start, end - start);
     this.time.textContent = passed;
-    this.time.title = extent ? `${clockText(position)}${live ? "" : ` ${agoText(end - position)}`}\n${extentTip(extent)}` : clockText(position);
+    this.time.title = extent ? `${clockText(position)}${isLive ? "" : ` ${agoText(end - position)}`}\n${extentTip(extent)}` : clockText(position);
     this.showMark(start, end);
     this.track.setAttribute("aria-valuemin", "0");
     this.track.setAttribute("aria-valuemax", String(end - start));
@@ -202,7 +202,7 @@ export class TimelineBar {
       const { target } = event;
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !this.timeline.timeline) return;
       if (!(target instanceof Element) || target.closest(TAKES_LETTERS)) return;
-      if (event.key === " " && !target.closest("button, input, summary, a")) this.timeline.play(!this.timeline.playing);
+      if (event.key === " " && !target.closest("button, input, summary, a")) this.timeline.play(!this.timeline.isPlaying);
       else if (event.key === "ArrowLeft" && this.isFree(target)) this.timeline.step(false);
       else if (event.key === "ArrowRight" && this.isFree(target)) this.timeline.step(true);
       else if (event.key === "[" && this.timeline.timeline.live) this.timeline.markHere("start");
@@ -222,7 +222,7 @@ export class TimelineBar {
         const forward = event.key === "ArrowRight";
         if (!forward && event.key !== "ArrowLeft") return;
         if (event.shiftKey || event.ctrlKey || event.metaKey || event.altKey || !this.pressed) return;
-        if (!(event.target instanceof HTMLCanvasElement) || !this.timeline.timeline || this.timeline.live) return;
+        if (!(event.target instanceof HTMLCanvasElement) || !this.timeline.timeline || this.timeline.isLive) return;
         this.timeline.step(forward);
         event.preventDefault();
         event.stopPropagation();

@@ -28,16 +28,16 @@ export class ViewsPanel implements Panel {
 
   constructor({ view, frames }: Session) {
     this.view = view;
-    const words = strings.views;
+    const texts = strings.views;
     const tree = new TreeView(
       strings.panels.views,
       () => this.items(),
       () => [FIXED_FRAME, ...frames.names],
     );
-    const zero = button(words.zeroHint, () => view.zero(), "tool", icon("zero"), h("span", { class: "tool-name" }, words.zero));
-    zero.setAttribute("aria-label", words.zero);
-    this.remove = button(words.removeHint, () => this.removeChosen(), "tool", words.remove);
-    this.rename = button(words.renameHint, () => this.startRename(), "tool", words.rename);
+    const zero = button(texts.zeroHint, () => view.zero(), "tool", icon("zero"), h("span", { class: "tool-name" }, texts.zero));
+    zero.setAttribute("aria-label", texts.zero);
+    this.remove = button(texts.removeHint, () => this.removeChosen(), "tool", texts.remove);
+    this.rename = button(texts.renameHint, () => this.startRename(), "tool", texts.rename);
     this.type.addEventListener("change", () => view.setClass(this.type.value));
     this.name.addEventListener("keydown", (event) => this.onNameKey(event));
     this.name.addEventListener("blur", () => {
@@ -50,15 +50,15 @@ export class ViewsPanel implements Panel {
       h(
         "div",
         { class: "toolbar" },
-        h("label", { class: "view-type" }, h("span", { class: "toolbar-label" }, words.type), this.type),
+        h("label", { class: "view-type" }, h("span", { class: "toolbar-label" }, texts.type), this.type),
         zero,
-        button(words.resetHint, () => view.reset(), "tool bare", icon("reset")),
+        button(texts.resetHint, () => view.reset(), "tool bare", icon("reset")),
       ),
       tree.element,
       h(
         "div",
         { class: "toolbar bottom" },
-        button(words.saveHint, () => view.save(shortName(view.current.cls)), "tool", words.save),
+        button(texts.saveHint, () => view.save(shortName(view.current.cls)), "tool", texts.save),
         this.remove,
         this.rename,
         this.name,
@@ -75,7 +75,7 @@ export class ViewsPanel implements Panel {
       tree.refresh();
     });
     view.listsChanged.on(() => {
-      if (!view.saved.some((each) => each.id === this.chosen)) this.chosen = null;
+      if (!view.savedViews.some((each) => each.id === this.chosen)) this.chosen = null;
       this.update();
       tree.refresh();
     });
@@ -106,7 +106,7 @@ export class ViewsPanel implements Panel {
         expanded: true,
         children: () => rows(CURRENT, view.properties, current.values, set),
       },
-      ...view.saved.map(({ id, view: saved }): TreeItem => ({
+      ...view.savedViews.map(({ id, view: saved }): TreeItem => ({
         key: id,
         name: saved.name,
         kind: "group",
@@ -133,7 +133,7 @@ export class ViewsPanel implements Panel {
   }
 
   private startRename(): void {
-    const saved = this.view.saved.find((each) => each.id === this.chosen);
+    const saved = this.view.savedViews.find((each) => each.id === this.chosen);
     if (!saved) return;
     this.name.hidden = false;
     this.name.value = saved.view.name;

@@ -32,7 +32,7 @@ export function talkButton(voice: VoiceState, className: string, ...words: reado
   // A long press must not open the context menu.
   element.addEventListener("contextmenu", (event) => event.preventDefault());
   const show = (): void => {
-    const talking = voice.held || voice.open;
+    const talking = voice.isHeld || voice.isPanelOpen;
     element.setAttribute("aria-pressed", String(talking));
     element.classList.toggle("talking", talking);
     element.classList.toggle("wrong", voice.microphone.problem !== null);

@@ -33,7 +33,7 @@ export class VoiceNotice {
   private show(): void {
     const { voice } = this;
     const wrong = obstacle(voice);
-    const busy = voice.held || voice.open;
+    const busy = voice.isHeld || voice.isPanelOpen;
     const last = voice.history.at(-1)?.text ?? "";
     const text = wrong ?? (voice.partial || (busy ? activity(voice) : last));
     const proposes = !busy && wrong === null && proposesEnrolling(voice, this.words);

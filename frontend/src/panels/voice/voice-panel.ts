@@ -38,7 +38,7 @@ export class VoicePanel implements Panel {
     const texts = strings.voice;
     const { speaker } = voice;
     this.openMicrophoneBox = tickBox(texts.open, texts.openHint, (ticked) => voice.setOpen(ticked));
-    this.speakBox = tickBox(texts.speak, texts.speakHint, (on) => speaker.configure({ on }));
+    this.speakBox = tickBox(texts.speak, texts.speakHint, (isOn) => speaker.configure({ isOn }));
     this.voices = choice(texts.voice, [], (chosen) => speaker.configure({ voice: chosen }));
     const wordsBox = (this.wordsBox = new WordsBox(enrolled, voice));
     this.proposal = h("div", { class: "voice-proposal", role: "status" }, h("span", {}, texts.words.proposal), enrollHereButton(enrolled));
@@ -102,10 +102,10 @@ export class VoicePanel implements Panel {
     if (this.state.textContent !== text) this.state.textContent = text;
     this.state.classList.toggle("wrong", problem !== null);
     this.meter.show(microphone.isOpen ? microphone.peak : null);
-    this.openMicrophoneBox.box.checked = voice.open;
+    this.openMicrophoneBox.box.checked = voice.isPanelOpen;
     this.proposal.hidden = !proposesEnrolling(voice, this.enrolled);
     this.textNote.hidden = serverState?.text_listeners !== 0;
-    this.speakBox.box.checked = speaker.settings.on;
+    this.speakBox.box.checked = speaker.settings.isOn;
     this.showVoices();
   }
 
@@ -120,7 +120,7 @@ export class VoicePanel implements Panel {
     }
     this.voices.value = voices.some(({ voiceURI }) => voiceURI === settings.voice) ? settings.voice : "";
     this.voices.hidden = voices.length === 0;
-    this.noVoices.hidden = !settings.on || voices.length > 0;
+    this.noVoices.hidden = !settings.isOn || voices.length > 0;
   }
 
   private showHistory(): void {

@@ -3,23 +3,23 @@ import { strings } from "../../strings";
 
 /** Returns the obstacle to talking and its remedy; null if there is none. */
 export function obstacle(voice: VoiceState): string | null {
-  const words = strings.voice;
-  const { microphone, serverState, held, open } = voice;
-  if (microphone.problem === "insecure") return words.insecure(location.hostname, location.port || "80");
-  if (microphone.problem === "failed") return words.failed(microphone.detail);
-  if (microphone.problem !== null) return words.problems[microphone.problem];
-  if (serverState?.cut === true) return words.cut;
-  if (voice.hasGaps && !voice.answered) return words.gaps;
-  if (!held && !open) return null;
-  if (serverState?.talking === "another") return words.another;
-  if (serverState?.sound_listeners === 0) return words.nobody;
+  const texts = strings.voice;
+  const { microphone, serverState, isHeld, isPanelOpen } = voice;
+  if (microphone.problem === "insecure") return texts.insecure(location.hostname, location.port || "80");
+  if (microphone.problem === "failed") return texts.failed(microphone.detail);
+  if (microphone.problem !== null) return texts.problems[microphone.problem];
+  if (serverState?.cut === true) return texts.cut;
+  if (voice.hasGaps && !voice.hasAnswer) return texts.gaps;
+  if (!isHeld && !isPanelOpen) return null;
+  if (serverState?.talking === "another") return texts.another;
+  if (serverState?.sound_listeners === 0) return texts.nobody;
   return null;
 }
 
 /** Returns the state of the microphone in words. */
 export function activity(voice: VoiceState): string {
-  const words = strings.voice;
-  if (voice.microphone.isOpening) return words.opening;
-  if (voice.held) return words.listening;
-  return voice.open ? words.openListening : words.idle;
+  const texts = strings.voice;
+  if (voice.microphone.isOpening) return texts.opening;
+  if (voice.isHeld) return texts.listening;
+  return voice.isPanelOpen ? texts.openListening : texts.idle;
 }

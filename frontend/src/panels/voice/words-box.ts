@@ -93,8 +93,8 @@ export class WordsBox {
   }
 
   private show(): void {
-    const { words } = this;
-    const all = words.all;
+    const { words: texts } = this;
+    const all = texts.enrolledWords;
     const key = JSON.stringify(all.map(({ name }) => name));
     // Replace the rows only if words changed: a button that is held must stay in place.
     if (key !== this.shownNames) {
@@ -104,7 +104,7 @@ export class WordsBox {
     all.forEach((word, index) => this.update(this.list.children[index], word));
     this.showProblem();
     this.showHere();
-    this.file.textContent = words.file === "" ? "" : strings.voice.words.keptIn(words.file);
+    this.file.textContent = texts.file === "" ? "" : strings.voice.words.keptIn(texts.file);
   }
 
   private showProblem(): void {
@@ -114,18 +114,18 @@ export class WordsBox {
   }
 
   private showHere(): void {
-    const { all, takesHere, missingHere, enough, file } = this.words;
+    const { enrolledWords: words, takesHere, missingHere, requiredTakes, file } = this.words;
     const texts = strings.voice.words;
     this.here.hidden = takesHere === null;
     if (takesHere === null) return;
     const [next] = missingHere;
-    const doneCount = all.length - missingHere.length;
-    const progress = all.length === 0 ? texts.hereNone : next ? texts.hereDone(doneCount, all.length) : texts.hereAll;
+    const doneCount = words.length - missingHere.length;
+    const progress = words.length === 0 ? texts.hereNone : next ? texts.hereDone(doneCount, words.length) : texts.hereAll;
     if (this.hereDone.textContent !== progress) this.hereDone.textContent = progress;
-    this.hereNote.textContent = texts.here(enough);
+    this.hereNote.textContent = texts.here(requiredTakes);
     if (!this.focusDue || file === "") return;
     this.focusDue = false;
-    const row = next && this.list.children[all.indexOf(next)];
+    const row = next && this.list.children[words.indexOf(next)];
     (row?.querySelector<HTMLElement>(".word-say") ?? this.field).focus();
   }
 
@@ -158,15 +158,15 @@ export class WordsBox {
   }
 
   private update(row: Element | undefined, { name, takes }: EnrolledWord): void {
-    const { recording, isHearing, enough, judged, takesHere } = this.words;
+    const { recording, isHearing, requiredTakes, judgments, takesHere } = this.words;
     const texts = strings.voice.words;
     const find = (part: string): Element | null => row?.querySelector(part) ?? null;
     const count = find(".word-takes");
-    const counted = takesHere === null ? takes : Math.min(takesHere.get(name) ?? 0, enough);
-    if (count) count.textContent = texts.takes(counted, enough);
-    row?.classList.toggle("enough", counted >= enough);
+    const counted = takesHere === null ? takes : Math.min(takesHere.get(name) ?? 0, requiredTakes);
+    if (count) count.textContent = texts.takes(counted, requiredTakes);
+    row?.classList.toggle("enough", counted >= requiredTakes);
     find(".word-say")?.classList.toggle("talking", recording === name && isHearing);
-    const last = judged.get(name);
+    const last = judgments.get(name);
     const line = find(".word-judged");
     const saying = isHearing ? texts.saying : strings.voice.opening;
     const text = recording === name ? saying : last ? judgment(last) : "";

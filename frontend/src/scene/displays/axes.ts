@@ -15,10 +15,10 @@ export class AxesDrawing implements Drawing {
   constructor(private readonly context: DrawingContext) {
     this.root.matrixAutoUpdate = false;
     this.root.add(this.mesh);
-    this.propertiesChanged();
+    this.onPropertiesChanged();
   }
 
-  propertiesChanged(): void {
+  onPropertiesChanged(): void {
     const { rows } = this.context.display;
     this.mesh.geometry.dispose();
     this.mesh.geometry = axesGeometry(rows.number(1, "Length"), rows.number(0.1, "Radius"), SEGMENTS);
@@ -27,9 +27,9 @@ export class AxesDrawing implements Drawing {
 
   update(): void {
     const { frames, displays } = this.context.session;
-    const fixed = this.frame === FIXED_FRAME || this.frame === displays.fixedFrame;
-    if (fixed) this.root.matrix.identity();
-    this.mesh.visible = fixed || framePose(frames, frames.row(this.frame), this.root.matrix);
+    const isInFixedFrame = this.frame === FIXED_FRAME || this.frame === displays.fixedFrame;
+    if (isInFixedFrame) this.root.matrix.identity();
+    this.mesh.visible = isInFixedFrame || framePose(frames, frames.rowOf(this.frame), this.root.matrix);
     this.root.matrixWorldNeedsUpdate = true;
   }
 

@@ -41,28 +41,28 @@ export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
 
   protected arrange(): void {
     const { rows } = this.context.display;
-    const onlyEdges = rows.bool(false, "Only Edge");
+    const hasEdgesOnly = rows.bool(false, "Only Edge");
     const alpha = rows.number(1, "Alpha");
     // Boxes without classes arrive in white and get the display's color.
-    const own = rows.text("", "Color") === "" ? null : colorOf(rows, "#ffff00", "Color");
-    const [placed] = this.placed();
-    const content = placed?.content;
+    const displayColor = rows.text("", "Color") === "" ? null : colorOf(rows, "#ffff00", "Color");
+    const [posedContent] = this.posedContents();
+    const content = posedContent?.content;
     const count = content ? content.sizes.length / 3 : 0;
     const segments: number[] = [];
     const colors: number[] = [];
     this.texts = [];
     const anchors: { at: Vector3; height: number }[] = [];
-    this.boxes.begin(onlyEdges ? 0 : count);
+    this.boxes.begin(hasEdgesOnly ? 0 : count);
     for (let i = 0; i < count && content; i++) {
       const size = new Vector3().fromArray(content.sizes, 3 * i);
-      const matrix = poseAt(content.poses, i, new Matrix4()).premultiply(placed.pose);
-      const middle = new Vector3().setFromMatrixPosition(matrix);
+      const matrix = poseAt(content.poses, i, new Matrix4()).premultiply(posedContent.pose);
+      const center = new Vector3().setFromMatrixPosition(matrix);
       const [r = 0, g = 0, b = 0] = content.colors.subarray(3 * i, 3 * i + 3);
-      const color = own ?? (r << 16) | (g << 8) | b;
+      const color = displayColor ?? (r << 16) | (g << 8) | b;
       matrix.scale(size);
-      if (onlyEdges) {
-        for (let at = 0; at < EDGES.length; at += 3) {
-          segments.push(...new Vector3().fromArray(EDGES, at).applyMatrix4(matrix).toArray());
+      if (hasEdgesOnly) {
+        for (let offset = 0; offset < EDGES.length; offset += 3) {
+          segments.push(...new Vector3().fromArray(EDGES, offset).applyMatrix4(matrix).toArray());
           colors.push((color >> 16) / 255, ((color >> 8) & 255) / 255, (color & 255) / 255, 1);
         }
       } else this.boxes.add(matrix, 0, alpha, color);
@@ -70,7 +70,7 @@ export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
       if (score < 0 || !rows.bool(false, "Show Score")) continue;
       const height = Math.min(TEXT_HEIGHTS[1], Math.max(TEXT_HEIGHTS[0], size.z / 3));
       this.texts.push(`${content.names[i] ?? ""} ${score.toFixed(2)}`.trim());
-      anchors.push({ at: middle.setZ(middle.z + 0.6 * size.z + height), height });
+      anchors.push({ at: center.setZ(center.z + 0.6 * size.z + height), height });
     }
     this.boxes.end();
     this.edges.setStyle(0xffffff, alpha, rows.number(0.05, "Line Width"));

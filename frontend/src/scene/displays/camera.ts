@@ -20,36 +20,36 @@ export class CameraDrawing implements Drawing {
   private readonly camera = new Camera();
   private data: DisplayData | null = null;
   private model: CameraModel | null = null;
-  private nextAt = 0;
+  private nextDrawMs = 0;
   private retryTimer = 0;
-  private readonly resizing: ResizeObserver;
+  private readonly resizeObserver: ResizeObserver;
 
   constructor(private readonly context: DrawingContext) {
     this.camera.matrixAutoUpdate = false;
     this.panel = new OwnPanel(context, "camera", this.canvas);
     this.panel.showText(strings.images.none);
     this.panel.update();
-    this.resizing = new ResizeObserver(() => this.context.invalidate());
-    this.resizing.observe(this.panel.element);
+    this.resizeObserver = new ResizeObserver(() => this.context.invalidate());
+    this.resizeObserver.observe(this.panel.element);
   }
 
-  propertiesChanged(): void {
+  onPropertiesChanged(): void {
     this.panel.update();
   }
 
-  dataChanged(data: DisplayData): void {
+  onDataChanged(data: DisplayData): void {
     const { content } = data;
     if (content.kind !== "image_frame") return;
     this.data = data;
     this.model = content.camera;
-    this.image.show(content, (shown) => {
-      if (!shown) this.panel.showText(strings.images.unreadable);
+    this.image.show(content, (isReadable) => {
+      if (!isReadable) this.panel.showText(strings.images.unreadable);
       else this.panel.showText(this.model ? "" : strings.images.noCameraInfo);
       this.context.invalidate();
     });
   }
 
-  dataForgotten(): void {
+  onDataForgotten(): void {
     this.data = this.model = null;
     this.image.clear();
     this.canvas.width = this.canvas.height = 0;
@@ -64,7 +64,7 @@ export class CameraDrawing implements Drawing {
     const { data, model } = this;
     const { element } = this.panel;
     if (!data || !model || !this.panel.isVisible || !this.isDue()) return;
-    const started = performance.now();
+    const startMs = performance.now();
     if (!dataPose(this.context.session.frames, data, this.camera.matrix)) return;
     const { rows } = this.context.display;
     const [width, height] = [element.clientWidth, element.clientHeight];
@@ -73,31 +73,31 @@ export class CameraDrawing implements Drawing {
     this.camera.matrixWorldNeedsUpdate = true;
     this.camera.projectionMatrix.copy(projection(model, zoom, rows.number(100, "Far Plane Distance")));
     this.camera.projectionMatrixInverse.copy(this.camera.projectionMatrix).invert();
-    scene.withOnly(
+    scene.drawOnly(
       (display) => isShownInCamera(rows, display),
       () => this.scene.draw(scene.renderer, scene.scene, this.camera, width, height),
     );
     this.compose(scene, zoom, width, height);
     const now = performance.now();
-    this.nextAt = now + (now - started);
+    this.nextDrawMs = now + (now - startMs);
   }
 
   inspect(): object {
     const context = this.canvas.getContext("2d");
     const { width, height } = this.canvas;
-    const at = (x: number, y: number): number[] =>
+    const pixelAt = (x: number, y: number): number[] =>
       width > 0 && context ? [...context.getImageData(Math.floor(x * width), Math.floor(y * height), 1, 1).data] : [];
     return {
       width,
       height,
       image: [this.image.canvas.width, this.image.canvas.height],
-      middle: at(0.5, 0.5),
+      middle: pixelAt(0.5, 0.5),
       position: new Matrix4().copy(this.camera.matrix).elements.slice(12, 15),
     };
   }
 
   dispose(): void {
-    this.resizing.disconnect();
+    this.resizeObserver.disconnect();
     clearTimeout(this.retryTimer);
     this.panel.close();
     this.scene.dispose();
@@ -108,7 +108,7 @@ export class CameraDrawing implements Drawing {
    * drawn later.
    */
   private isDue(): boolean {
-    const wait = this.nextAt - performance.now();
+    const wait = this.nextDrawMs - performance.now();
     if (wait <= 0) return true;
     clearTimeout(this.retryTimer);
     this.retryTimer = window.setTimeout(this.context.invalidate, wait);
@@ -118,13 +118,13 @@ export class CameraDrawing implements Drawing {
   /** Draws the background image, the scene, and the overlay image. */
   private compose(scene: DrawnScene, zoom: readonly [number, number], width: number, height: number): void {
     const { rows } = this.context.display;
-    const where = rows.text("background and overlay", "Image Rendering");
+    const layers = rows.text("background and overlay", "Image Rendering");
     if (this.canvas.width !== width) this.canvas.width = width;
     if (this.canvas.height !== height) this.canvas.height = height;
     const context = this.canvas.getContext("2d");
     if (!context) return;
     const [w, h] = [width * zoom[0], height * zoom[1]];
-    const image = (alpha: number): void => {
+    const drawImage = (alpha: number): void => {
       if (this.image.isEmpty) return;
       context.globalAlpha = alpha;
       context.imageSmoothingEnabled = false;
@@ -133,8 +133,8 @@ export class CameraDrawing implements Drawing {
     };
     context.fillStyle = scene.background;
     context.fillRect(0, 0, width, height);
-    if (where !== "overlay") image(1);
+    if (layers !== "overlay") drawImage(1);
     context.drawImage(this.scene.canvas, 0, 0);
-    if (where !== "background") image(rows.number(0.5, "Overlay Alpha"));
+    if (layers !== "background") drawImage(rows.number(0.5, "Overlay Alpha"));
   }
 }

@@ -13,7 +13,7 @@ export function describePoint(
   position: Float32Array,
   fields: PointFields["fields"] | null,
 ): DescriptionRow {
-  const coordinates = [...position].map((each) => String(Number(each.toPrecision(DIGITS))));
+  const coordinates = [...position].map((coordinate) => String(Number(coordinate.toPrecision(DIGITS))));
   const children: DescriptionRow[] = [
     {
       name: "Position",
@@ -26,9 +26,9 @@ export function describePoint(
     if (typeof value === "number") {
       children.push({ name: row, value: String(Number(value.toPrecision(DIGITS))) });
     } else if (value.startsWith("#")) {
-      const parts = [1, 3, 5, 7].map((start) => parseInt(value.slice(start, start + 2), 16));
-      children.push({ name: row, value: parts.slice(0, 3).join("; ") });
-      children.push({ name: "alpha", value: String(Number(((parts[3] ?? 0) / 255).toPrecision(DIGITS))) });
+      const channels = [1, 3, 5, 7].map((start) => parseInt(value.slice(start, start + 2), 16));
+      children.push({ name: row, value: channels.slice(0, 3).join("; ") });
+      children.push({ name: "alpha", value: String(Number(((channels[3] ?? 0) / 255).toPrecision(DIGITS))) });
     } else {
       children.push({ name: row, value });
     }

@@ -35,19 +35,19 @@ export class CloudDrawing implements Drawing {
   private readonly clouds = new Map<string, Cloud>();
   private readonly fields: PointFieldStore;
   private readonly marks = new WireBoxes();
-  private selected: ReadonlySet<string> = new Set();
+  private selectedKeys: ReadonlySet<string> = new Set();
 
   constructor(private readonly context: DrawingContext) {
     this.fields = new PointFieldStore(context);
     this.root.add(this.marks.root);
   }
 
-  propertiesChanged(): void {
+  onPropertiesChanged(): void {
     for (const cloud of this.clouds.values()) cloud.batch.setLook(this.look(cloud));
-    this.mark();
+    this.markSelection();
   }
 
-  dataChanged(data: DisplayData): void {
+  onDataChanged(data: DisplayData): void {
     const { content } = data;
     if (content.kind !== "cloud_points") return;
     let cloud = this.clouds.get(data.key);
@@ -65,17 +65,17 @@ export class CloudDrawing implements Drawing {
     }
     cloud.batch.setPoints(content.positions, content.colors, content.translucent);
     this.fields.forget(data.key);
-    if (this.selected.size > 0) this.mark();
+    if (this.selectedKeys.size > 0) this.markSelection();
   }
 
-  dataForgotten(key: string | null): void {
-    for (const [each, { batch }] of this.clouds) {
-      if (key !== null && each !== key) continue;
+  onDataForgotten(key: string | null): void {
+    for (const [cloudKey, { batch }] of this.clouds) {
+      if (key !== null && cloudKey !== key) continue;
       batch.dispose();
-      this.clouds.delete(each);
-      this.fields.forget(each);
+      this.clouds.delete(cloudKey);
+      this.fields.forget(cloudKey);
     }
-    this.mark();
+    this.markSelection();
   }
 
   update(): void {
@@ -92,23 +92,23 @@ export class CloudDrawing implements Drawing {
     // Half the height of the visible area, m: at a distance of one meter, or at any distance for an orthographic
     // camera.
     const { elements } = this.context.camera().projectionMatrix;
-    const pointer = POINTER_RADIUS / elements[5];
-    const parallel = elements[15] === 1;
-    let best: Hit | null = null;
+    const pointerRadius = POINTER_RADIUS / elements[5];
+    const isOrthographic = elements[15] === 1;
+    let nearestHit: Hit | null = null;
     for (const [key, cloud] of this.clouds) {
       inverse.copy(cloud.batch.root.matrix).invert();
       origin.copy(ray.ray.origin).applyMatrix4(inverse);
       direction.copy(ray.ray.direction).transformDirection(inverse);
       const { style, size } = this.look(cloud);
-      const radius = (style === "Points" ? 0 : size[0] / 2) + (parallel ? pointer : 0);
+      const radius = (style === "Points" ? 0 : size[0] / 2) + (isOrthographic ? pointerRadius : 0);
       const { positions } = cloud.batch;
-      const found = nearestPoint(positions, origin.toArray(), direction.toArray(), radius, parallel ? 0 : pointer);
-      if (!found || (best && best.distance <= found.distance)) continue;
+      const found = nearestPoint(positions, origin.toArray(), direction.toArray(), radius, isOrthographic ? 0 : pointerRadius);
+      if (!found || (nearestHit && nearestHit.distance <= found.distance)) continue;
       const point = new Vector3().fromArray(positions, found.index * 3).applyMatrix4(cloud.batch.root.matrix);
-      best = { key: `${key}:${found.index}`, distance: found.distance, point };
+      nearestHit = { key: `${key}:${found.index}`, distance: found.distance, point };
     }
-    if (best && !this.context.display.rows.bool(true, "Selectable")) best.isGround = true;
-    return best;
+    if (nearestHit && !this.context.display.rows.bool(true, "Selectable")) nearestHit.isGround = true;
+    return nearestHit;
   }
 
   pickBox(box: SelectionBox): readonly string[] {
@@ -131,10 +131,10 @@ export class CloudDrawing implements Drawing {
     const position = cloud.batch.positions.subarray(index * 3, index * 3 + 3);
     // The server numbers the points of the full cloud, also when the cloud is thinned for a slow connection.
     const number = index * cloud.step;
-    return describePoint(number, cloudKey, position, this.fields.of(cloudKey, number));
+    return describePoint(number, cloudKey, position, this.fields.find(cloudKey, number));
   }
 
-  placeOf(key: string): Vector3 | null {
+  positionOf(key: string): Vector3 | null {
     const found = this.find(key);
     if (!found) return null;
     const { positions, root } = found.cloud.batch;
@@ -142,8 +142,8 @@ export class CloudDrawing implements Drawing {
   }
 
   highlight(keys: ReadonlySet<string>): void {
-    this.selected = keys;
-    this.mark();
+    this.selectedKeys = keys;
+    this.markSelection();
   }
 
   inspect(): object {
@@ -162,7 +162,7 @@ export class CloudDrawing implements Drawing {
   }
 
   dispose(): void {
-    this.dataForgotten(null);
+    this.onDataForgotten(null);
     this.fields.dispose();
     this.marks.dispose();
   }
@@ -188,10 +188,10 @@ export class CloudDrawing implements Drawing {
   }
 
   /** Draws boxes around the selected points. */
-  private mark(): void {
-    const middles = [...this.selected].flatMap((key) => this.placeOf(key)?.toArray() ?? []);
+  private markSelection(): void {
+    const centers = [...this.selectedKeys].flatMap((key) => this.positionOf(key)?.toArray() ?? []);
     const { style, size } = this.look({ perDepth: 0 });
-    this.marks.set(middles, style === "Points" ? POINT_MARK : size[0]);
+    this.marks.set(centers, style === "Points" ? POINT_MARK : size[0]);
     this.context.invalidate();
   }
 }

@@ -8,7 +8,7 @@ type Kind = DataContent["kind"];
 type ContentOf<K extends Kind> = Extract<DataContent, { kind: K }>;
 
 /** A content with its key, its frame, and the pose of the frame in the fixed frame. */
-export interface Placed<C> {
+export interface PosedContent<C> {
   key: string;
   frame: string;
   content: C;
@@ -22,35 +22,35 @@ export interface Placed<C> {
 export abstract class ContentDrawing<K extends Kind> implements Drawing {
   readonly root = new Group();
   private readonly contents = new Map<string, DisplayData>();
-  private stale = true;
+  private isStale = true;
 
   constructor(
     protected readonly context: DrawingContext,
     private readonly kind: K,
   ) {}
 
-  dataChanged(data: DisplayData): void {
+  onDataChanged(data: DisplayData): void {
     if (data.content.kind !== this.kind) return;
     // Insert again so that the newest content is the last.
     this.contents.delete(data.key);
     this.contents.set(data.key, data);
-    this.stale = true;
+    this.isStale = true;
   }
 
-  dataForgotten(key: string | null): void {
+  onDataForgotten(key: string | null): void {
     if (key === null) this.contents.clear();
     else this.contents.delete(key);
-    this.stale = true;
+    this.isStale = true;
   }
 
-  propertiesChanged(): void {
-    this.stale = true;
+  onPropertiesChanged(): void {
+    this.isStale = true;
   }
 
   update(): void {
-    const follows = [...this.contents.values()].some((data) => data.pose === null && data.frame !== "");
-    if (!this.stale && !follows) return;
-    this.stale = false;
+    const hasMovingFrame = [...this.contents.values()].some((data) => data.pose === null && data.frame !== "");
+    if (!this.isStale && !hasMovingFrame) return;
+    this.isStale = false;
     this.arrange();
   }
 
@@ -73,13 +73,13 @@ export abstract class ContentDrawing<K extends Kind> implements Drawing {
 
   /** The newest content. */
   protected get latest(): ContentOf<K> | null {
-    const last = [...this.contents.values()].at(-1);
-    return last ? (last.content as ContentOf<K>) : null;
+    const newest = [...this.contents.values()].at(-1);
+    return newest ? (newest.content as ContentOf<K>) : null;
   }
 
   /** Returns the contents whose frame has a pose, with new matrices. */
-  protected placed(): Placed<ContentOf<K>>[] {
-    const result: Placed<ContentOf<K>>[] = [];
+  protected posedContents(): PosedContent<ContentOf<K>>[] {
+    const result: PosedContent<ContentOf<K>>[] = [];
     for (const data of this.contents.values()) {
       const pose = new Matrix4();
       if (!dataPose(this.context.session.frames, data, pose)) continue;

@@ -15,7 +15,7 @@ export class DetectionImageDrawing extends ImageDrawing {
   private readonly boxesByStamp = new Map<number, ImageBoxes>();
   /** The boxes of an image that is no longer available. */
   private unmatchedBoxes: ImageBoxes | null = null;
-  private shown: string[] = [];
+  private drawnTexts: string[] = [];
 
   constructor(context: DrawingContext) {
     super(context);
@@ -24,30 +24,30 @@ export class DetectionImageDrawing extends ImageDrawing {
     this.panel.element.append(this.overlay);
   }
 
-  override propertiesChanged(): void {
-    super.propertiesChanged();
+  override onPropertiesChanged(): void {
+    super.onPropertiesChanged();
     this.draw();
   }
 
-  override dataChanged(data: DisplayData): void {
+  override onDataChanged(data: DisplayData): void {
     const { content, stamp } = data;
     if (content.kind === "image_boxes") {
       this.unmatchedBoxes = content.of_image ? null : content;
       if (content.of_image) this.boxesByStamp.set(stamp, content);
-      for (const old of [...this.boxesByStamp.keys()].slice(0, -MAX_PENDING)) this.boxesByStamp.delete(old);
+      for (const stamp of [...this.boxesByStamp.keys()].slice(0, -MAX_PENDING)) this.boxesByStamp.delete(stamp);
       if (this.unmatchedBoxes) this.draw();
-    } else super.dataChanged(data);
+    } else super.onDataChanged(data);
   }
 
-  override dataForgotten(key: string | null): void {
+  override onDataForgotten(key: string | null): void {
     this.boxesByStamp.clear();
     this.unmatchedBoxes = null;
     if (key === "boxes") this.draw();
-    else super.dataForgotten(key);
+    else super.onDataForgotten(key);
   }
 
   override inspect(): object {
-    return { ...super.inspect(), boxes: [...this.shown] };
+    return { ...super.inspect(), boxes: [...this.drawnTexts] };
   }
 
   /** Called when a new image is on the canvas. */
@@ -62,36 +62,36 @@ export class DetectionImageDrawing extends ImageDrawing {
     const context = overlay.getContext("2d");
     if (!context || width === 0) return;
     const { clientWidth, clientHeight } = this.panel.element;
-    const points = Math.min(clientWidth / width, clientHeight / height);
-    if (points === 0) return;
-    const scale = points * window.devicePixelRatio;
+    const pointsPerPixel = Math.min(clientWidth / width, clientHeight / height);
+    if (pointsPerPixel === 0) return;
+    const scale = pointsPerPixel * window.devicePixelRatio;
     overlay.width = Math.round(width * scale);
     overlay.height = Math.round(height * scale);
-    this.shown = [];
+    this.drawnTexts = [];
     if (!boxes) return;
     context.scale(scale, scale);
     const { rows } = this.context.display;
-    const least = rows.number(0, "Threshold");
-    const written = rows.bool(true, "Show Score");
+    const threshold = rows.number(0, "Threshold");
+    const showsScore = rows.bool(true, "Show Score");
     for (let i = 0; i < boxes.boxes.length / 5; i++) {
       const score = boxes.scores[i] ?? -1;
-      if (score >= 0 && score < least) continue;
+      if (score >= 0 && score < threshold) continue;
       const name = boxes.names[i] ?? "";
       const text = score < 0 ? name : `${name} ${score.toFixed(2)}`.trim();
-      this.shown.push(text);
-      drawBox(context, boxes, i, points, written ? text : "");
+      this.drawnTexts.push(text);
+      drawBox(context, boxes, i, pointsPerPixel, showsScore ? text : "");
     }
   }
 }
 
 /** Draws a box, with its text above the upper left corner, or inside the box if there is no room above. */
 function drawBox(context: CanvasRenderingContext2D, { boxes, colors }: ImageBoxes, i: number, scale: number, text: string): void {
-  const [x = 0, y = 0, width = 0, height = 0, turn = 0] = boxes.subarray(5 * i, 5 * i + 5);
+  const [x = 0, y = 0, width = 0, height = 0, angle = 0] = boxes.subarray(5 * i, 5 * i + 5);
   const [red = 0, green = 0, blue = 0] = colors.subarray(3 * i, 3 * i + 3);
   const color = `rgb(${red} ${green} ${blue})`;
   context.save();
   context.translate(x, y);
-  context.rotate(turn);
+  context.rotate(angle);
   context.strokeStyle = color;
   context.lineWidth = LINE_PX / scale;
   context.strokeRect(-width / 2, -height / 2, width, height);

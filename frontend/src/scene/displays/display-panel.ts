@@ -10,7 +10,7 @@ export interface DisplayPanel {
   /** Whether the panel replaces the scene, because a recording with images only has nothing to show in it. */
   readonly replacesScene: boolean;
   /** Called when the user closes the panel. */
-  closed(): void;
+  onClosed(): void;
 }
 
 /** The host of the panels of displays. */

@@ -31,7 +31,7 @@ export interface DrawnScene {
   /** The background color of the scene. */
   readonly background: string;
   /** Runs `draw` while only the accepted displays are visible. */
-  withOnly(accepts: (display: DisplayState) => boolean, draw: () => void): void;
+  drawOnly(accepts: (display: DisplayState) => boolean, draw: () => void): void;
 }
 
 /** The drawing of a display. The stage shows `root` while the display is enabled. */
@@ -42,7 +42,7 @@ export interface Drawing {
   /**
    * Called when a value or the rows of the display changed; the drawing reads what it needs from `display.rows` again.
    */
-  propertiesChanged(): void;
+  onPropertiesChanged(): void;
   /** Called before every frame while the display is enabled, to update the poses of its objects. */
   update(): void;
   /**
@@ -51,13 +51,13 @@ export interface Drawing {
    */
   simplify?(view: MovingView | null): void;
   /** Called with new content; a drawing created later receives earlier content, too. */
-  dataChanged?(data: DisplayData): void;
+  onDataChanged?(data: DisplayData): void;
   /** Called when the content under a key, or all content (null), must no longer be drawn. */
-  dataForgotten?(key: string | null): void;
+  onDataForgotten?(key: string | null): void;
   /** Called after every frame while the display is enabled, for displays that show the scene elsewhere. */
   afterFrame?(scene: DrawnScene): void;
   /** Returns false while requested data is still loading. */
-  settled?(): boolean;
+  isSettled?(): boolean;
   /** Returns the nearest object that a ray hits. */
   pick?(ray: Raycaster): Hit | null;
   /** Returns the keys of the objects within a rectangle on the screen. */
@@ -67,13 +67,13 @@ export interface Drawing {
   /** Returns the three.js objects that draw an object, for outlining and focusing. */
   objectsOf?(key: string): readonly Object3D[];
   /** Returns the position of an object in the fixed frame, for objects without three.js objects of their own. */
-  placeOf?(key: string): Vector3 | null;
+  positionOf?(key: string): Vector3 | null;
   /** Called with the keys of the selected objects, for drawings that mark the selection themselves. */
   highlight?(keys: ReadonlySet<string>): void;
   /** Handles the Interact tool's events over an object that `pick` returned; returns true to keep the camera still. */
   pointer?(event: ScenePointer): boolean;
   /** Called when the Interact tool is activated or deactivated, or an object is held with it. */
-  interactionChanged?(interaction: Interaction): void;
+  onInteractionChanged?(interaction: Interaction): void;
   /** Returns what is drawn, for tests: counts, bounds, colors. */
   inspect?(): object;
   dispose(): void;

@@ -38,8 +38,8 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
   protected arrange(): void {
     const { rows } = this.context.display;
     const [scale, width, alpha] = [rows.number(1, "Scale"), rows.number(0.02, "Width"), rows.number(1, "Alpha")];
-    const head = { shaftLength: 0, shaftDiameter: 2 * width, headLength: 2 * width, headDiameter: 4 * width };
-    const contents = this.placed();
+    const headShape = { shaftLength: 0, shaftDiameter: 2 * width, headLength: 2 * width, headDiameter: 4 * width };
+    const contents = this.posedContents();
     const strips: Float32Array[] = [];
     const colors: Float32Array[] = [];
     const [pose, arrow] = [new Matrix4(), new Matrix4()];
@@ -48,15 +48,15 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
       content.joints.forEach((joint, i) => {
         if (!rows.bool(true, "Joints", joint)) return;
         const effort = content.efforts[i] ?? 0;
-        const part = usedShare(effort, content.limits[i] ?? 0) + MIN_RADIUS;
-        const radius = MIN_RADIUS + (part * scale) / 2;
-        const [r, g, b] = rainbow(part);
+        const share = usedShare(effort, content.limits[i] ?? 0) + MIN_RADIUS;
+        const radius = MIN_RADIUS + (share * scale) / 2;
+        const [r, g, b] = rainbow(share);
         poseAt(content.poses, i, pose);
         strips.push(ring(pose, radius, Math.sign(effort)));
         colors.push(new Float32Array(Array.from({ length: POINTS }, () => [r, g, b, 1]).flat()));
         alongX(new Vector3(0, radius, 0), new Vector3(effort > 0 ? -1 : 1, 0, 0), arrow);
         const color = (Math.round(r * 255) << 16) | (Math.round(g * 255) << 8) | Math.round(b * 255);
-        this.heads.add(arrow.premultiply(pose), head, { color, alpha });
+        this.heads.add(arrow.premultiply(pose), headShape, { color, alpha });
       });
     }
     this.heads.end();
@@ -85,8 +85,8 @@ function ring(pose: Matrix4, radius: number, direction: number): Float32Array {
 export function rainbow(value: number): [number, number, number] {
   const hue = Math.min(1, Math.max(0, value)) * 5 + 1;
   const sector = Math.floor(hue);
-  const within = hue - sector;
-  const n = sector % 2 === 0 ? within : 1 - within;
+  const fraction = hue - sector;
+  const n = sector % 2 === 0 ? fraction : 1 - fraction;
   if (sector <= 1) return [n, 0, 1];
   if (sector === 2) return [0, n, 1];
   if (sector === 3) return [0, 1, n];

@@ -6,7 +6,7 @@ export interface Fade {
   alpha: number;
 }
 
-const FRESH: Fade = { gray: 0, alpha: 1 };
+const UNFADED: Fade = { gray: 0, alpha: 1 };
 
 /**
  * Returns RViz's fading for an age, s: unchanged for a third of the timeout, turning gray for a third, fading out for a
@@ -14,7 +14,7 @@ const FRESH: Fade = { gray: 0, alpha: 1 };
  */
 export function fadeForAge(age: number, timeout: number): Fade {
   const third = timeout / 3;
-  if (!(age > third)) return FRESH;
+  if (!(age > third)) return UNFADED;
   if (age <= 2 * third) return { gray: (age - third) / third, alpha: 1 };
   return { gray: 1, alpha: Math.max(0, (timeout - age) / third) };
 }

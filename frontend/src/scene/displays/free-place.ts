@@ -15,18 +15,18 @@ const SIDES = [[1, 0], [0, 1], [-1, 0], [0, -1]] as const;
  *
  * @param boxes - the boxes around the existing objects, in the fixed frame, m.
  * @param world - the pose of the world in the fixed frame.
- * @param near - the center of the robots, in the fixed frame, m; null for the origin of the world.
+ * @param center - the center of the robots, in the fixed frame, m; null for the origin of the world.
  */
-export function freePlace(boxes: readonly Box3[], world: Matrix4, near: Vector3 | null = null): number[] {
+export function freePlace(boxes: readonly Box3[], world: Matrix4, center: Vector3 | null = null): number[] {
   const toWorld = world.clone().invert();
-  const { x: atX, y: atY } = near === null ? new Vector3() : near.clone().applyMatrix4(toWorld).round();
+  const { x: startX, y: startY } = center === null ? new Vector3() : center.clone().applyMatrix4(toWorld).round();
   const isFree = (place: readonly number[]): boolean => {
     const [x, y, z] = new Vector3().fromArray(place).applyMatrix4(world).toArray();
     const room = new Box3(new Vector3(x - HALF_SIDE, y - HALF_SIDE, z + FLOOR_HEIGHT), new Vector3(x + HALF_SIDE, y + HALF_SIDE, z + 2 * HALF_SIDE));
     return !boxes.some((box) => box.intersectsBox(room));
   };
-  const places = [[atX, atY, 0]];
-  for (let step = 1; step <= MAX_STEPS; step++) for (const [x, y] of SIDES) places.push([atX + x * step * STEP, atY + y * step * STEP, 0]);
-  const all = boxes.reduce((sum, box) => sum.union(box), new Box3()).applyMatrix4(toWorld);
-  return places.find(isFree) ?? [Math.ceil(all.max.x + HALF_SIDE), 0, 0];
+  const places = [[startX, startY, 0]];
+  for (let step = 1; step <= MAX_STEPS; step++) for (const [x, y] of SIDES) places.push([startX + x * step * STEP, startY + y * step * STEP, 0]);
+  const bounds = boxes.reduce((union, box) => union.union(box), new Box3()).applyMatrix4(toWorld);
+  return places.find(isFree) ?? [Math.ceil(bounds.max.x + HALF_SIDE), 0, 0];
 }

@@ -20,11 +20,11 @@ export class GridCellsDrawing implements Drawing {
     this.root.add(this.batch.root);
   }
 
-  propertiesChanged(): void {
+  onPropertiesChanged(): void {
     this.batch.setLook(this.look());
   }
 
-  dataChanged(data: DisplayData): void {
+  onDataChanged(data: DisplayData): void {
     const { content } = data;
     if (content.kind !== "cell_grid") return;
     this.data = data;
@@ -33,7 +33,7 @@ export class GridCellsDrawing implements Drawing {
     this.batch.setPoints(content.positions, new Uint8Array(0), false);
   }
 
-  dataForgotten(): void {
+  onDataForgotten(): void {
     this.data = null;
     this.batch.setPoints(new Float32Array(0), new Uint8Array(0), false);
   }
@@ -48,10 +48,10 @@ export class GridCellsDrawing implements Drawing {
     const inverse = this.root.matrix.clone().invert();
     const origin = ray.origin.clone().applyMatrix4(inverse).toArray();
     const direction = ray.direction.clone().transformDirection(inverse).toArray();
-    const found = nearestPoint(this.batch.positions, origin, direction, Math.max(...this.sides) / 2, 0);
-    if (!found) return null;
-    const point = new Vector3().fromArray(this.batch.positions, found.index * 3).applyMatrix4(this.root.matrix);
-    return { key: "", distance: found.distance, point, isGround: true };
+    const nearest = nearestPoint(this.batch.positions, origin, direction, Math.max(...this.sides) / 2, 0);
+    if (!nearest) return null;
+    const point = new Vector3().fromArray(this.batch.positions, nearest.index * 3).applyMatrix4(this.root.matrix);
+    return { key: "", distance: nearest.distance, point, isGround: true };
   }
 
   inspect(): object {

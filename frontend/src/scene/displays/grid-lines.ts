@@ -14,22 +14,22 @@ export function gridLines({ cells, normalCells, cellSize, plane }: GridShape): F
   const points: number[] = [];
   const extent = (cells * cellSize) / 2;
   const top = (normalCells * cellSize) / 2;
-  const line = (a: readonly number[], b: readonly number[]): void => {
+  const addLine = (a: readonly number[], b: readonly number[]): void => {
     points.push(...inPlane(a, plane), ...inPlane(b, plane));
   };
   for (let layer = 0; layer <= normalCells; layer++) {
     const z = top - layer * cellSize;
     for (let i = 0; i <= cells; i++) {
       const at = extent - i * cellSize;
-      line([at, -extent, z], [at, extent, z]);
-      line([-extent, at, z], [extent, at, z]);
+      addLine([at, -extent, z], [at, extent, z]);
+      addLine([-extent, at, z], [extent, at, z]);
     }
   }
   if (normalCells > 0) {
     for (let i = 0; i <= cells; i++) {
       for (let j = 0; j <= cells; j++) {
         const [x, y] = [extent - i * cellSize, extent - j * cellSize];
-        line([x, y, -top], [x, y, top]);
+        addLine([x, y, -top], [x, y, top]);
       }
     }
   }
@@ -61,11 +61,11 @@ export function splitLines(lines: Float32Array, pieces: number): Float32Array {
  * edge.
  */
 export function fadedColors(ends: Float32Array): Float32Array {
-  const shades = new Float32Array((ends.length / 3) * 4).fill(1);
-  const far = (i: number): number => Math.hypot(ends[i] ?? 0, ends[i + 1] ?? 0, ends[i + 2] ?? 0);
-  const farthest = ends.reduce((most, end) => Math.max(most, Math.abs(end)), 0);
-  for (let i = 0; i < ends.length; i += 3) shades[(i / 3) * 4 + 3] = Math.max(0, 1 - (far(i) / farthest) ** 2);
-  return shades;
+  const colors = new Float32Array((ends.length / 3) * 4).fill(1);
+  const distanceAt = (i: number): number => Math.hypot(ends[i] ?? 0, ends[i + 1] ?? 0, ends[i + 2] ?? 0);
+  const maxDistance = ends.reduce((maximum, end) => Math.max(maximum, Math.abs(end)), 0);
+  for (let i = 0; i < ends.length; i += 3) colors[(i / 3) * 4 + 3] = Math.max(0, 1 - (distanceAt(i) / maxDistance) ** 2);
+  return colors;
 }
 
 function inPlane([a = 0, b = 0, normal = 0]: readonly number[], plane: string): [number, number, number] {

@@ -21,8 +21,8 @@ export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
   }
 
   protected override drawnState(): object {
-    const shown = [...this.surfaces.values()];
-    const triangles = shown.reduce((sum, { geometry, visible }) => sum + (visible ? (geometry.index?.count ?? 0) / 3 : 0), 0);
+    const meshes = [...this.surfaces.values()];
+    const triangles = meshes.reduce((sum, { geometry, visible }) => sum + (visible ? (geometry.index?.count ?? 0) / 3 : 0), 0);
     return { triangles, lines: this.lines.root.visible ? this.lines.count : 0 };
   }
 
@@ -34,23 +34,23 @@ export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
   protected arrange(): void {
     const { rows } = this.context.display;
     const alpha = rows.number(1, "Alpha");
-    const placed = this.placed();
-    const now = new Set(placed.map(({ content }) => content));
-    for (const old of [...this.surfaces.keys()]) if (!now.has(old)) this.remove(old);
-    for (const { content, pose } of placed) {
-      const mesh = this.surfaces.get(content) ?? this.make(content);
+    const posedContents = this.posedContents();
+    const surfaces = new Set(posedContents.map(({ content }) => content));
+    for (const surface of [...this.surfaces.keys()]) if (!surfaces.has(surface)) this.remove(surface);
+    for (const { content, pose } of posedContents) {
+      const mesh = this.surfaces.get(content) ?? this.createMesh(content);
       pose.decompose(mesh.position, mesh.quaternion, new Vector3());
       mesh.visible = content.filled && alpha > 0;
       mesh.material.opacity = alpha;
       mesh.material.transparent = alpha < OPAQUE_FROM;
       mesh.material.depthWrite = alpha >= OPAQUE_FROM;
     }
-    const segments = rows.bool(true, "Show Grid Lines") ? placed.map(({ content, pose }) => segmentsOf(content, pose)) : [];
+    const segments = rows.bool(true, "Show Grid Lines") ? posedContents.map(({ content, pose }) => segmentsOf(content, pose)) : [];
     this.lines.setSegments(concatenated(segments));
     this.lines.setStyle("#000000", alpha);
   }
 
-  private make(content: GridSurface): Mesh<BufferGeometry, MeshLambertMaterial> {
+  private createMesh(content: GridSurface): Mesh<BufferGeometry, MeshLambertMaterial> {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(content.points, 3));
     geometry.setAttribute("color", new BufferAttribute(colorsOf(content), 3, true));
@@ -99,12 +99,12 @@ function trianglesOf(content: GridSurface): number[] {
 
 function segmentsOf(content: GridSurface, pose: Matrix4): Float32Array {
   const { rows, columns, points } = content;
-  const placed = new Float32Array(points.length);
-  const at = new Vector3();
-  for (let i = 0; i < points.length; i += 3) at.fromArray(points, i).applyMatrix4(pose).toArray(placed, i);
+  const positions = new Float32Array(points.length);
+  const position = new Vector3();
+  for (let i = 0; i < points.length; i += 3) position.fromArray(points, i).applyMatrix4(pose).toArray(positions, i);
   const result: number[] = [];
-  const connect = (one: number, other: number): void => {
-    if (exists(content, one) && exists(content, other)) result.push(...placed.subarray(one * 3, one * 3 + 3), ...placed.subarray(other * 3, other * 3 + 3));
+  const connect = (first: number, second: number): void => {
+    if (exists(content, first) && exists(content, second)) result.push(...positions.subarray(first * 3, first * 3 + 3), ...positions.subarray(second * 3, second * 3 + 3));
   };
   for (let row = 0; row < rows; row++) {
     for (let column = 0; column < columns; column++) {

@@ -14,15 +14,15 @@ export class GridDrawing implements Drawing {
   private readonly lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
   private readonly billboards = new WideLines();
   private frame = "";
-  private fades = false;
+  private isFading = false;
 
   constructor(private readonly context: DrawingContext) {
     this.root.matrixAutoUpdate = false;
     this.root.add(this.lines, this.billboards.root);
-    this.propertiesChanged();
+    this.onPropertiesChanged();
   }
 
-  propertiesChanged(): void {
+  onPropertiesChanged(): void {
     const { rows } = this.context.display;
     const cells = rows.number(10, "Plane Cell Count");
     const segments = gridLines({
@@ -33,24 +33,24 @@ export class GridDrawing implements Drawing {
     });
     const color = rows.text("#a0a0a4", "Color");
     const alpha = rows.number(0.5, "Alpha");
-    const wide = rows.text("Lines", "Line Style") === "Billboards";
+    const hasBillboards = rows.text("Lines", "Line Style") === "Billboards";
     const offset = rows.vector("Offset");
-    this.lines.visible = !wide;
+    this.lines.visible = !hasBillboards;
     this.lines.position.set(...offset);
     this.billboards.root.position.set(...offset);
-    this.billboards.setSegments(wide ? segments : new Float32Array(0));
+    this.billboards.setSegments(hasBillboards ? segments : new Float32Array(0));
     this.billboards.setStyle(color, alpha, rows.number(0.03, "Line Style", "Line Width"));
-    const pieces = wide ? new Float32Array(0) : splitLines(segments, Math.max(1, Math.min(cells, MAX_PIECES)));
+    const pieces = hasBillboards ? new Float32Array(0) : splitLines(segments, Math.max(1, Math.min(cells, MAX_PIECES)));
     this.lines.geometry.dispose();
     this.lines.geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(pieces, 3));
-    this.fades = this.context.session.displays.hasBackdrop;
-    const shades = this.fades ? fadedColors(pieces) : null;
-    if (shades) this.lines.geometry.setAttribute("color", new Float32BufferAttribute(shades, 4));
-    this.lines.material.vertexColors = shades !== null;
+    this.isFading = this.context.session.displays.hasBackdrop;
+    const colors = this.isFading ? fadedColors(pieces) : null;
+    if (colors) this.lines.geometry.setAttribute("color", new Float32BufferAttribute(colors, 4));
+    this.lines.material.vertexColors = colors !== null;
     this.lines.material.color.set(color);
     this.lines.material.opacity = alpha;
-    this.lines.material.transparent = alpha < 1 || this.fades;
-    this.lines.material.depthWrite = alpha >= 1 && !this.fades;
+    this.lines.material.transparent = alpha < 1 || this.isFading;
+    this.lines.material.depthWrite = alpha >= 1 && !this.isFading;
     this.lines.material.needsUpdate = true;
     this.frame = rows.text(FIXED_FRAME, "Reference Frame");
   }
@@ -61,12 +61,12 @@ export class GridDrawing implements Drawing {
 
   update(): void {
     const { frames, displays } = this.context.session;
-    if (displays.hasBackdrop !== this.fades) this.propertiesChanged();
+    if (displays.hasBackdrop !== this.isFading) this.onPropertiesChanged();
     if (this.frame === FIXED_FRAME || this.frame === displays.fixedFrame) {
       this.root.matrix.identity();
     } else {
       // Without a transform, RViz leaves the grid in place.
-      framePose(frames, frames.row(this.frame), this.root.matrix);
+      framePose(frames, frames.rowOf(this.frame), this.root.matrix);
     }
     this.root.matrixWorldNeedsUpdate = true;
   }

@@ -15,11 +15,11 @@ export class ImageDrawing implements Drawing {
   /** The stamp of the image on the canvas, s. */
   protected imageStamp = 0;
   private frame: ImageFrame | null = null;
-  private readonly resizing = new ResizeObserver(() => {
+  private readonly resizeObserver = new ResizeObserver(() => {
     this.sendSize();
     this.onPainted();
   });
-  private readonly stopListening: (() => void)[];
+  private readonly unsubscribe: (() => void)[];
   private state: "none" | "shown" | "unreadable" = "none";
 
   constructor(protected readonly context: DrawingContext) {
@@ -27,28 +27,28 @@ export class ImageDrawing implements Drawing {
     this.panel = new OwnPanel(context, "image", this.image.canvas);
     this.showState();
     this.panel.update();
-    this.resizing.observe(this.panel.element);
+    this.resizeObserver.observe(this.panel.element);
     const { connection, displays } = context.session;
-    this.stopListening = [connection.on("tree", () => this.sendSize()), displays.statusChanged.on(() => this.showState())];
+    this.unsubscribe = [connection.on("tree", () => this.sendSize()), displays.statusChanged.on(() => this.showState())];
   }
 
-  propertiesChanged(): void {
+  onPropertiesChanged(): void {
     this.panel.update();
   }
 
-  dataChanged({ content, stamp }: DisplayData): void {
+  onDataChanged({ content, stamp }: DisplayData): void {
     if (content.kind !== "image_frame") return;
     this.frame = content;
-    this.image.show(content, (shown) => {
-      this.state = shown ? "shown" : "unreadable";
+    this.image.show(content, (isReadable) => {
+      this.state = isReadable ? "shown" : "unreadable";
       this.showState();
-      if (!shown) return;
+      if (!isReadable) return;
       this.imageStamp = stamp;
       this.onPainted();
     });
   }
 
-  dataForgotten(key: string | null): void {
+  onDataForgotten(key: string | null): void {
     if (key) return; // the image has none
     this.frame = null;
     this.image.clear();
@@ -83,8 +83,8 @@ export class ImageDrawing implements Drawing {
   }
 
   dispose(): void {
-    this.resizing.disconnect();
-    for (const stop of this.stopListening) stop();
+    this.resizeObserver.disconnect();
+    for (const stop of this.unsubscribe) stop();
     this.panel.close();
   }
 

@@ -22,11 +22,11 @@ export class InteractiveMarkersDrawing implements Drawing {
 
   constructor(private readonly context: DrawingContext) {}
 
-  propertiesChanged(): void {
+  onPropertiesChanged(): void {
     // Properties are read in update().
   }
 
-  dataChanged(data: DisplayData): void {
+  onDataChanged(data: DisplayData): void {
     const { content } = data;
     if (content.kind === "interactive_marker_moved") {
       this.markers.get(content.name)?.move(data, content.pose);
@@ -38,38 +38,38 @@ export class InteractiveMarkersDrawing implements Drawing {
     }
   }
 
-  dataForgotten(key: string | null): void {
+  onDataForgotten(key: string | null): void {
     if (key === null) for (const name of [...this.markers.keys()]) this.remove(name);
     else if (key.startsWith(MARKER_KEY)) this.remove(key.slice(MARKER_KEY.length));
   }
 
   update(): void {
     const { session, camera, display } = this.context;
-    const held = [...this.markers.values()].some((marker) => marker.isHeld);
+    const isAnyHeld = [...this.markers.values()].some((marker) => marker.isHeld);
     for (const marker of this.markers.values()) {
-      const others = held && this.interaction.hideOthers && !marker.isHeld;
+      const isHidden = isAnyHeld && this.interaction.hideOthers && !marker.isHeld;
       marker.update(session.frames, camera(), {
         descriptions: display.rows.bool(true, "Show Descriptions"),
         axes: display.rows.bool(false, "Show Axes"),
         aids: display.rows.bool(false, "Show Visual Aids"),
-        interactive: this.interaction.enabled && !others,
+        interactive: this.interaction.enabled && !isHidden,
       });
     }
   }
 
-  settled(): boolean {
+  isSettled(): boolean {
     return [...this.markers.values()].every((marker) => marker.settled);
   }
 
   pick(ray: Raycaster): Hit | null {
-    let best: Hit | null = null;
+    let nearest: Hit | null = null;
     for (const [name, marker] of this.markers) {
       const hit = marker.root.visible ? marker.hit(ray) : null;
-      if (hit && (best === null || hit.distance < best.distance)) {
-        best = { key: `${hit.control}/${name}`, distance: hit.distance, point: hit.point };
+      if (hit && (nearest === null || hit.distance < nearest.distance)) {
+        nearest = { key: `${hit.control}/${name}`, distance: hit.distance, point: hit.point };
       }
     }
-    return best;
+    return nearest;
   }
 
   describe(key: string): DescriptionRow | null {
@@ -89,7 +89,7 @@ export class InteractiveMarkersDrawing implements Drawing {
     return found ? [found.control.root] : [];
   }
 
-  interactionChanged(interaction: Interaction): void {
+  onInteractionChanged(interaction: Interaction): void {
     this.interaction = { ...interaction };
     this.context.invalidate();
   }
@@ -134,7 +134,7 @@ export class InteractiveMarkersDrawing implements Drawing {
   }
 
   dispose(): void {
-    this.dataForgotten(null);
+    this.onDataForgotten(null);
   }
 
   private onPointerDown(event: ScenePointer, hit: Hit, marker: MarkerHandle, control: ControlHandle): boolean {
@@ -169,11 +169,11 @@ export class InteractiveMarkersDrawing implements Drawing {
     return menu
       .filter((entry) => entry.parent === parent && entry.id !== parent)
       .map((entry) => {
-        const below = this.choices(marker, control, menu, entry.id);
+        const choices = this.choices(marker, control, menu, entry.id);
         const run = (): void => {
           this.context.session.connection.send(marker.feedback(control, "menu_select", entry.id));
         };
-        return { label: entry.title, ...(below.length > 0 ? { choices: below } : { run }) };
+        return { label: entry.title, ...(choices.length > 0 ? { choices } : { run }) };
       });
   }
 
@@ -203,11 +203,11 @@ export class InteractiveMarkersDrawing implements Drawing {
 
 const MARKER_KEY = "marker ";
 
-function hintOf(control: ControlHandle, menu: boolean): string {
-  const words = strings.interactive;
+function hintOf(control: ControlHandle, hasMenu: boolean): string {
+  const texts = strings.interactive;
   const { mode, description } = control.control;
-  const own = mode === "none" ? "" : words.modes[mode];
-  return [description, own, menu && mode !== "menu" ? words.menu : ""]
+  const modeHint = mode === "none" ? "" : texts.modes[mode];
+  return [description, modeHint, hasMenu && mode !== "menu" ? texts.menu : ""]
     .filter((part) => part !== "")
     .join(" ");
 }

@@ -22,14 +22,14 @@ export class MapDrawing implements Drawing {
   constructor(private readonly context: DrawingContext) {
     this.root.matrixAutoUpdate = false;
     this.root.add(this.plane.root);
-    this.propertiesChanged();
+    this.onPropertiesChanged();
   }
 
-  propertiesChanged(): void {
+  onPropertiesChanged(): void {
     const { rows } = this.context.display;
     const scheme = rows.text("map", "Color Scheme") as MapScheme;
-    const binary = rows.bool(false, "Binary representation");
-    this.palette = mapPalette(scheme, binary ? rows.number(100, "Binary threshold") : null);
+    const isBinary = rows.bool(false, "Binary representation");
+    this.palette = mapPalette(scheme, isBinary ? rows.number(100, "Binary threshold") : null);
     this.plane.setLook({
       palette: this.palette,
       alpha: rows.number(0.7, "Alpha"),
@@ -39,7 +39,7 @@ export class MapDrawing implements Drawing {
     });
   }
 
-  dataChanged(data: DisplayData): void {
+  onDataChanged(data: DisplayData): void {
     const { content } = data;
     if (content.kind !== "occupancy_map") return;
     this.data = data;
@@ -49,7 +49,7 @@ export class MapDrawing implements Drawing {
     this.origin.compose(new Vector3(x, y, z), new Quaternion(qx, qy, qz, qw).normalize(), new Vector3(1, 1, 1));
   }
 
-  dataForgotten(): void {
+  onDataForgotten(): void {
     this.data = this.map = null;
     this.plane.clear();
   }
@@ -63,8 +63,8 @@ export class MapDrawing implements Drawing {
 
   pick({ ray }: Raycaster): Hit | null {
     if (!this.map || !this.plane.root.visible) return null;
-    const ground = new Plane(new Vector3(0, 0, 1), 0).applyMatrix4(this.root.matrix);
-    const point = ray.intersectPlane(ground, new Vector3());
+    const plane = new Plane(new Vector3(0, 0, 1), 0).applyMatrix4(this.root.matrix);
+    const point = ray.intersectPlane(plane, new Vector3());
     if (!point) return null;
     const { x, y } = point.clone().applyMatrix4(this.root.matrix.clone().invert());
     const { width, height, resolution } = this.map;
@@ -87,21 +87,21 @@ export class MapDrawing implements Drawing {
     if (!this.map) return [];
     const { width, height, resolution } = this.map;
     const [x, y] = [width * resolution, height * resolution];
-    return [[0, 0], [x, 0], [0, y], [x, y]].map(([along = 0, up = 0]) => new Vector3(along, up, 0).applyMatrix4(this.root.matrix));
+    return [[0, 0], [x, 0], [0, y], [x, y]].map(([x = 0, y = 0]) => new Vector3(x, y, 0).applyMatrix4(this.root.matrix));
   }
 
   inspect(): object {
     this.update();
     if (!this.map) return { cells: 0 };
     const { width, height, cells } = this.map;
-    const [corner, , , far] = this.corners().map((each) => each.toArray());
+    const [minimum, , , maximum] = this.corners().map((corner) => corner.toArray());
     const counts: Record<number, number> = {};
     for (const value of cells) counts[value] = (counts[value] ?? 0) + 1;
     const colors = Object.keys(counts).map((value) => [
       Number(value),
       [...this.palette.subarray(Number(value) * 4, Number(value) * 4 + 4)],
     ]);
-    return { cells: cells.length, width, height, bounds: [corner, far], counts, colors: Object.fromEntries(colors) as object };
+    return { cells: cells.length, width, height, bounds: [minimum, maximum], counts, colors: Object.fromEntries(colors) as object };
   }
 
   dispose(): void {

@@ -8,7 +8,7 @@ import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { framePose, poseMatrix } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
-interface ShownMarker {
+interface MarkerEntry {
   marker: MarkerShape;
   /** The pose of the marker in its frame, or in the fixed frame. */
   pose: Matrix4;
@@ -22,83 +22,83 @@ export class MarkersDrawing implements Drawing {
   readonly root = new Group();
   /** Null until a marker needs it: of a hundred such displays in a file, few ever receive one. */
   private solids: SolidMarkers | null = null;
-  private readonly shown = new Map<string, ShownMarker>();
-  private hidden = new Set<string>();
+  private readonly entries = new Map<string, MarkerEntry>();
+  private hiddenNamespaces = new Set<string>();
   private areSolidsStale = false;
   /** Objects for outlining the markers that are drawn in batches; nothing else draws these objects. */
-  private readonly outlined = new Map<string, readonly Object3D[]>();
+  private readonly outlines = new Map<string, readonly Object3D[]>();
 
   constructor(private readonly context: DrawingContext) {
-    this.propertiesChanged();
+    this.onPropertiesChanged();
   }
 
-  propertiesChanged(): void {
-    const boxes = this.context.display.rows.find("Namespaces")?.children ?? [];
-    this.hidden = new Set(boxes.filter((row) => row.value === false).map((row) => row.name));
+  onPropertiesChanged(): void {
+    const checkBoxes = this.context.display.rows.find("Namespaces")?.children ?? [];
+    this.hiddenNamespaces = new Set(checkBoxes.filter((row) => row.value === false).map((row) => row.name));
     this.areSolidsStale = true;
   }
 
-  dataChanged({ content }: DisplayData): void {
+  onDataChanged({ content }: DisplayData): void {
     if (content.kind !== "markers_changed") return;
-    if (content.everything) this.dataForgotten();
+    if (content.everything) this.onDataForgotten();
     for (const id of content.gone) this.remove(id);
     for (const marker of content.markers) this.show(marker);
     this.areSolidsStale = true;
   }
 
-  dataForgotten(): void {
-    for (const id of [...this.shown.keys()]) this.remove(id);
+  onDataForgotten(): void {
+    for (const id of [...this.entries.keys()]) this.remove(id);
     this.areSolidsStale = true;
   }
 
   update(): void {
     this.forgetOutlines();
     const pose = new Matrix4();
-    let moved = this.areSolidsStale;
-    for (const { marker, object, pose: own } of this.shown.values()) {
+    let isStale = this.areSolidsStale;
+    for (const { marker, object, pose: localPose } of this.entries.values()) {
       if (!object) {
-        moved ||= marker.frame !== "";
+        isStale ||= marker.frame !== "";
         continue;
       }
-      const placed = this.place(marker, own, pose);
-      object.root.visible = placed && !this.hidden.has(marker.namespace);
-      if (placed) pose.decompose(object.root.position, object.root.quaternion, new Vector3());
+      const hasPose = this.computePose(marker, localPose, pose);
+      object.root.visible = hasPose && !this.hiddenNamespaces.has(marker.namespace);
+      if (hasPose) pose.decompose(object.root.position, object.root.quaternion, new Vector3());
     }
-    if (moved) this.arrangeSolids();
+    if (isStale) this.arrangeSolids();
   }
 
-  settled(): boolean {
-    return [...this.shown.values()].every(({ object }) => object?.settled ?? true);
+  isSettled(): boolean {
+    return [...this.entries.values()].every(({ object }) => object?.settled ?? true);
   }
 
   pick(ray: Raycaster): Hit | null {
-    let best: Hit | null = null;
-    for (const [key, shown] of this.shown) {
-      if (this.hidden.has(shown.marker.namespace)) continue;
-      const [hit] = ray.intersectObjects(this.surfacesOf(shown), true);
-      if (hit && (best === null || hit.distance < best.distance)) {
-        best = { key, distance: hit.distance, point: hit.point };
+    let nearest: Hit | null = null;
+    for (const [key, entry] of this.entries) {
+      if (this.hiddenNamespaces.has(entry.marker.namespace)) continue;
+      const [hit] = ray.intersectObjects(this.surfacesOf(entry), true);
+      if (hit && (nearest === null || hit.distance < nearest.distance)) {
+        nearest = { key, distance: hit.distance, point: hit.point };
       }
     }
-    return best;
+    return nearest;
   }
 
   pickBox(box: SelectionBox): readonly string[] {
-    return [...this.shown]
-      .filter(([, shown]) => this.surfacesOf(shown).some((object) => box.hasObject(object)))
+    return [...this.entries]
+      .filter(([, entry]) => this.surfacesOf(entry).some((object) => box.hasObject(object)))
       .map(([key]) => key);
   }
 
   describe(key: string): DescriptionRow | null {
-    const shown = this.shown.get(key);
-    if (!shown) return null;
-    const { marker } = shown;
+    const entry = this.entries.get(key);
+    if (!entry) return null;
+    const { marker } = entry;
     const [x = 0, y = 0, z = 0] = marker.scale;
     const [r = 0, g = 0, b = 0, a = 0] = marker.color;
     return {
       name: `Marker ${marker.id}`,
       children: [
-        ...describedPose(shown.pose),
+        ...describedPose(entry.pose),
         describedNumbers("Scale", { X: x, Y: y, Z: z }),
         describedNumbers("Color", { R: r, G: g, B: b, A: a }),
       ],
@@ -106,62 +106,62 @@ export class MarkersDrawing implements Drawing {
   }
 
   objectsOf(key: string): readonly Object3D[] {
-    const shown = this.shown.get(key);
-    if (!shown) return [];
-    if (shown.object) return [shown.object.root];
-    let outlined = this.outlined.get(key);
-    if (!outlined) {
-      outlined = this.makeSurfaces(shown);
-      for (const each of outlined) {
-        each.layers.disableAll();
-        this.root.add(each);
+    const entry = this.entries.get(key);
+    if (!entry) return [];
+    if (entry.object) return [entry.object.root];
+    let outlines = this.outlines.get(key);
+    if (!outlines) {
+      outlines = this.makeSurfaces(entry);
+      for (const object of outlines) {
+        object.layers.disableAll();
+        this.root.add(object);
       }
-      this.outlined.set(key, outlined);
+      this.outlines.set(key, outlines);
     }
-    return outlined;
+    return outlines;
   }
 
   inspect(): object {
     const box = new Box3();
     this.solids?.expandBox(box);
-    for (const { object } of this.shown.values()) if (object?.root.visible === true) box.expandByObject(object.root);
+    for (const { object } of this.entries.values()) if (object?.root.visible === true) box.expandByObject(object.root);
     const shapes: Record<string, string> = {};
-    for (const [id, { marker }] of this.shown) if (!this.hidden.has(marker.namespace)) shapes[id] = marker.shape;
+    for (const [id, { marker }] of this.entries) if (!this.hiddenNamespaces.has(marker.namespace)) shapes[id] = marker.shape;
     return { markers: shapes, bounds: box.isEmpty() ? null : [box.min.toArray(), box.max.toArray()] };
   }
 
   dispose(): void {
-    this.dataForgotten();
+    this.onDataForgotten();
     this.solids?.dispose();
   }
 
   private forgetOutlines(): void {
-    for (const each of [...this.outlined.values()].flat()) each.removeFromParent();
-    this.outlined.clear();
+    for (const object of [...this.outlines.values()].flat()) object.removeFromParent();
+    this.outlines.clear();
   }
 
   /** Returns the surfaces that a ray can hit. */
-  private surfacesOf(shown: ShownMarker): Object3D[] {
-    if (shown.object) return [shown.object.root];
-    if (shown.marker.frame !== "") return this.makeSurfaces(shown); // it moves
-    return (shown.surfaces ??= this.makeSurfaces(shown));
+  private surfacesOf(entry: MarkerEntry): Object3D[] {
+    if (entry.object) return [entry.object.root];
+    if (entry.marker.frame !== "") return this.makeSurfaces(entry); // it moves
+    return (entry.surfaces ??= this.makeSurfaces(entry));
   }
 
-  private makeSurfaces({ marker, pose: own }: ShownMarker): Object3D[] {
+  private makeSurfaces({ marker, pose: localPose }: MarkerEntry): Object3D[] {
     const pose = new Matrix4();
-    return this.place(marker, own, pose) ? surfacesOf(marker, pose) : [];
+    return this.computePose(marker, localPose, pose) ? surfacesOf(marker, pose) : [];
   }
 
   private show(marker: MarkerShape): void {
     const pose = poseMatrix(marker.pose, new Matrix4());
-    const before = this.shown.get(marker.id);
-    if (before?.object && hasSameMesh(before.marker, marker)) {
-      this.shown.set(marker.id, { marker, pose, object: before.object, surfaces: null });
+    const previous = this.entries.get(marker.id);
+    if (previous?.object && hasSameMesh(previous.marker, marker)) {
+      this.entries.set(marker.id, { marker, pose, object: previous.object, surfaces: null });
       return;
     }
     this.remove(marker.id);
     const object = isSolid(marker.shape) ? null : this.makeObject(marker);
-    this.shown.set(marker.id, { marker, pose, object, surfaces: null });
+    this.entries.set(marker.id, { marker, pose, object, surfaces: null });
   }
 
   private makeObject(marker: MarkerShape): MarkerObject {
@@ -176,46 +176,46 @@ export class MarkersDrawing implements Drawing {
   }
 
   private remove(id: string): void {
-    const shown = this.shown.get(id);
-    shown?.object?.root.removeFromParent();
-    shown?.object?.dispose();
-    this.shown.delete(id);
+    const entry = this.entries.get(id);
+    entry?.object?.root.removeFromParent();
+    entry?.object?.dispose();
+    this.entries.delete(id);
   }
 
   /** Computes the marker's pose in the fixed frame; returns false if its frame has no transform. */
-  private place(marker: MarkerShape, own: Matrix4, pose: Matrix4): boolean {
+  private computePose(marker: MarkerShape, localPose: Matrix4, pose: Matrix4): boolean {
     if (marker.frame === "") {
-      pose.copy(own);
+      pose.copy(localPose);
       return true;
     }
     const { frames, displays } = this.context.session;
     if (marker.frame === displays.fixedFrame) pose.identity();
-    else if (!framePose(frames, frames.row(marker.frame), pose)) return false;
-    pose.multiply(own);
+    else if (!framePose(frames, frames.rowOf(marker.frame), pose)) return false;
+    pose.multiply(localPose);
     return true;
   }
 
   private arrangeSolids(): void {
     this.areSolidsStale = false;
     this.solids?.begin();
-    for (const { marker, object, pose: own } of this.shown.values()) {
-      if (object || this.hidden.has(marker.namespace)) continue;
+    for (const { marker, object, pose: localPose } of this.entries.values()) {
+      if (object || this.hiddenNamespaces.has(marker.namespace)) continue;
       const pose = new Matrix4();
-      if (this.place(marker, own, pose)) (this.solids ??= new SolidMarkers(this.root)).add(marker, pose);
+      if (this.computePose(marker, localPose, pose)) (this.solids ??= new SolidMarkers(this.root)).add(marker, pose);
     }
     this.solids?.end();
   }
 }
 
 /** Whether a mesh marker only moved, so that its mesh need not be loaded again. */
-function hasSameMesh(one: MarkerShape, other: MarkerShape): boolean {
-  const file = one.mesh?.url ?? null;
+function hasSameMesh(first: MarkerShape, second: MarkerShape): boolean {
+  const file = first.mesh?.url ?? null;
   return (
     file !== null &&
-    one.shape === "mesh" &&
-    other.shape === "mesh" &&
-    file === other.mesh?.url &&
-    one.mesh?.embedded === other.mesh.embedded &&
-    String([one.scale, one.color]) === String([other.scale, other.color])
+    first.shape === "mesh" &&
+    second.shape === "mesh" &&
+    file === second.mesh?.url &&
+    first.mesh?.embedded === second.mesh.embedded &&
+    String([first.scale, first.color]) === String([second.scale, second.color])
   );
 }

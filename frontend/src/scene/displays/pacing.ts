@@ -1,6 +1,6 @@
 /** Limits a display to one update per Update Interval, and requests the frame for the next one. */
 export class Pacing {
-  private last = -Infinity;
+  private lastUpdateMs = -Infinity;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly invalidate: () => void) {}
@@ -12,21 +12,21 @@ export class Pacing {
 
   /** Returns whether to update in a frame at this time; `interval` in ms, 0 for every frame. */
   isDue(now: number, interval: number): boolean {
-    const wait = this.last + interval - now;
-    if (wait <= 0) {
-      this.last = now;
+    const waitMs = this.lastUpdateMs + interval - now;
+    if (waitMs <= 0) {
+      this.lastUpdateMs = now;
       return true;
     }
     this.timer ??= setTimeout(() => {
       this.timer = undefined;
       this.invalidate();
-    }, wait);
+    }, waitMs);
     return false;
   }
 
   /** Makes the next frame update regardless of the interval, so that changes by the user show immediately. */
   restart(): void {
-    this.last = -Infinity;
+    this.lastUpdateMs = -Infinity;
     clearTimeout(this.timer);
     this.timer = undefined;
   }

@@ -25,7 +25,7 @@ export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
   }
 
   dispose(): void {
-    for (const part of [this.lines, this.arrows, this.axes]) part.dispose();
+    for (const batch of [this.lines, this.arrows, this.axes]) batch.dispose();
   }
 
   protected override drawnState(): object {
@@ -33,15 +33,15 @@ export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
   }
 
   protected expandBox(box: Box3): void {
-    for (const part of [this.lines, this.arrows, this.axes]) part.expandBox(box);
+    for (const batch of [this.lines, this.arrows, this.axes]) batch.expandBox(box);
   }
 
   protected arrange(): void {
     const { rows } = this.context.display;
-    const [placed] = this.placed();
-    const frame = placed?.pose ?? new Matrix4();
-    const weights: Float32Array = placed?.content.weights ?? new Float32Array(0);
-    const poses = raiseByWeight(placed?.content.poses ?? new Float32Array(0), weights, rows.number(5, "Arrow Height Scale"));
+    const [posedContent] = this.posedContents();
+    const frame = posedContent?.pose ?? new Matrix4();
+    const weights: Float32Array = posedContent?.content.weights ?? new Float32Array(0);
+    const poses = raiseByWeight(posedContent?.content.poses ?? new Float32Array(0), weights, rows.number(5, "Arrow Height Scale"));
     const [shortest, longest] = [rows.number(0.02, "Min Arrow Length"), rows.number(0.3, "Max Arrow Length")];
     const lengthOf = (i: number): number => shortest + (longest - shortest) * Math.min(Math.max(weights[i] ?? 0, 0), 1);
     const look = { color: colorOf(rows, "#ff1900", "Color"), alpha: rows.number(1, "Alpha") };

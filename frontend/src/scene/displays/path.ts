@@ -11,33 +11,33 @@ const SEGMENTS = 10;
 
 /** rviz_default_plugins/Path: lines through the poses of each path, and optionally the poses themselves. */
 export class PathDrawing extends ContentDrawing<"pose_marks"> {
-  private readonly thin = new ThinLines();
-  private readonly wide = new WideLines();
+  private readonly thinLines = new ThinLines();
+  private readonly wideLines = new WideLines();
   private readonly arrows = new ArrowBatch(this.root, SEGMENTS);
   private readonly axes = new AxesBatch(this.root);
-  private points = 0;
+  private pointCount = 0;
 
   constructor(context: DrawingContext) {
     super(context, "pose_marks");
-    this.root.add(this.thin.root, this.wide.root);
+    this.root.add(this.thinLines.root, this.wideLines.root);
   }
 
   dispose(): void {
-    for (const part of [this.thin, this.wide, this.arrows, this.axes]) part.dispose();
+    for (const batch of [this.thinLines, this.wideLines, this.arrows, this.axes]) batch.dispose();
   }
 
   protected override drawnState(): object {
-    return { points: this.points, arrows: this.arrows.size, axes: this.axes.size, wide: this.wide.root.visible };
+    return { points: this.pointCount, arrows: this.arrows.size, axes: this.axes.size, wide: this.wideLines.root.visible };
   }
 
   protected expandBox(box: Box3): void {
-    for (const part of [this.thin, this.wide, this.arrows, this.axes]) part.expandBox(box);
+    for (const batch of [this.thinLines, this.wideLines, this.arrows, this.axes]) batch.expandBox(box);
   }
 
   protected arrange(): void {
     const { rows } = this.context.display;
     const offset = new Vector3(...rows.vector("Offset"));
-    const paths = this.placed().map(({ content, pose }) => {
+    const paths = this.posedContents().map(({ content, pose }) => {
       const matrices = Array.from({ length: content.poses.length / 7 }, (_, i) => {
         const matrix = poseAt(content.poses, i, new Matrix4()).premultiply(pose);
         return matrix.setPosition(new Vector3().setFromMatrixPosition(matrix).add(offset));
@@ -49,14 +49,14 @@ export class PathDrawing extends ContentDrawing<"pose_marks"> {
       path.forEach((matrix, i) => points.set(matrix.elements.slice(12, 15), i * 3));
       return points;
     });
-    this.points = strips.reduce((sum, strip) => sum + strip.length / 3, 0);
-    const wide = rows.text("Lines", "Line Style") === "Billboards";
+    this.pointCount = strips.reduce((sum, strip) => sum + strip.length / 3, 0);
+    const hasBillboards = rows.text("Lines", "Line Style") === "Billboards";
     const color = colorOf(rows, "#19ff00", "Color");
     const alpha = rows.number(1, "Alpha");
-    this.thin.setStrips(wide ? [] : strips);
-    this.thin.setStyle(color, alpha);
-    this.wide.setStrips(wide ? strips : []);
-    this.wide.setStyle(color, alpha, rows.number(0.03, "Line Width"));
+    this.thinLines.setStrips(hasBillboards ? [] : strips);
+    this.thinLines.setStyle(color, alpha);
+    this.wideLines.setStrips(hasBillboards ? strips : []);
+    this.wideLines.setStyle(color, alpha, rows.number(0.03, "Line Width"));
     this.drawPoses(paths.flat());
   }
 

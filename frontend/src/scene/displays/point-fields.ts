@@ -3,33 +3,33 @@ import type { DrawingContext } from "./drawing";
 
 /** The fields of selected points, requested from the server on demand. */
 export class PointFieldStore {
-  private readonly known = new Map<string, PointFields["fields"] | null>();
-  private readonly stopListening: () => void;
+  private readonly fieldsByPoint = new Map<string, PointFields["fields"] | null>();
+  private readonly unsubscribe: () => void;
 
   constructor(private readonly context: DrawingContext) {
-    this.stopListening = context.session.connection.on("point_fields", (answer) => {
+    this.unsubscribe = context.session.connection.on("point_fields", (answer) => {
       if (answer.display !== context.display.id) return;
-      this.known.set(`${answer.key}:${answer.index}`, answer.fields);
-      context.session.selection.changed.emit(context.session.selection.selected);
+      this.fieldsByPoint.set(`${answer.key}:${answer.index}`, answer.fields);
+      context.session.selection.changed.emit(context.session.selection.selectedLink);
     });
   }
 
   /** Returns the fields of a point by name; null until the server has answered. */
-  of(cloud: string, index: number): PointFields["fields"] | null {
+  find(cloud: string, index: number): PointFields["fields"] | null {
     const key = `${cloud}:${index}`;
-    const fields = this.known.get(key);
+    const fields = this.fieldsByPoint.get(key);
     if (fields !== undefined) return fields;
-    this.known.set(key, null);
+    this.fieldsByPoint.set(key, null);
     this.context.session.connection.send({ type: "ask_point", display: this.context.display.id, key: cloud, index });
     return null;
   }
 
   /** Drops the fields of a cloud whose points were replaced. */
   forget(cloud: string): void {
-    for (const key of this.known.keys()) if (key.startsWith(`${cloud}:`)) this.known.delete(key);
+    for (const key of this.fieldsByPoint.keys()) if (key.startsWith(`${cloud}:`)) this.fieldsByPoint.delete(key);
   }
 
   dispose(): void {
-    this.stopListening();
+    this.unsubscribe();
   }
 }

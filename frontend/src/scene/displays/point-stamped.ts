@@ -32,7 +32,7 @@ export class PointStampedDrawing extends ContentDrawing<"point_marks"> {
     const size = rows.number(0.2, "Radius");
     const alpha = rows.number(1, "Alpha");
     const color = colorOf(rows, "#cc29cc", "Color");
-    const contents = this.placed();
+    const contents = this.posedContents();
     const matrix = new Matrix4();
     this.balls.begin(contents.reduce((sum, { content }) => sum + content.positions.length / 3, 0));
     for (const { content, pose } of contents) {

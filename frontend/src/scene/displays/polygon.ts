@@ -7,7 +7,7 @@ import { colorOf } from "./styles";
 /** rviz_default_plugins/Polygon: a closed line. */
 export class PolygonDrawing extends ContentDrawing<"polygon_line"> {
   private readonly lines = new ThinLines();
-  private corners = 0;
+  private cornerCount = 0;
 
   constructor(context: DrawingContext) {
     super(context, "polygon_line");
@@ -19,7 +19,7 @@ export class PolygonDrawing extends ContentDrawing<"polygon_line"> {
   }
 
   protected override drawnState(): object {
-    return { corners: this.corners };
+    return { corners: this.cornerCount };
   }
 
   protected expandBox(box: Box3): void {
@@ -28,12 +28,12 @@ export class PolygonDrawing extends ContentDrawing<"polygon_line"> {
 
   protected arrange(): void {
     const { rows } = this.context.display;
-    const strips = this.placed().map(({ content, pose }) => {
-      const closed = new Float32Array([...content.points, ...content.points.subarray(0, 3)]);
-      for (let i = 0; i < closed.length; i += 3) new Vector3().fromArray(closed, i).applyMatrix4(pose).toArray(closed, i);
-      return closed;
+    const strips = this.posedContents().map(({ content, pose }) => {
+      const ring = new Float32Array([...content.points, ...content.points.subarray(0, 3)]);
+      for (let i = 0; i < ring.length; i += 3) new Vector3().fromArray(ring, i).applyMatrix4(pose).toArray(ring, i);
+      return ring;
     });
-    this.corners = strips.reduce((sum, strip) => sum + Math.max(0, strip.length / 3 - 1), 0);
+    this.cornerCount = strips.reduce((sum, strip) => sum + Math.max(0, strip.length / 3 - 1), 0);
     this.lines.setStrips(strips);
     this.lines.setStyle(colorOf(rows, "#19ff00", "Color"), rows.number(1, "Alpha"));
   }

@@ -22,7 +22,7 @@ export class PoseArrayDrawing extends ContentDrawing<"pose_marks"> {
   }
 
   dispose(): void {
-    for (const part of [this.lines, this.arrows, this.axes]) part.dispose();
+    for (const batch of [this.lines, this.arrows, this.axes]) batch.dispose();
   }
 
   protected override drawnState(): object {
@@ -30,19 +30,19 @@ export class PoseArrayDrawing extends ContentDrawing<"pose_marks"> {
   }
 
   protected expandBox(box: Box3): void {
-    for (const part of [this.lines, this.arrows, this.axes]) part.expandBox(box);
+    for (const batch of [this.lines, this.arrows, this.axes]) batch.expandBox(box);
   }
 
   protected arrange(): void {
     const { rows } = this.context.display;
     const shape = rows.text("Arrow (Flat)", "Shape");
-    const [placed] = this.placed();
-    const poses: Float32Array = placed?.content.poses ?? new Float32Array(0);
-    const frame = placed?.pose ?? new Matrix4();
+    const [posedContent] = this.posedContents();
+    const poses: Float32Array = posedContent?.content.poses ?? new Float32Array(0);
+    const frame = posedContent?.pose ?? new Matrix4();
     const count = poses.length / 7;
     const color = colorOf(rows, "#ff1900", "Color");
     const alpha = rows.number(1, "Alpha");
-    const solid = {
+    const arrow = {
       shaftLength: rows.number(0.23, "Shaft Length"),
       shaftDiameter: rows.number(0.01, "Shaft Radius"),
       headLength: rows.number(0.07, "Head Length"),
@@ -54,7 +54,7 @@ export class PoseArrayDrawing extends ContentDrawing<"pose_marks"> {
     this.axes.begin(shape === "Axes" ? count : 0);
     for (let i = 0; i < count; i++) {
       poseAt(poses, i, matrix).premultiply(frame);
-      if (shape === "Arrow (3D)") this.arrows.add(matrix, solid, { color, alpha });
+      if (shape === "Arrow (3D)") this.arrows.add(matrix, arrow, { color, alpha });
       else if (shape === "Axes") this.axes.add(matrix);
     }
     this.arrows.end();

@@ -5,7 +5,7 @@ import { ArrowBatch } from "../objects/arrow-batch";
 import { AxesBatch } from "../objects/axes-batch";
 import { CovarianceBatch } from "../objects/covariance-batch";
 import type { DescriptionRow, Hit, SelectionBox } from "../picking";
-import { ContentDrawing, type Placed } from "./content-drawing";
+import { ContentDrawing, type PosedContent } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { colorOf, covarianceStyle, poseArrow, poseAt } from "./styles";
 
@@ -15,7 +15,7 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
   private readonly axes = new AxesBatch(this.root);
   private readonly covariances = new CovarianceBatch(this.root);
 
-  private drawnContents: readonly Placed<PoseMarks>[] = [];
+  private drawnContents: readonly PosedContent<PoseMarks>[] = [];
 
   constructor(context: DrawingContext) {
     super(context, "pose_marks");
@@ -23,33 +23,33 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
 
   pick(ray: Raycaster): Hit | null {
     const hit = this.arrows.pick(ray) ?? this.axes.pick(ray);
-    const found = hit && this.drawnContents[hit.copy];
-    return hit && found ? { key: found.key, distance: hit.distance, point: hit.point } : null;
+    const drawnContent = hit && this.drawnContents[hit.copy];
+    return hit && drawnContent ? { key: drawnContent.key, distance: hit.distance, point: hit.point } : null;
   }
 
   pickBox(box: SelectionBox): readonly string[] {
-    return this.drawnContents.flatMap((content) => {
-      const place = placeOf(content);
-      return box.hasPoint(place.x, place.y, place.z) ? [content.key] : [];
+    return this.drawnContents.flatMap((drawnContent) => {
+      const position = placeOf(drawnContent);
+      return box.hasPoint(position.x, position.y, position.z) ? [drawnContent.key] : [];
     });
   }
 
-  placeOf(key: string): Vector3 | null {
-    const found = this.drawnContents.find((content) => content.key === key);
-    return found ? placeOf(found) : null;
+  positionOf(key: string): Vector3 | null {
+    const drawnContent = this.drawnContents.find((drawnContent) => drawnContent.key === key);
+    return drawnContent ? placeOf(drawnContent) : null;
   }
 
   /** Returns a pose as in RViz's Selection panel: in the frame of its message. */
   describe(key: string): DescriptionRow | null {
-    const found = this.drawnContents.find((content) => content.key === key);
-    if (!found) return null;
-    const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 0] = found.content.poses;
+    const drawnContent = this.drawnContents.find((drawnContent) => drawnContent.key === key);
+    if (!drawnContent) return null;
+    const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 0] = drawnContent.content.poses;
     const children = [
-      { name: "Frame", value: found.frame },
+      { name: "Frame", value: drawnContent.frame },
       describedNumbers("Position", { X: x, Y: y, Z: z }),
       describedNumbers("Orientation", { X: qx, Y: qy, Z: qz, W: qw }),
     ];
-    const { covariances } = found.content;
+    const { covariances } = drawnContent.content;
     if (covariances.length > 0) {
       const variance = (i: number): number => covariances[i * 7] ?? 0;
       children.push(describedNumbers("Covariance Position", { X: variance(0), Y: variance(1), Z: variance(2) }));
@@ -73,24 +73,24 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
   protected arrange(): void {
     const { rows } = this.context.display;
     // In Odometry, the sizes are below Shape.
-    const below = rows.find("Shape")?.children.length ? ["Shape"] : [];
-    const asArrows = rows.text("Arrow", "Shape") === "Arrow";
-    const shape = poseArrow(rows, below);
-    const look = { color: colorOf(rows, "#ff1900", ...below, "Color"), alpha: rows.number(1, ...below, "Alpha") };
+    const parentPath = rows.find("Shape")?.children.length ? ["Shape"] : [];
+    const areArrows = rows.text("Arrow", "Shape") === "Arrow";
+    const shape = poseArrow(rows, parentPath);
+    const look = { color: colorOf(rows, "#ff1900", ...parentPath, "Color"), alpha: rows.number(1, ...parentPath, "Alpha") };
     const style = covarianceStyle(rows);
-    const contents = this.placed();
+    const contents = this.posedContents();
     this.drawnContents = contents;
     const count = contents.reduce((sum, { content }) => sum + content.poses.length / 7, 0);
     const matrix = new Matrix4();
-    this.axes.setShape(rows.number(1, ...below, "Axes Length"), rows.number(0.1, ...below, "Axes Radius"));
-    this.arrows.begin(asArrows ? count : 0);
-    this.axes.begin(asArrows ? 0 : count);
+    this.axes.setShape(rows.number(1, ...parentPath, "Axes Length"), rows.number(0.1, ...parentPath, "Axes Radius"));
+    this.arrows.begin(areArrows ? count : 0);
+    this.axes.begin(areArrows ? 0 : count);
     this.covariances.begin(style ? count : 0);
     for (const { content, pose } of contents) {
       const { poses, covariances } = content;
       for (let i = 0; i < poses.length / 7; i++) {
         poseAt(poses, i, matrix).premultiply(pose);
-        if (asArrows) this.arrows.add(matrix, shape, look);
+        if (areArrows) this.arrows.add(matrix, shape, look);
         else this.axes.add(matrix);
         const covariance = covariances.subarray(i * 36, i * 36 + 36);
         if (style && covariance.length > 0) {
@@ -103,6 +103,6 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
 }
 
 /** Returns the position of the single pose of a content. */
-function placeOf({ content, pose }: Placed<PoseMarks>): Vector3 {
+function placeOf({ content, pose }: PosedContent<PoseMarks>): Vector3 {
   return new Vector3().setFromMatrixPosition(poseAt(content.poses, 0, new Matrix4()).premultiply(pose));
 }

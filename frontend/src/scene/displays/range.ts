@@ -31,7 +31,7 @@ export class RangeDrawing extends ContentDrawing<"range_cone"> {
     const { rows } = this.context.display;
     const color = colorOf(rows, "#ffffff", "Color");
     const alpha = rows.number(0.5, "Alpha");
-    const contents = this.placed();
+    const contents = this.posedContents();
     const [shape, size] = [new Matrix4(), new Matrix4()];
     this.cones.begin(contents.length);
     for (const { content, pose } of contents) {

@@ -17,13 +17,13 @@ const COINCIDENCE = 1e-4;
 /** rviz_default_plugins/RobotModel */
 export class RobotModelDrawing implements Drawing {
   readonly root = new Group();
-  private shown: RobotDrawing | null = null;
-  private next: RobotDrawing | null = null;
-  private robotsShown = 0;
+  private drawing: RobotDrawing | null = null;
+  private nextDrawing: RobotDrawing | null = null;
+  private drawingCount = 0;
   private lighting: Lighting = "Camera";
   private isStyleStale = true;
-  private contrast: boolean;
-  private displaced: Displacement | null = null;
+  private isContrastHigh: boolean;
+  private displacement: Displacement | null = null;
   private readonly unsubscribe: readonly (() => void)[];
 
   constructor(private readonly context: DrawingContext) {
@@ -32,52 +32,52 @@ export class RobotModelDrawing implements Drawing {
     const setRobot = (robot: RobotScene | undefined): void => {
       if (robot?.display === display.id) this.setRobot(robot);
     };
-    this.contrast = session.inspect.current.contrast;
-    this.unsubscribe = [session.robotChanged.on(setRobot), session.inspect.changed.on(() => this.inspectChanged()), session.comparison.changed.on(() => this.recolor())];
+    this.isContrastHigh = session.inspect.current.contrast;
+    this.unsubscribe = [session.robotChanged.on(setRobot), session.inspect.changed.on(() => this.onInspectChanged()), session.comparison.changed.on(() => this.recolor())];
     setRobot(session.robots.get(display.id));
   }
 
   /** The number of visuals drawn now. */
   get visualsDrawn(): number {
-    return this.root.visible ? (this.shown?.visualsDrawn ?? 0) : 0;
+    return this.root.visible ? (this.drawing?.visualsDrawn ?? 0) : 0;
   }
 
   /** Whether the robot has a pose: any link with visuals, or any link if no link has visuals. */
   get hasPose(): boolean {
-    return this.shown?.hasPose ?? false;
+    return this.drawing?.hasPose ?? false;
   }
 
   /** The number of links with a pose. */
   get linkCount(): number {
-    return this.shown?.linkCount ?? 0;
+    return this.drawing?.linkCount ?? 0;
   }
 
   /** A key of the visible parts of the robot; empty while no robot or no transform is known. */
   get visibleKey(): string {
-    const { posed, loading } = this.shown?.progress ?? { posed: 0, loading: 0 };
+    const { posed, loading } = this.drawing?.progress ?? { posed: 0, loading: 0 };
     const isPlain = this.visualsDrawn === 0 && loading > 0;
-    return posed === 0 || isPlain ? "" : [this.robotsShown, posed, loading].join();
+    return posed === 0 || isPlain ? "" : [this.drawingCount, posed, loading].join();
   }
 
   /**
    * Returns the bounding box of the visible parts in the fixed frame, m; of the links' origins if nothing is visible.
    */
   bounds(): Box3 {
-    return this.shown?.bounds() ?? new Box3();
+    return this.drawing?.bounds() ?? new Box3();
   }
 
   /** Returns the height of the ground below the robot in the fixed frame, m. */
   ground(): number {
-    return this.shown?.ground() ?? 0;
+    return this.drawing?.ground() ?? 0;
   }
 
   roughBounds(): Box3 {
-    return this.shown?.roughBounds() ?? new Box3();
+    return this.drawing?.roughBounds() ?? new Box3();
   }
 
   /** The visible meshes. */
   get visibleMeshes(): Mesh[] {
-    return this.root.visible ? (this.shown?.visibleMeshes ?? []) : [];
+    return this.root.visible ? (this.drawing?.visibleMeshes ?? []) : [];
   }
 
   /** The lighting of the robot; Studio has shadows. */
@@ -87,74 +87,74 @@ export class RobotModelDrawing implements Drawing {
   }
 
   /** Draws a part at another pose than that of the description; null restores it. */
-  displace(displaced: Displacement | null): void {
-    this.displaced = displaced;
-    this.shown?.displaceShape(displaced?.shape ?? null);
+  displace(displacement: Displacement | null): void {
+    this.displacement = displacement;
+    this.drawing?.displaceShape(displacement?.shape ?? null);
     this.context.invalidate();
   }
 
-  propertiesChanged(): void {
+  onPropertiesChanged(): void {
     this.isStyleStale = true;
   }
 
   update(): void {
-    if (this.isStyleStale && this.shown) {
+    if (this.isStyleStale && this.drawing) {
       const { display, session } = this.context;
-      this.shown.style(display.rows, this.contrast, this.lighting, (link) => session.comparison.overrideOf(display.id, link));
-      setShadowed(this.shown.root, this.lighting === "Studio" && !session.comparison.isOld(display.id));
+      this.drawing.style(display.rows, this.isContrastHigh, this.lighting, (link) => session.comparison.overrideOf(display.id, link));
+      setShadowed(this.drawing.root, this.lighting === "Studio" && !session.comparison.isOld(display.id));
     }
     this.isStyleStale = false;
     const { frames } = this.context.session;
-    const find = (link: LinkScene, matrix: Matrix4): boolean => {
-      const found = framePose(frames, frames.row(link.frame), matrix);
-      if (found) this.displaced?.link?.(link.name, matrix);
-      return found;
+    const computePose = (link: LinkScene, matrix: Matrix4): boolean => {
+      const hasPose = framePose(frames, frames.rowOf(link.frame), matrix);
+      if (hasPose) this.displacement?.link?.(link.name, matrix);
+      return hasPose;
     };
-    this.shown?.place(find, this.hiddenDuplicates());
-    this.shown?.chooseDetail(this.context.camera());
+    this.drawing?.place(computePose, this.hiddenDuplicates());
+    this.drawing?.chooseDetail(this.context.camera());
   }
 
   simplify(view: MovingView | null): void {
-    this.shown?.simplify(view);
+    this.drawing?.simplify(view);
   }
 
-  settled(): boolean {
-    return this.next === null && (this.shown?.isSettled ?? true);
+  isSettled(): boolean {
+    return this.nextDrawing === null && (this.drawing?.isSettled ?? true);
   }
 
   pick(ray: Raycaster): Hit | null {
-    return this.shown?.pick(ray) ?? null;
+    return this.drawing?.pick(ray) ?? null;
   }
 
   pickBox(box: SelectionBox): readonly string[] {
-    return this.shown?.pickBox(box) ?? [];
+    return this.drawing?.pickBox(box) ?? [];
   }
 
   describe(link: string): DescriptionRow | null {
-    return this.shown?.describe(link) ?? null;
+    return this.drawing?.describe(link) ?? null;
   }
 
   inspect(): object {
-    return this.shown?.inspect() ?? {};
+    return this.drawing?.inspect() ?? {};
   }
 
   /** Returns the origin of a link's frame, for links without visuals. */
-  placeOf(name: string): Vector3 | null {
+  positionOf(name: string): Vector3 | null {
     const { session, display } = this.context;
-    const link = session.robots.get(display.id)?.links.find((each) => each.name === name);
+    const link = session.robots.get(display.id)?.links.find((scene) => scene.name === name);
     const pose = new Matrix4();
-    if (!link || !framePose(session.frames, session.frames.row(link.frame), pose)) return null;
+    if (!link || !framePose(session.frames, session.frames.rowOf(link.frame), pose)) return null;
     return new Vector3().setFromMatrixPosition(pose);
   }
 
   objectsOf(link: string): readonly Object3D[] {
-    return this.shown?.objectsOf(link) ?? [];
+    return this.drawing?.objectsOf(link) ?? [];
   }
 
   dispose(): void {
-    for (const forget of this.unsubscribe) forget();
-    this.next?.dispose();
-    this.shown?.dispose();
+    for (const stop of this.unsubscribe) stop();
+    this.nextDrawing?.dispose();
+    this.drawing?.dispose();
   }
 
   /**
@@ -164,9 +164,9 @@ export class RobotModelDrawing implements Drawing {
   private hiddenDuplicates(): ((link: LinkScene) => boolean) | undefined {
     const { display, session } = this.context;
     const { comparison, displays, frames, robots } = session;
-    const other = comparison.isOld(display.id) ? (comparison.compared?.new.display ?? "") : "";
-    if (displays.find(other)?.enabled !== true) return undefined;
-    const frameOf = new Map(robots.get(other)?.links.map(({ name, frame }) => [name, frame]));
+    const newDisplay = comparison.isOld(display.id) ? (comparison.compared?.new.display ?? "") : "";
+    if (displays.find(newDisplay)?.isEnabled !== true) return undefined;
+    const frameOf = new Map(robots.get(newDisplay)?.links.map(({ name, frame }) => [name, frame]));
     return ({ name, frame }) => {
       const twin = comparison.twinOf(display.id, name);
       return twin !== undefined && frames.difference(frame, frameOf.get(twin) ?? "") < COINCIDENCE;
@@ -178,17 +178,17 @@ export class RobotModelDrawing implements Drawing {
     this.context.invalidate();
   }
 
-  private inspectChanged(): void {
-    const { contrast } = this.context.session.inspect.current;
-    if (contrast === this.contrast) return;
-    this.contrast = contrast;
+  private onInspectChanged(): void {
+    const { contrast: isContrastHigh } = this.context.session.inspect.current;
+    if (isContrastHigh === this.isContrastHigh) return;
+    this.isContrastHigh = isContrastHigh;
     this.isStyleStale = true;
     this.context.invalidate();
   }
 
   private setRobot(scene: RobotScene): void {
     const { session, display, meshes, invalidate } = this.context;
-    this.next?.dispose();
+    this.nextDrawing?.dispose();
     const robot = new RobotDrawing(
       scene,
       meshes,
@@ -200,22 +200,22 @@ export class RobotModelDrawing implements Drawing {
         invalidate();
       },
     );
-    this.next = robot;
-    if (robot.isSettled || this.shown === null) {
+    this.nextDrawing = robot;
+    if (robot.isSettled || this.drawing === null) {
       this.show(robot);
       return;
     }
     const timeout = new Promise((resolve) => setTimeout(resolve, SWAP_WITHIN_MS));
     void Promise.race([robot.settled, timeout]).then(() => {
-      if (this.next === robot) this.show(robot);
+      if (this.nextDrawing === robot) this.show(robot);
     });
   }
 
   private show(robot: RobotDrawing): void {
-    this.shown?.dispose();
-    this.shown = robot;
-    this.robotsShown += 1;
-    this.next = null;
+    this.drawing?.dispose();
+    this.drawing = robot;
+    this.drawingCount += 1;
+    this.nextDrawing = null;
     this.root.add(robot.root);
     this.isStyleStale = true;
     this.update();

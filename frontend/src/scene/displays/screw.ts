@@ -44,25 +44,25 @@ export class ScrewDrawing extends ContentDrawing<"screw"> {
     const [linear, angular] = rows.find("Force Color") ? ["Force", "Torque"] : ["Linear", "Angular"];
     const alpha = rows.number(1, "Alpha");
     const width = rows.number(0.5, "Arrow Width");
-    const least = rows.bool(true, "Hide Small Values") ? width : 0;
-    const color = colorOf(rows, "#cc3333", `${linear} Color`);
-    const turning = colorOf(rows, "#cccc33", `${angular} Color`);
-    const scale = (name: string): number => rows.number(2, `${name} Arrow Scale`);
-    const contents = this.placed();
+    const minLength = rows.bool(true, "Hide Small Values") ? width : 0;
+    const linearColor = colorOf(rows, "#cc3333", `${linear} Color`);
+    const angularColor = colorOf(rows, "#cccc33", `${angular} Color`);
+    const scaleOf = (name: string): number => rows.number(2, `${name} Arrow Scale`);
+    const contents = this.posedContents();
     const circles: Float32Array[] = [];
     const direction = new Vector3();
     this.arrows.begin(contents.length * 3);
     for (const { content, pose } of contents) {
-      const length = direction.fromArray(content.linear).length() * scale(linear);
-      if (length > least) this.addVector(pose, direction, length, width, { color, alpha });
-      const turn = direction.fromArray(content.angular).length() * scale(angular);
-      if (turn <= least) continue;
-      this.addVector(pose, direction, turn, width, { color: turning, alpha });
-      circles.push(this.addCircle(pose, direction, turn, width, { color: turning, alpha }));
+      const linearLength = direction.fromArray(content.linear).length() * scaleOf(linear);
+      if (linearLength > minLength) this.addVector(pose, direction, linearLength, width, { color: linearColor, alpha });
+      const angularLength = direction.fromArray(content.angular).length() * scaleOf(angular);
+      if (angularLength <= minLength) continue;
+      this.addVector(pose, direction, angularLength, width, { color: angularColor, alpha });
+      circles.push(this.addCircle(pose, direction, angularLength, width, { color: angularColor, alpha }));
     }
     this.arrows.end();
     this.circles.setStrips(circles);
-    this.circles.setStyle(turning, alpha, width * CIRCLE_WIDTH);
+    this.circles.setStyle(angularColor, alpha, width * CIRCLE_WIDTH);
   }
 
   private addVector(pose: Matrix4, direction: Vector3, length: number, width: number, look: Look): void {

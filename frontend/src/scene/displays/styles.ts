@@ -11,32 +11,32 @@ export function colorOf(rows: PropertyRows, fallback: string, ...path: string[])
 }
 
 /** Returns the arrow of Pose, PoseWithCovariance and Odometry; RViz's radius is a thickness, see `axesGeometry`. */
-export function poseArrow(rows: PropertyRows, below: readonly string[]): ArrowShape {
+export function poseArrow(rows: PropertyRows, parentPath: readonly string[]): ArrowShape {
   return {
-    shaftLength: rows.number(1, ...below, "Shaft Length"),
-    shaftDiameter: rows.number(0.05, ...below, "Shaft Radius"),
-    headLength: rows.number(0.3, ...below, "Head Length"),
-    headDiameter: rows.number(0.1, ...below, "Head Radius"),
+    shaftLength: rows.number(1, ...parentPath, "Shaft Length"),
+    shaftDiameter: rows.number(0.05, ...parentPath, "Shaft Radius"),
+    headLength: rows.number(0.3, ...parentPath, "Head Length"),
+    headDiameter: rows.number(0.1, ...parentPath, "Head Radius"),
   };
 }
 
 /** Returns the style of the Covariance property; null if it is off or the display has none. */
 export function covarianceStyle(rows: PropertyRows): CovarianceStyle | null {
   if (!rows.bool(false, "Covariance")) return null;
-  const top = (name: string): string[] => ["Covariance", name];
-  const position = rows.bool(true, ...top("Position")) && {
-    color: colorOf(rows, "#cc33cc", ...top("Position"), "Color"),
-    alpha: rows.number(0.3, ...top("Position"), "Alpha"),
-    scale: rows.number(1, ...top("Position"), "Scale"),
+  const pathOf = (name: string): string[] => ["Covariance", name];
+  const position = rows.bool(true, ...pathOf("Position")) && {
+    color: colorOf(rows, "#cc33cc", ...pathOf("Position"), "Color"),
+    alpha: rows.number(0.3, ...pathOf("Position"), "Alpha"),
+    scale: rows.number(1, ...pathOf("Position"), "Scale"),
   };
-  const unique = colorOf(rows, "#ffff7f", ...top("Orientation"), "Color");
-  const rgb = rows.text("Unique", ...top("Orientation"), "Color Style") === "RGB";
-  const orientation = rows.bool(true, ...top("Orientation")) && {
-    local: rows.text("Local", ...top("Orientation"), "Frame") === "Local",
-    colors: rgb ? ([0xff0000, 0x00ff00, 0x0000ff] as const) : ([unique, unique, unique] as const),
-    alpha: rows.number(0.5, ...top("Orientation"), "Alpha"),
-    offset: rows.number(1, ...top("Orientation"), "Offset"),
-    scale: rows.number(1, ...top("Orientation"), "Scale"),
+  const uniqueColor = colorOf(rows, "#ffff7f", ...pathOf("Orientation"), "Color");
+  const isRgb = rows.text("Unique", ...pathOf("Orientation"), "Color Style") === "RGB";
+  const orientation = rows.bool(true, ...pathOf("Orientation")) && {
+    local: rows.text("Local", ...pathOf("Orientation"), "Frame") === "Local",
+    colors: isRgb ? ([0xff0000, 0x00ff00, 0x0000ff] as const) : ([uniqueColor, uniqueColor, uniqueColor] as const),
+    alpha: rows.number(0.5, ...pathOf("Orientation"), "Alpha"),
+    offset: rows.number(1, ...pathOf("Orientation"), "Offset"),
+    scale: rows.number(1, ...pathOf("Orientation"), "Scale"),
   };
   return { position: position || null, orientation: orientation || null };
 }

@@ -35,16 +35,16 @@ export class TfDrawing implements Drawing {
   private drawnAgeKey = "";
   private nameCount = 0;
   /** The frames that have axes, in the order of the copies in the batch. */
-  private withAxes: string[] = [];
+  private axesNames: string[] = [];
 
   constructor(private readonly context: DrawingContext) {
     this.root.add(this.names.root);
     const { frames } = context.session;
-    this.unsubscribe = [frames.agesChanged.on(() => this.agesChanged())];
-    this.propertiesChanged();
+    this.unsubscribe = [frames.agesChanged.on(() => this.onAgesChanged())];
+    this.onPropertiesChanged();
   }
 
-  propertiesChanged(): void {
+  onPropertiesChanged(): void {
     const { rows } = this.context.display;
     const frames = rows.find("Frames")?.children ?? [];
     this.enabledFrames = new Set(frames.filter((row) => row.value === true).map((row) => row.name));
@@ -53,29 +53,29 @@ export class TfDrawing implements Drawing {
   update(): void {
     const { rows } = this.context.display;
     const scale = rows.number(1, "Marker Scale");
-    const visible = this.visibleFrames();
+    const fades = this.visibleFrames();
     const [pose, size] = [new Matrix4(), new Matrix4().makeScale(scale, scale, scale)];
-    const at = new Vector3();
+    const position = new Vector3();
     const { frames } = this.context.session;
     const showAxes = rows.bool(true, "Show Axes");
     const showNames = rows.bool(false, "Show Names");
-    this.markers.refine(visible.length > MANY_FRAMES ? COARSE_SEGMENTS : FINE_SEGMENTS);
+    this.markers.refine(fades.length > MANY_FRAMES ? COARSE_SEGMENTS : FINE_SEGMENTS);
     const { axes } = this.markers;
-    axes.begin(visible.length);
+    axes.begin(fades.length);
     this.nameCount = 0;
-    this.withAxes = [];
-    this.names.begin(showNames ? visible.reduce((sum, [row]) => sum + (frames.names[row]?.length ?? 0), 0) : 0);
-    for (const [row, fade] of visible) {
+    this.axesNames = [];
+    this.names.begin(showNames ? fades.reduce((sum, [row]) => sum + (frames.names[row]?.length ?? 0), 0) : 0);
+    for (const [row, fade] of fades) {
       if (!framePose(frames, row, pose)) continue;
       if (showAxes) {
         axes.add(pose.clone().multiply(size), fade.gray, fade.alpha);
-        this.withAxes.push(frames.names[row] ?? "");
+        this.axesNames.push(frames.names[row] ?? "");
       }
       if (!showNames) continue;
       this.nameCount += 1;
       this.names.add(
         frames.names[row] ?? "",
-        at.setFromMatrixPosition(pose),
+        position.setFromMatrixPosition(pose),
         NAME_HEIGHT * scale,
         fade.gray,
         fade.alpha,
@@ -83,34 +83,34 @@ export class TfDrawing implements Drawing {
     }
     axes.end();
     this.names.end();
-    this.drawArrows(rows.bool(true, "Show Arrows") ? visible : [], scale);
+    this.drawArrows(rows.bool(true, "Show Arrows") ? fades : [], scale);
     this.drawnAgeKey = this.ageKey();
   }
 
   /** Picks frames by their axes, as in RViz. */
   pick(ray: Raycaster): Hit | null {
     const hit = this.markers.axes.pick(ray);
-    const key = hit && this.withAxes[hit.copy];
+    const key = hit && this.axesNames[hit.copy];
     return hit && typeof key === "string" ? { key, distance: hit.distance, point: hit.point } : null;
   }
 
   pickBox(box: SelectionBox): readonly string[] {
-    return this.withAxes.filter((name) => {
-      const place = this.placeOf(name);
-      return place !== null && box.hasPoint(place.x, place.y, place.z);
+    return this.axesNames.filter((name) => {
+      const position = this.positionOf(name);
+      return position !== null && box.hasPoint(position.x, position.y, position.z);
     });
   }
 
-  placeOf(name: string): Vector3 | null {
+  positionOf(name: string): Vector3 | null {
     const pose = new Matrix4();
     const { frames } = this.context.session;
-    return framePose(frames, frames.row(name), pose) ? new Vector3().setFromMatrixPosition(pose) : null;
+    return framePose(frames, frames.rowOf(name), pose) ? new Vector3().setFromMatrixPosition(pose) : null;
   }
 
   /** Returns a frame as RViz's Selection panel shows it. */
   describe(name: string): DescriptionRow | null {
     const { frames } = this.context.session;
-    const row = frames.row(name);
+    const row = frames.rowOf(name);
     const pose = new Matrix4();
     if (!framePose(frames, row, pose)) return null;
     const parent = frames.names[frames.parents[row] ?? -1] ?? "";
@@ -128,23 +128,23 @@ export class TfDrawing implements Drawing {
   }
 
   dispose(): void {
-    for (const forget of this.unsubscribe) forget();
+    for (const stop of this.unsubscribe) stop();
     this.markers.dispose();
     this.names.dispose();
   }
 
-  private drawArrows(visible: readonly (readonly [number, Fade])[], scale: number): void {
+  private drawArrows(fades: readonly (readonly [number, Fade])[], scale: number): void {
     const { frames } = this.context.session;
     const { arrows } = this.markers;
-    const [from, along] = [new Vector3(), new Vector3()];
+    const [start, direction] = [new Vector3(), new Vector3()];
     const pose = new Matrix4();
-    arrows.begin(visible.length);
-    for (const [row, { gray, alpha }] of visible) {
+    arrows.begin(fades.length);
+    for (const [row, { gray, alpha }] of fades) {
       const parent = frames.parents[row] ?? -1;
       if (!frames.has(parent)) continue;
-      from.fromArray(frames.poses, row * 7);
-      along.fromArray(frames.poses, parent * 7).sub(from);
-      const distance = along.length();
+      start.fromArray(frames.poses, row * 7);
+      direction.fromArray(frames.poses, parent * 7).sub(start);
+      const distance = direction.length();
       if (distance < MIN_ARROW) continue;
       const headLength = distance < HEAD_LENGTH * scale ? HEAD_LENGTH * scale * distance : HEAD_LENGTH * scale;
       const shape = {
@@ -153,7 +153,7 @@ export class TfDrawing implements Drawing {
         headLength,
         headDiameter: HEAD_DIAMETER * scale,
       };
-      arrows.add(alongX(from, along, pose), shape, { color: SHAFT_COLOR, headColor: HEAD_COLOR, alpha, gray });
+      arrows.add(alongX(start, direction, pose), shape, { color: SHAFT_COLOR, headColor: HEAD_COLOR, alpha, gray });
     }
     arrows.end();
   }
@@ -171,8 +171,8 @@ export class TfDrawing implements Drawing {
   }
 
   /** Requests a frame only if the fading of some frame changed by a step. */
-  private agesChanged(): void {
-    if (this.context.display.enabled && this.ageKey() !== this.drawnAgeKey) this.context.invalidate();
+  private onAgesChanged(): void {
+    if (this.context.display.isEnabled && this.ageKey() !== this.drawnAgeKey) this.context.invalidate();
   }
 
   private ageKey(): string {

@@ -20,7 +20,7 @@ const NEAR_LENGTH = 1;
 /** The lines of a sensor, with the pose of the sensor in its link. */
 interface SensorMark {
   readonly sensor: LidarScene | CameraScene;
-  readonly local: Matrix4;
+  readonly localPose: Matrix4;
   readonly lines: ThinLines;
 }
 
@@ -45,9 +45,9 @@ export class WorldSensors {
   }
 
   setRanges({ lidar, ranges }: WorldRays): void {
-    const mark = this.lidars.get(lidar);
-    if (!mark || ranges.length !== mark.sensor.horizontal.count * mark.sensor.vertical.count) return;
-    mark.lines.setSegments(...raysOf(mark.sensor, ranges));
+    const createMark = this.lidars.get(lidar);
+    if (!createMark || ranges.length !== createMark.sensor.horizontal.count * createMark.sensor.vertical.count) return;
+    createMark.lines.setSegments(...raysOf(createMark.sensor, ranges));
   }
 
   /** Removes the rays of a lidar. */
@@ -64,19 +64,19 @@ export class WorldSensors {
 
   /** Moves the lines to the poses of their links in the fixed frame. */
   place(poseOf: (link: string) => Matrix4 | null): void {
-    for (const { sensor, local, lines } of [...this.lidars.values(), ...this.cameras]) {
+    for (const { sensor, localPose, lines } of [...this.lidars.values(), ...this.cameras]) {
       if (!lines.root.visible) continue;
       const pose = poseOf(sensor.link);
-      if (pose) lines.root.matrix.multiplyMatrices(pose, local);
+      if (pose) lines.root.matrix.multiplyMatrices(pose, localPose);
     }
   }
 
   /** Returns what is drawn, for tests: the number of rays of each lidar, and the cameras. */
   inspect(): object {
-    const drawn = ({ lines }: SensorMark): boolean => lines.root.visible;
+    const isDrawn = ({ lines }: SensorMark): boolean => lines.root.visible;
     const rays: Record<string, number> = {};
-    for (const mark of this.lidars.values()) if (drawn(mark)) rays[mark.sensor.name] = mark.lines.count;
-    return { rays, frustums: this.cameras.filter(drawn).map(({ sensor }) => sensor.name) };
+    for (const mark of this.lidars.values()) if (isDrawn(mark)) rays[mark.sensor.name] = mark.lines.count;
+    return { rays, frustums: this.cameras.filter(isDrawn).map(({ sensor }) => sensor.name) };
   }
 
   dispose(): void {
@@ -86,7 +86,7 @@ export class WorldSensors {
   }
 
   private mark(sensor: LidarScene | CameraScene): SensorMark {
-    const local = new Matrix4().compose(
+    const localPose = new Matrix4().compose(
       new Vector3().fromArray(sensor.position),
       new Quaternion().fromArray(sensor.quaternion),
       new Vector3(1, 1, 1),
@@ -94,7 +94,7 @@ export class WorldSensors {
     const lines = new ThinLines();
     lines.root.matrixAutoUpdate = false;
     this.root.add(lines.root);
-    return { sensor, local, lines };
+    return { sensor, localPose, lines };
   }
 }
 
@@ -107,11 +107,11 @@ function raysOf({ horizontal, vertical, nearest, farthest }: LidarScene, ranges:
   const segments = new Float32Array(ranges.length * 6);
   const colors = new Float32Array(ranges.length * 8);
   for (let row = 0, ray = 0; row < vertical.count; row++) {
-    const up = vertical.first + row * vertical.step;
-    const [flat, z] = [Math.cos(up), Math.sin(up)];
+    const elevation = vertical.first + row * vertical.step;
+    const [horizontalLength, z] = [Math.cos(elevation), Math.sin(elevation)];
     for (let column = 0; column < horizontal.count; column++, ray++) {
-      const across = horizontal.first + column * horizontal.step;
-      const [x, y] = [flat * Math.cos(across), flat * Math.sin(across)];
+      const azimuth = horizontal.first + column * horizontal.step;
+      const [x, y] = [horizontalLength * Math.cos(azimuth), horizontalLength * Math.sin(azimuth)];
       const range = ranges[ray] ?? Infinity;
       const length = Math.min(Math.max(range, nearest), farthest);
       segments.set([nearest * x, nearest * y, nearest * z, length * x, length * y, length * z], ray * 6);
@@ -125,24 +125,24 @@ function raysOf({ horizontal, vertical, nearest, farthest }: LidarScene, ranges:
 /**
  * Returns segments and colors of a camera's frustum: the near and far planes, and the edges from the optical center.
  */
-function frustumOf({ left, right, up, down, near, far }: CameraScene): [Float32Array, Float32Array] {
+function frustumOf({ left, right, up: elevation, down, near, far }: CameraScene): [Float32Array, Float32Array] {
   const segments: number[] = [];
   const colors: number[] = [];
-  const line = (from: readonly number[], to: readonly number[], color: Color): void => {
-    segments.push(...from, ...to);
+  const addLine = (start: readonly number[], end: readonly number[], color: Color): void => {
+    segments.push(...start, ...end);
     colors.push(...color, ...color);
   };
-  const corners = [[left, up], [-right, up], [-right, -down], [left, -down]] as const;
-  let [beforeY, beforeZ] = corners[3];
+  const corners = [[left, elevation], [-right, elevation], [-right, -down], [left, -down]] as const;
+  let [previousY, previousZ] = corners[3];
   for (const [y, z] of corners) {
-    const at = (x: number): number[] => [x, x * y, x * z];
-    let reached = Math.min(Math.max(NEAR_LENGTH, near), far);
-    line([0, 0, 0], at(reached), FRUSTUM);
+    const pointAt = (x: number): number[] => [x, x * y, x * z];
+    let distance = Math.min(Math.max(NEAR_LENGTH, near), far);
+    addLine([0, 0, 0], pointAt(distance), FRUSTUM);
     // Split the line: software renderers drop a line that extends far behind the viewer.
-    for (; reached < far; reached *= 2) line(at(reached), at(Math.min(2 * reached, far)), FRUSTUM_FAR);
-    line(at(near), [near, near * beforeY, near * beforeZ], FRUSTUM);
-    line(at(far), [far, far * beforeY, far * beforeZ], FRUSTUM_FAR);
-    [beforeY, beforeZ] = [y, z];
+    for (; distance < far; distance *= 2) addLine(pointAt(distance), pointAt(Math.min(2 * distance, far)), FRUSTUM_FAR);
+    addLine(pointAt(near), [near, near * previousY, near * previousZ], FRUSTUM);
+    addLine(pointAt(far), [far, far * previousY, far * previousZ], FRUSTUM_FAR);
+    [previousY, previousZ] = [y, z];
   }
   return [new Float32Array(segments), new Float32Array(colors)];
 }

@@ -24,9 +24,9 @@ const FALLEN_Z = -1;
 /** linkwright/World: the links of all models of a simulated world. */
 export class WorldDrawing implements Drawing {
   readonly root = new Group();
-  private shown: RobotDrawing | null = null;
+  private drawing: RobotDrawing | null = null;
   private scene: WorldScene | null = null;
-  private placed: { data: DisplayData; content: WorldPoses } | null = null;
+  private poses: { data: DisplayData; content: WorldPoses } | null = null;
   private rowOf = new Map<string, number>();
   private readonly displacement = new Displacement();
   private isStyleStale = true;
@@ -43,12 +43,12 @@ export class WorldDrawing implements Drawing {
     this.root.add(this.lights.root, this.sensors.root);
   }
 
-  dataChanged(data: DisplayData): void {
+  onDataChanged(data: DisplayData): void {
     const { content } = data;
     if (content.kind === "world_scene") this.setScene(content);
     else if (content.kind === "world_poses") {
-      if (this.placed) this.displacement.clearIfPosesChanged(this.placed.content.poses, content.poses, this.rowOf);
-      this.placed = { data, content };
+      if (this.poses) this.displacement.clearIfPosesChanged(this.poses.content.poses, content.poses, this.rowOf);
+      this.poses = { data, content };
       this.isPoseStale = true;
     } else if (content.kind === "world_rays") {
       this.sensors.setRanges(content);
@@ -56,41 +56,41 @@ export class WorldDrawing implements Drawing {
     }
   }
 
-  dataForgotten(key: string | null): void {
+  onDataForgotten(key: string | null): void {
     if (key !== null) {
       if (key.startsWith(RAYS)) this.sensors.forget(key.slice(RAYS.length));
       return;
     }
     this.sensors.dispose();
-    this.shown?.dispose();
-    this.shown = this.scene = this.placed = null;
+    this.drawing?.dispose();
+    this.drawing = this.scene = this.poses = null;
   }
 
-  propertiesChanged(): void {
+  onPropertiesChanged(): void {
     this.isStyleStale = true;
   }
 
   update(): void {
-    const { shown, context } = this;
-    if (!shown) return;
-    if (this.placed?.data.pose === null) this.isPoseStale = true; // it follows its frame
+    const { drawing, context } = this;
+    if (!drawing) return;
+    if (this.poses?.data.pose === null) this.isPoseStale = true; // it follows its frame
     if (this.isStyleStale && this.scene) {
       this.lights.style(context.display.rows, this.scene);
-      shown.style(context.display.rows, context.session.inspect.current.contrast, this.lights.lighting);
-      this.lights.shade(shown.root);
+      drawing.style(context.display.rows, context.session.inspect.current.contrast, this.lights.lighting);
+      this.lights.shade(drawing.root);
       this.sensors.style(context.display.rows);
     }
     if (this.isStyleStale || this.isPoseStale) {
-      this.place(shown);
+      this.place(drawing);
       this.sensors.place((link) => this.poseOf(link));
-      this.lights.place(this.world(), (link) => this.poseOf(link), () => this.boxForShadows(shown));
+      this.lights.place(this.worldPose(), (link) => this.poseOf(link), () => this.boxForShadows(drawing));
     }
     this.isStyleStale = this.isPoseStale = false;
-    shown.chooseDetail(context.camera());
+    drawing.chooseDetail(context.camera());
   }
 
   simplify(view: MovingView | null): void {
-    this.shown?.simplify(view);
+    this.drawing?.simplify(view);
   }
 
   /** The lighting of the world. */
@@ -101,27 +101,27 @@ export class WorldDrawing implements Drawing {
   /** The world's own light; null while the camera's light is used. */
   get ownLight(): OwnLight | null {
     if (!this.scene || !this.lights.isLit) return null;
-    const own = this.lights.isOfWorld;
+    const isWorldLight = this.lights.isOfWorld;
     const { daylight, fog } = this.scene;
     return {
       shadows: this.lights.castsShadows,
-      background: own ? this.lights.background(this.scene) : null,
+      background: isWorldLight ? this.lights.background(this.scene) : null,
       daylight,
-      fog: own ? fog : null,
+      fog: isWorldLight ? fog : null,
     };
   }
 
   /** Whether any part of the world has a pose. */
   get hasPose(): boolean {
-    return this.shown?.hasPose ?? false;
+    return this.drawing?.hasPose ?? false;
   }
 
-  settled(): boolean {
-    return this.shown?.isSettled ?? true;
+  isSettled(): boolean {
+    return this.drawing?.isSettled ?? true;
   }
 
   bounds(): Box3 {
-    return this.shown?.bounds() ?? new Box3();
+    return this.drawing?.bounds() ?? new Box3();
   }
 
   get hasRobots(): boolean {
@@ -132,36 +132,36 @@ export class WorldDrawing implements Drawing {
    * Returns the bounding boxes of the robots and of everything but grounds, without what has fallen, in the fixed
    * frame, m.
    */
-  extents(): { robots: Box3; world: Box3 } {
-    const [robots, world, all] = [new Box3(), new Box3(), new Box3()];
+  boundsByKind(): { robots: Box3; world: Box3 } {
+    const [robots, world, everything] = [new Box3(), new Box3(), new Box3()];
     const names = new Set(this.scene?.robots);
-    const boxes = [...(this.shown?.boundsOfLinks() ?? [])].filter(([, box]) => !box.isEmpty());
+    const boxes = [...(this.drawing?.boundsOfLinks() ?? [])].filter(([, box]) => !box.isEmpty());
     const lowest = Math.min(0, ...boxes.map(([link, box]) => (names.has(modelOf(link)) ? 0 : box.min.z)));
     for (const [link, box] of boxes) {
       if (this.isFlat(link)) continue;
       if (names.has(modelOf(link)) && box.max.z >= lowest + FALLEN_Z) robots.union(box);
       if (box.max.z < FALLEN_Z) continue;
       if (!isLikeGround(box)) world.union(box);
-      all.union(box);
+      everything.union(box);
     }
-    return { robots, world: world.isEmpty() ? all : world };
+    return { robots, world: world.isEmpty() ? everything : world };
   }
 
   /** Returns a free position for a model, near the robots, in the frame of the world, m. */
   freePlace(): number[] {
-    const { robots } = this.extents();
-    const near = robots.isEmpty() ? null : robots.getCenter(new Vector3());
+    const { robots } = this.boundsByKind();
+    const robotCenter = robots.isEmpty() ? null : robots.getCenter(new Vector3());
     const names = new Set(this.scene?.robots);
     // Ignore walls around the robot: their box contains the whole room.
-    const surrounds = (link: string, box: Box3): boolean => near !== null && !names.has(modelOf(link)) && box.containsPoint(near);
-    const boxes = [...(this.shown?.boundsOfLinks() ?? [])].filter(([link, box]) => !box.isEmpty() && !this.isFlat(link) && !isLikeGround(box) && !surrounds(link, box));
-    return freePlace(boxes.map(([, box]) => box), this.world(), near);
+    const surrounds = (link: string, box: Box3): boolean => robotCenter !== null && !names.has(modelOf(link)) && box.containsPoint(robotCenter);
+    const boxes = [...(this.drawing?.boundsOfLinks() ?? [])].filter(([link, box]) => !box.isEmpty() && !this.isFlat(link) && !isLikeGround(box) && !surrounds(link, box));
+    return freePlace(boxes.map(([, box]) => box), this.worldPose(), robotCenter);
   }
 
   /** Returns the pose of the file's camera, which looks along x, in the fixed frame; null if the file has none. */
   cameraOfFile(): Matrix4 | null {
     const camera = this.scene?.camera;
-    return camera ? poseMatrix(camera, new Matrix4()).premultiply(this.world()) : null;
+    return camera ? poseMatrix(camera, new Matrix4()).premultiply(this.worldPose()) : null;
   }
 
   /** Whether a ray hits a robot, or nothing within its range. */
@@ -171,28 +171,28 @@ export class WorldDrawing implements Drawing {
   }
 
   pick(ray: Raycaster): Hit | null {
-    return this.shown?.pick(ray) ?? null;
+    return this.drawing?.pick(ray) ?? null;
   }
 
   pickBox(box: SelectionBox): readonly string[] {
-    return this.shown?.pickBox(box) ?? [];
+    return this.drawing?.pickBox(box) ?? [];
   }
 
   describe(link: string): DescriptionRow | null {
-    return this.shown?.describe(link) ?? null;
+    return this.drawing?.describe(link) ?? null;
   }
 
   objectsOf(link: string): readonly Object3D[] {
-    return this.shown?.objectsOf(link) ?? [];
+    return this.drawing?.objectsOf(link) ?? [];
   }
 
-  placeOf(link: string): Vector3 | null {
-    return this.shown?.placeOf(link) ?? null;
+  positionOf(link: string): Vector3 | null {
+    return this.drawing?.placeOf(link) ?? null;
   }
 
   /** Returns the pose of a link in the fixed frame; null until it is known. */
   poseOf(link: string): Matrix4 | null {
-    return this.shown?.poseOf(link) ?? null;
+    return this.drawing?.poseOf(link) ?? null;
   }
 
   /** Returns the links of a top-level model of the world. */
@@ -220,63 +220,63 @@ export class WorldDrawing implements Drawing {
   /** Converts a direction from the fixed frame to the frame of the world. */
   directionToWorld(direction: Vector3): Vector3 {
     const length = direction.length();
-    return direction.clone().transformDirection(this.world().invert()).multiplyScalar(length);
+    return direction.clone().transformDirection(this.worldPose().invert()).multiplyScalar(length);
   }
 
   /** Converts a point from the fixed frame to the frame of the world, m. */
   pointToWorld(point: readonly number[]): number[] {
-    return new Vector3().fromArray(point).applyMatrix4(this.world().invert()).toArray();
+    return new Vector3().fromArray(point).applyMatrix4(this.worldPose().invert()).toArray();
   }
 
   /** Returns the pose of the world in the fixed frame. */
-  world(): Matrix4 {
-    const world = new Matrix4();
-    if (this.placed) dataPose(this.context.session.frames, this.placed.data, world);
-    return world;
+  worldPose(): Matrix4 {
+    const pose = new Matrix4();
+    if (this.poses) dataPose(this.context.session.frames, this.poses.data, pose);
+    return pose;
   }
 
   inspect(): object {
-    return { revision: this.scene?.revision ?? 0, ...this.shown?.inspect(), light: this.lights.inspect(), sensors: this.sensors.inspect() };
+    return { revision: this.scene?.revision ?? 0, ...this.drawing?.inspect(), light: this.lights.inspect(), sensors: this.sensors.inspect() };
   }
 
   dispose(): void {
-    this.shown?.dispose();
+    this.drawing?.dispose();
     this.lights.dispose();
     this.sensors.dispose();
   }
 
   /** Returns the box for shadows. It is computed from all vertices only when a link has left it, not for each pose. */
-  private boxForShadows(shown: RobotDrawing): Box3 {
-    const origins = (this.scene?.links ?? []).flatMap(({ name, visuals }) => (visuals.length > 0 ? shown.placeOf(name) ?? [] : []));
+  private boxForShadows(drawing: RobotDrawing): Box3 {
+    const origins = (this.scene?.links ?? []).flatMap(({ name, visuals }) => (visuals.length > 0 ? drawing.placeOf(name) ?? [] : []));
     if (this.isStyleStale || !origins.every((origin) => this.shadowBox.containsPoint(origin))) {
-      this.visibleBox = shown.bounds();
+      this.visibleBox = drawing.bounds();
       this.shadowBox = this.visibleBox.clone();
       for (const origin of origins) this.shadowBox.expandByPoint(origin);
     }
     return this.visibleBox;
   }
 
-  private place(shown: RobotDrawing): void {
-    const { placed, scene } = this;
-    const world = new Matrix4();
-    const known = placed !== null && placed.content.revision === scene?.revision && dataPose(this.context.session.frames, placed.data, world);
-    if (!known) return;
-    const { poses } = placed.content;
-    shown.place((link, matrix) => {
+  private place(drawing: RobotDrawing): void {
+    const { poses: posed, scene } = this;
+    const pose = new Matrix4();
+    const hasPoses = posed !== null && posed.content.revision === scene?.revision && dataPose(this.context.session.frames, posed.data, pose);
+    if (!hasPoses) return;
+    const { poses } = posed.content;
+    drawing.place((link, matrix) => {
       const row = this.rowOf.get(link.name);
       if (row === undefined) return false;
-      this.displacement.apply(link.name, poseMatrix(poses, matrix, row * 7)).premultiply(world);
+      this.displacement.apply(link.name, poseMatrix(poses, matrix, row * 7)).premultiply(pose);
       return true;
     });
   }
 
   private setScene(scene: WorldScene): void {
     const { session, display, meshes, invalidate } = this.context;
-    this.shown?.dispose();
+    this.drawing?.dispose();
     this.scene = scene;
     this.displacement.set(new Map());
     this.rowOf = new Map(scene.links.map((link, row) => [link.name, row]));
-    this.shown = new RobotDrawing(
+    this.drawing = new RobotDrawing(
       { links: scene.links, joints: [] },
       meshes,
       (link, url, error) => session.connection.send({ type: "mesh_status", display: display.id, link, url, error }),
@@ -285,7 +285,7 @@ export class WorldDrawing implements Drawing {
         invalidate();
       },
     );
-    this.root.add(this.shown.root);
+    this.root.add(this.drawing.root);
     this.sensors.setScene(scene);
     this.isStyleStale = true;
   }

@@ -59,7 +59,7 @@ export class PartHandles {
       else if (event.type === "up" && event.button === "left") this.release(event);
       return true;
     }
-    if (!this.editing.active || !this.editing.chosen || this.editing.whyNot !== "") return false;
+    if (!this.editing.isActive || !this.editing.chosenPart || this.editing.unavailableReason !== "") return false;
     if (event.type === "down" && event.button === "left") {
       const { currentDraft } = this;
       if (!currentDraft || !gizmo.grab(event)) return false;
@@ -79,14 +79,14 @@ export class PartHandles {
   }
 
   private get currentDraft(): Draft | null {
-    return this.editing.draft ?? this.editing.chosen;
+    return this.editing.draft ?? this.editing.chosenPart;
   }
 
   private update(): void {
     const { editing, gizmo, currentDraft } = this;
-    const { chosen } = editing;
+    const { chosenPart } = editing;
     if (editing.draft) this.session.view.keepCamera();
-    const shown = editing.active && chosen && currentDraft && editing.whyNot === "" ? chosen : null;
+    const shown = editing.isActive && chosenPart && currentDraft && editing.unavailableReason === "" ? chosenPart : null;
     this.preview(shown);
     if (gizmo.isHeld) return;
     const base = shown && this.base(shown);
@@ -133,20 +133,20 @@ export class PartHandles {
     const link = part.part === "joint" ? joint?.parent : part.part === "axis" ? joint?.child : part.name;
     const frame = robot?.links.find((each) => each.name === link)?.frame;
     const pose = new Matrix4();
-    return frame !== undefined && framePose(this.session.frames, this.session.frames.row(frame), pose) ? pose : null;
+    return frame !== undefined && framePose(this.session.frames, this.session.frames.rowOf(frame), pose) ? pose : null;
   }
 
   private drag(event: ToolEvent): void {
     const { start, gizmo, editing } = this;
-    const { chosen } = editing;
-    const base = chosen && this.base(chosen);
-    const steps = editing.snapping.steps(event.ctrl);
+    const { chosenPart } = editing;
+    const base = chosenPart && this.base(chosenPart);
+    const steps = editing.snapping.currentSteps(event.ctrl);
     gizmo.drag(event, { length: 0, angle: steps.angle });
     if (!start || !base) return;
     // Express the motion of the handles in the frame of the part's values.
     const by = gizmo.pose.multiply(start.handles.clone().invert());
     const inBase = base.clone().invert().multiply(by).multiply(base);
-    editing.move(chosen.part === "axis" ? turnedAxis(start.draft, inBase) : this.draftAfter(chosen, start.draft, inBase, steps));
+    editing.move(chosenPart.part === "axis" ? turnedAxis(start.draft, inBase) : this.draftAfter(chosenPart, start.draft, inBase, steps));
   }
 
   private draftAfter(part: EditablePart, from: Draft, by: Matrix4, steps: { length: number; angle: number }): Draft {

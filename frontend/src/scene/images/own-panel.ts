@@ -40,13 +40,13 @@ export class OwnPanel {
   update(): void {
     const { display, panels, session } = this.context;
     this.canvas.setAttribute("aria-label", display.name);
-    if (!display.enabled) {
+    if (!display.isEnabled) {
       this.close();
     } else if (!this.isOpen) {
       this.isOpen = true;
       this.title = display.name;
-      const closed = (): void => session.setProperty(display.enabledId, false);
-      panels.offer({ key: this.key, title: this.title, icon: this.icon, element: this.element, replacesScene: showsOnlyImages(session), closed });
+      const onClosed = (): void => session.setProperty(display.enabledId, false);
+      panels.offer({ key: this.key, title: this.title, icon: this.icon, element: this.element, replacesScene: showsOnlyImages(session), onClosed });
     } else if (this.title !== display.name) {
       this.title = display.name;
       panels.retitle(this.key, this.title);
@@ -61,6 +61,6 @@ export class OwnPanel {
 
 /** Whether the page shows a recording with only its image displays enabled. */
 function showsOnlyImages({ timeline, displays }: Session): boolean {
-  const nothing = (display: DisplayState): boolean => !display.enabled || display.isGroup || WITHOUT_DATA.has(display.drawing);
+  const nothing = (display: DisplayState): boolean => !display.isEnabled || display.isGroup || WITHOUT_DATA.has(display.drawing);
   return timeline.timeline?.live === false && displays.displays.every(nothing);
 }

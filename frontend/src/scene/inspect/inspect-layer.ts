@@ -40,7 +40,7 @@ export class InspectLayer {
 
   /** Updates all marks; called before each frame. */
   update(): void {
-    const { current, deepest, isActive } = this.session.inspect;
+    const { current, maxDepth, isActive } = this.session.inspect;
     if (!isActive && !this.marks) return;
     this.marks ??= {
       masses: new MassMarks(this.root),
@@ -50,7 +50,7 @@ export class InspectLayer {
     const robots = isActive ? this.robots() : [];
     this.marks.masses.update(robots, current);
     this.marks.joints.update(robots, current.joints);
-    this.marks.frames.update(current.frames ? robots : null, deepest);
+    this.marks.frames.update(current.frames ? robots : null, maxDepth);
   }
 
   inspect(): object {
@@ -60,8 +60,8 @@ export class InspectLayer {
 
   private robots(): InspectedRobot[] {
     const { displays, description, frames, joints } = this.session;
-    return displays.displays.flatMap(({ id, enabled }) => {
-      const model = enabled ? description.of(id) : undefined;
+    return displays.displays.flatMap(({ id, isEnabled }) => {
+      const model = isEnabled ? description.modelOf(id) : undefined;
       if (!model) return [];
       const implausible = new Set(this.showsMasses ? description.findingsOf(id).map((finding) => finding.link) : []);
       return [{ model, frames, unit: this.unitOf(id, model.description.revision), implausible, positions: joints.positions }];

@@ -18,7 +18,7 @@ export interface InspectedRobot {
 
 /** Computes the pose of a link in the fixed frame; returns false if it has none. */
 export function linkPose({ model, frames }: InspectedRobot, link: string, matrix: Matrix4): boolean {
-  return framePose(frames, frames.row(model.links.get(link)?.frame ?? ""), matrix);
+  return framePose(frames, frames.rowOf(model.links.get(link)?.frame ?? ""), matrix);
 }
 
 const origin = new Matrix4();

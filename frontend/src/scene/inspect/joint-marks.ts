@@ -49,7 +49,7 @@ export class JointMarks {
     if (!moves || axis.lengthSq() === 0) return;
     const pose = new Matrix4();
     const position = jointPose(robot, joint, pose);
-    if (position === null && !robot.frames.has(robot.frames.row(joint.parent))) return;
+    if (position === null && !robot.frames.has(robot.frames.rowOf(joint.parent))) return;
     const { name, lower, upper } = joint;
     this.shown.push({ name, position, lower, upper });
     const reach = AXIS_REACH * robot.unit;

@@ -34,22 +34,22 @@ export async function readGltf(data: ArrayBuffer, url: string, files: MeshFiles,
 }
 
 function headOf(data: ArrayBuffer, isBinary: boolean): Head {
-  const words = strings.meshes.gltf;
+  const texts = strings.meshes.gltf;
   const magic = String.fromCharCode(...new Uint8Array(data, 0, Math.min(4, data.byteLength)));
-  return magic === "glTF" ? headOfGlb(data) : parseHead(data, isBinary ? words.magic : words.notJson);
+  return magic === "glTF" ? headOfGlb(data) : parseHead(data, isBinary ? texts.magic : texts.notJson);
 }
 
 /** Returns the JSON of a GLB file, which is its first chunk. */
 function headOfGlb(data: ArrayBuffer): Head {
-  const words = strings.meshes.gltf;
+  const texts = strings.meshes.gltf;
   const view = new DataView(data);
   const statedLength = data.byteLength < GLB_HEADER_BYTES ? GLB_HEADER_BYTES : view.getUint32(8, true);
-  if (statedLength > data.byteLength) throw new MeshError(words.length(countText(statedLength), countText(data.byteLength)));
+  if (statedLength > data.byteLength) throw new MeshError(texts.length(countText(statedLength), countText(data.byteLength)));
   const version = view.getUint32(4, true);
-  if (version !== 2) throw new MeshError(words.version(String(version)));
+  if (version !== 2) throw new MeshError(texts.version(String(version)));
   const length = data.byteLength < GLB_HEADER_BYTES + 8 ? 0 : view.getUint32(GLB_HEADER_BYTES, true);
   const start = GLB_HEADER_BYTES + 8;
-  return parseHead(data.slice(start, start + length), words.notJson);
+  return parseHead(data.slice(start, start + length), texts.notJson);
 }
 
 function parseHead(json: ArrayBuffer, otherwise: string): Head {

@@ -90,7 +90,7 @@ async function readBytes(response: Response, report: LoadReport): Promise<ArrayB
     chunks.push(next.value);
     bytes += next.value.length;
     checkSize(bytes);
-    report.received(bytes, total);
+    report.onBytes(bytes, total);
   }
   const all = new Uint8Array(bytes);
   let at = 0;

@@ -48,11 +48,11 @@ function triangleCount(data: ArrayBuffer): number {
 }
 
 function readBinary(data: ArrayBuffer): Float32Array {
-  const words = strings.meshes.stl;
-  if (data.byteLength < HEADER_BYTES) throw new MeshError(words.short(countText(data.byteLength)));
+  const texts = strings.meshes.stl;
+  if (data.byteLength < HEADER_BYTES) throw new MeshError(texts.short(countText(data.byteLength)));
   const count = triangleCount(data);
   const available = Math.floor((data.byteLength - HEADER_BYTES) / TRIANGLE_BYTES);
-  if (available < count) throw new MeshError(words.fewer(countText(count), countText(available)));
+  if (available < count) throw new MeshError(texts.fewer(countText(count), countText(available)));
   const view = new DataView(data);
   const positions = new Float32Array(count * 9);
   for (let i = 0; i < count; i++) {

@@ -19,8 +19,8 @@ export class LightMarks {
 
   /** Updates the marks of all lights; `moved` has the displacements of lights being dragged. */
   update(world: Matrix4, moved: ReadonlyMap<string, Matrix4>): void {
-    const { active, entities, selected } = this.modeling;
-    const lights = active ? entities.filter(({ kind }) => kind === "light") : [];
+    const { isActive, entities, selectedNames } = this.modeling;
+    const lights = isActive ? entities.filter(({ kind }) => kind === "light") : [];
     for (const [name, mark] of this.marks) {
       if (lights.some((light) => light.name === name)) continue;
       mark.removeFromParent();
@@ -31,7 +31,7 @@ export class LightMarks {
       const mark = this.marks.get(name) ?? this.make(name);
       mark.matrix.copy(entityMatrix(pose));
       mark.matrix.premultiply(moved.get(name) ?? new Matrix4());
-      mark.material.color.setHex(selected.includes(name) ? SELECTED : COLOR);
+      mark.material.color.setHex(selectedNames.includes(name) ? SELECTED : COLOR);
     }
     this.root.matrix.copy(world);
     this.root.updateMatrixWorld(true);

@@ -31,7 +31,7 @@ export class Manipulation {
   update(): void {
     const { modeling } = this;
     if (this.gizmo.isHeld) return;
-    const entity = modeling.active && modeling.placing === null ? modeling.selectedEntities.at(-1) : undefined;
+    const entity = modeling.isActive && modeling.placing === null ? modeling.selectedEntities.at(-1) : undefined;
     const shown = entity && (modeling.gizmo !== "scale" || modeling.canScale);
     this.gizmo.show(shown ? worldFrame(this.stage).multiply(entityMatrix(entity.pose)) : null, modeling.gizmo);
   }
@@ -62,7 +62,7 @@ export class Manipulation {
 
   private move(event: ToolEvent): void {
     const { modeling, gizmo } = this;
-    const steps = modeling.snapping.steps(event.ctrl);
+    const steps = modeling.snapping.currentSteps(event.ctrl);
     gizmo.drag(event, steps);
     const entities = modeling.selectedEntities;
     const main = entities.at(-1);

@@ -38,12 +38,12 @@ export class Modeler {
     simulation.refused.on(() => this.displace(new Map()));
     for (const signal of [frames.posesChanged, frames.tableChanged]) {
       signal.on(() => {
-        if (modeling.active) this.update();
+        if (modeling.isActive) this.update();
       });
     }
     // A new model is announced before it is drawn.
     data.received.on(({ content }) => {
-      if (modeling.active && content.kind === "world_scene") this.outlineSelection();
+      if (modeling.isActive && content.kind === "world_scene") this.outlineSelection();
     });
     this.onModelingChanged();
     this.placeDropped();
@@ -52,7 +52,7 @@ export class Modeler {
   /** Handles an event. Returns the event to pass to the active tool; null to pass none. */
   pointer(event: ToolEvent): ToolEvent | null {
     const { modeling, tools } = this.session;
-    if (!modeling.active || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return event;
+    if (!modeling.isActive || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return event;
     if (this.manipulation.pointer(event)) return null;
     const { placing } = modeling;
     if (this.placer.pointer(event)) return null;
@@ -66,7 +66,7 @@ export class Modeler {
   escape(): void {
     const { modeling } = this.session;
     if (this.manipulation.cancel()) return;
-    if (modeling.placing) modeling.place(null);
+    if (modeling.placing) modeling.startPlacing(null);
     else modeling.select([]);
   }
 
@@ -91,21 +91,21 @@ export class Modeler {
 
   private showHint(): void {
     const { modeling, tools } = this.session;
-    const words = strings.modeling;
-    if (modeling.placing) tools.hint = modeling.placing.kind === "wall" ? words.wallHint : words.placeHint;
+    const texts = strings.modeling;
+    if (modeling.placing) tools.hint = modeling.placing.kind === "wall" ? texts.wallHint : texts.placeHint;
   }
 
   private openMenu(event: ToolEvent): void {
     const { modeling, sceneMenu } = this.session;
-    const words = strings.modeling;
+    const texts = strings.modeling;
     const name = this.entityAt(event.x, event.y);
     if (name === null) return;
-    if (!modeling.selected.includes(name)) modeling.select([name]);
+    if (!modeling.selectedNames.includes(name)) modeling.select([name]);
     const choices = [
-      { label: words.duplicate, run: () => modeling.duplicate() },
-      { label: words.remove, run: () => modeling.remove() },
-      ...(modeling.canGroup ? [{ label: words.group, run: () => modeling.group() }] : []),
-      ...(modeling.canUngroup ? [{ label: words.ungroup, run: () => modeling.ungroup() }] : []),
+      { label: texts.duplicate, run: () => modeling.duplicate() },
+      { label: texts.remove, run: () => modeling.remove() },
+      ...(modeling.canGroup ? [{ label: texts.group, run: () => modeling.groupSelected() }] : []),
+      ...(modeling.canUngroup ? [{ label: texts.ungroup, run: () => modeling.ungroupSelected() }] : []),
     ];
     sceneMenu.emit({ x: event.x, y: event.y, choices });
   }
@@ -113,18 +113,18 @@ export class Modeler {
   private placeDropped(): void {
     const drop = this.session.modeling.takeDrop();
     if (!drop) return;
-    const { placing, at } = drop;
+    const { placing, position } = drop;
     const { canvas, size } = this.stage.viewport;
     const box = canvas.getBoundingClientRect();
-    if (at) this.placer.drop(placing, at.x - box.left, at.y - box.top);
+    if (position) this.placer.drop(placing, position.x - box.left, position.y - box.top);
     else this.placer.drop(placing, size.width / 2, size.height / 2);
   }
 
   private onModelingChanged(): void {
     const { modeling, tools } = this.session;
-    if (modeling.active !== this.wasActive) {
-      this.wasActive = modeling.active;
-      if (modeling.active) tools.choose(tools.default);
+    if (modeling.isActive !== this.wasActive) {
+      this.wasActive = modeling.isActive;
+      if (modeling.isActive) tools.choose(tools.default);
       else this.displace(new Map());
     }
     this.displacements = new Map();
@@ -147,7 +147,7 @@ export class Modeler {
   private outlineSelection(): void {
     const { stage, session } = this;
     const { world } = stage;
-    const links = world ? session.modeling.selected.flatMap((name) => world.drawing.linksOf(name)) : [];
+    const links = world ? session.modeling.selectedNames.flatMap((name) => world.drawing.linksOf(name)) : [];
     session.selection.pick(world ? links.map((key) => ({ display: world.id, key })) : [], "replace");
     this.update();
   }

@@ -1,6 +1,6 @@
 import { Group } from "three";
 import type { Modeling, Placing } from "../../state/modeling/modeling";
-import { placementAt, wallBetween, type Place, type Placement } from "../../state/modeling/shapes";
+import { placementAt, placeWall, type Place, type Placement } from "../../state/modeling/shapes";
 import { snap } from "../../state/modeling/snapping";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
@@ -41,17 +41,17 @@ export class Placer {
 
   /** Places an entity at the pointer. */
   drop(placing: Placing, x: number, y: number): void {
-    const at = this.ground(x, y, false);
-    if (at && placing.kind !== "wall") this.add(placing, placementAt(placing.kind, at), false);
-    else if (at) this.add(placing, wallBetween([at[0] - 0.5, at[1]], [at[0] + 0.5, at[1]]), false);
+    const position = this.ground(x, y, false);
+    if (position && placing.kind !== "wall") this.add(placing, placementAt(placing.kind, position), false);
+    else if (position) this.add(placing, placeWall([position[0] - 0.5, position[1]], [position[0] + 0.5, position[1]]), false);
   }
 
   private handleWall(placing: Placing, event: ToolEvent): boolean {
-    const at = this.ground(event.x, event.y, event.ctrl);
-    if (event.type === "down" && event.button === "left" && !this.hasFirstEnd) this.start = at;
-    const placement = this.start && at && wallBetween(this.start, at);
+    const position = this.ground(event.x, event.y, event.ctrl);
+    if (event.type === "down" && event.button === "left" && !this.hasFirstEnd) this.start = position;
+    const placement = this.start && position && placeWall(this.start, position);
     if (event.type === "move" && !event.middle && !event.right) {
-      this.show(placing, placement ?? (at && { pose: [...at, 0, 0, 0, 0], size: [0.1, 0.1, 1] }));
+      this.show(placing, placement ?? (position && { pose: [...position, 0, 0, 0, 0], size: [0.1, 0.1, 1] }));
       return true;
     }
     if (event.type !== "up" || event.button !== "left") return event.left;
@@ -67,18 +67,18 @@ export class Placer {
   private add(placing: Placing, placement: Placement | null, stays: boolean): void {
     if (!placement) return;
     this.modeling.add(placing, placement);
-    if (!stays) this.modeling.place(null);
+    if (!stays) this.modeling.startPlacing(null);
   }
 
   private placementAt({ kind }: Placing, event: ToolEvent): Placement | null {
-    const at = this.ground(event.x, event.y, event.ctrl);
-    return at && placementAt(kind, at);
+    const position = this.ground(event.x, event.y, event.ctrl);
+    return position && placementAt(kind, position);
   }
 
   private ground(x: number, y: number, inverted: boolean): Place | null {
-    const at = groundAt(this.stage, x, y);
-    const step = this.modeling.snapping.steps(inverted).length;
-    return at && [snap(at[0], step), snap(at[1], step)];
+    const position = groundAt(this.stage, x, y);
+    const step = this.modeling.snapping.currentSteps(inverted).length;
+    return position && [snap(position[0], step), snap(position[1], step)];
   }
 
   private show({ kind }: Placing, placement: Placement | null): void {

@@ -6,7 +6,7 @@ const GROUND = new Plane(new Vector3(0, 0, 1), 0);
 
 /** Returns the pose of the world in the fixed frame. */
 export function worldFrame(stage: Stage): Matrix4 {
-  return stage.world?.drawing.world() ?? new Matrix4();
+  return stage.world?.drawing.worldPose() ?? new Matrix4();
 }
 
 /** Returns the point of the world's ground, z = 0, at a position on the canvas, pixels. */

@@ -126,7 +126,7 @@ export class LinkDrawing {
 
   paint(): void {
     const { contrast, override } = this.style;
-    const alpha = override?.firm === true ? Math.sqrt(this.style.alpha) : this.style.alpha;
+    const alpha = override?.isOpaque === true ? Math.sqrt(this.style.alpha) : this.style.alpha;
     for (const visual of this.visuals) visual.paint(this.pool, contrast ? alpha * PALE_FACTOR : alpha, this.hasLostTransform, override);
     for (const collision of this.collisions) {
       if (contrast) collision.paint(this.pool, alpha * COLLISION_ALPHA, this.hasLostTransform, COLLISION);

@@ -295,7 +295,7 @@ export class ShapeDrawing {
    * the opacity of a part: RViz does not read it from mesh files, where exporters often write it wrongly.
    */
   private look(own: OwnMaterial | null, alpha: number, override: LinkOverride | null): Look {
-    if (override) return { color: override.color, map: null, vertexColors: false, alpha, doubleSided: true, behind: override.behind === true };
+    if (override) return { color: override.color, map: null, vertexColors: false, alpha, doubleSided: true, behind: override.isBehind === true };
     const { kind, repaints } = this.shape;
     const doubleSided = kind === "mesh";
     const behind = kind === "plane";

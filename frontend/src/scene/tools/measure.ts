@@ -1,6 +1,6 @@
 import { Vector3 } from "three";
 import { strings } from "../../strings";
-import { pixelSize } from "../../state/views/camera";
+import { computePixelSize } from "../../state/views/camera";
 import { distanceBetween, type Vector } from "../../state/views/vector";
 import { LabelBatch } from "../objects/label-batch";
 import { ThinLines } from "../objects/thin-lines";
@@ -111,7 +111,7 @@ export class MeasureTool implements SceneTool {
     if (text !== "" && start && end) {
       const middle = new Vector3(...start).add(new Vector3(...end)).multiplyScalar(0.5);
       const { session, stage } = this.context;
-      const pixel = pixelSize(session.view.camera, middle.toArray(), stage.viewport.size);
+      const pixel = computePixelSize(session.view.camera, middle.toArray(), stage.viewport.size);
       this.label.add(text, middle, LABEL_PX * pixel, 0, 1);
     }
     this.label.end();

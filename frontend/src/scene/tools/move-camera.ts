@@ -28,7 +28,7 @@ export class MoveCameraTool implements SceneTool {
     const { view } = session;
     const held = event.left || event.middle || event.right;
     this.showHint(event.shift);
-    this.context.setCursor(held ? CURSORS[view.controller.motion(event)] : "default");
+    this.context.setCursor(held ? CURSORS[view.controller.motionOf(event)] : "default");
     switch (event.type) {
       case "move":
         if (!held) return;
@@ -49,6 +49,6 @@ export class MoveCameraTool implements SceneTool {
 
   private showHint(shift: boolean): void {
     const { mouse } = strings.views;
-    this.context.setHint(mouse[this.context.session.view.controller.hint(shift)]);
+    this.context.setHint(mouse[this.context.session.view.controller.hintFor(shift)]);
   }
 }

@@ -45,7 +45,7 @@ export class EditingState {
   /** Why nothing was written; null after success. */
   refusal: DiagnosticItem | null = null;
   /** The files written last. */
-  written: readonly string[] = [];
+  writtenFiles: readonly string[] = [];
   /** The editor of source files has the last edit if it concerned an unsaved text. */
   isWrittenToText = false;
   private canUndoWritten = false;
@@ -78,7 +78,7 @@ export class EditingState {
     connection.on("edit_written", ({ files, refusal, is_saved }) => {
       this.isWrittenToText = !is_saved;
       this.refusal = refusal;
-      this.written = files;
+      this.writtenFiles = files;
       this.isWritten = refusal === null && this.currentDraft !== null;
       this.preview = null;
       this.changed.emit();
@@ -89,7 +89,7 @@ export class EditingState {
       this.changed.emit();
     });
     connection.on("description_changed", ({ display }) => {
-      if (this.active && display === this.link?.display) this.requestParts();
+      if (this.isActive && display === this.link?.display) this.requestParts();
     });
     connection.on("robot_scene", ({ display }) => {
       if (display === this.link?.display && this.isWritten) this.reset();
@@ -107,13 +107,13 @@ export class EditingState {
 
   /** Takes over the history of the unsaved text of the editor of source files; null if all texts are saved. */
   setTextHistory(text: TextHistory | null): void {
-    const before = [this.canUndo, this.canRedo];
+    const previous = [this.canUndo, this.canRedo];
     this.text = text;
-    if (before[0] !== this.canUndo || before[1] !== this.canRedo) this.changed.emit();
+    if (previous[0] !== this.canUndo || previous[1] !== this.canRedo) this.changed.emit();
   }
 
   /** Whether editing is active. */
-  get active(): boolean {
+  get isActive(): boolean {
     return this.holders > 0;
   }
 
@@ -122,7 +122,7 @@ export class EditingState {
   }
 
   /** Why nothing can be edited; empty if editing is possible. */
-  get whyNot(): string {
+  get unavailableReason(): string {
     return this.editable?.why_not ?? "";
   }
 
@@ -130,7 +130,7 @@ export class EditingState {
     return this.link;
   }
 
-  get chosen(): EditablePart | null {
+  get chosenPart(): EditablePart | null {
     return this.part;
   }
 
@@ -175,11 +175,11 @@ export class EditingState {
     this.activeChanged.emit();
     this.requestParts();
     this.draftChanged.emit();
-    let done = false;
+    let isDone = false;
     return () => {
-      if (!done) this.holders -= 1;
-      done = true;
-      if (!this.active) this.reset();
+      if (!isDone) this.holders -= 1;
+      isDone = true;
+      if (!this.isActive) this.reset();
       this.activeChanged.emit();
     };
   }
@@ -189,7 +189,7 @@ export class EditingState {
     if (link?.display === this.link?.display && link?.link === this.link?.link) return;
     this.link = link;
     this.editable = this.part = null;
-    this.written = [];
+    this.writtenFiles = [];
     this.reset();
     this.requestParts();
   }
@@ -197,18 +197,18 @@ export class EditingState {
   choose(part: EditablePart): void {
     if (isSame(part, this.part)) return;
     this.part = part;
-    this.written = [];
+    this.writtenFiles = [];
     this.reset();
   }
 
   /** Sets the requested values of the chosen part; the preview is requested once the pointer rests. */
   move(draft: Draft): void {
     const { part } = this;
-    if (!part || this.whyNot !== "") return;
-    const stays = equal(draft.xyz, part.xyz) && equal(draft.rpy, part.rpy);
-    this.currentDraft = stays ? null : draft;
+    if (!part || this.unavailableReason !== "") return;
+    const isUnmoved = areEqual(draft.xyz, part.xyz) && areEqual(draft.rpy, part.rpy);
+    this.currentDraft = isUnmoved ? null : draft;
     this.isWritten = this.changesAll = false;
-    this.written = [];
+    this.writtenFiles = [];
     this.cancelPreview();
     this.draftChanged.emit();
     if (this.currentDraft) this.timer = setTimeout(() => this.requestPreview(), PREVIEW_DELAY_MS);
@@ -254,7 +254,7 @@ export class EditingState {
   }
 
   private requestParts(): void {
-    if (this.active && this.link) this.connection.send({ type: "ask_editable_parts", ...this.link });
+    if (this.isActive && this.link) this.connection.send({ type: "ask_editable_parts", ...this.link });
   }
 
   private requestPreview(): void {
@@ -263,10 +263,10 @@ export class EditingState {
     this.previewNumber += 1;
     this.preview = null;
     const { name, index } = part;
-    const xyz = equal(currentDraft.xyz, part.xyz) ? null : [...currentDraft.xyz];
-    const rpy = equal(currentDraft.rpy, part.rpy) ? null : [...currentDraft.rpy];
-    const { previewNumber: number, changesAll: together } = this;
-    this.connection.send({ type: "preview_edit", number, display: link.display, part: part.part, name, index, xyz, rpy, together });
+    const xyz = areEqual(currentDraft.xyz, part.xyz) ? null : [...currentDraft.xyz];
+    const rpy = areEqual(currentDraft.rpy, part.rpy) ? null : [...currentDraft.rpy];
+    const { previewNumber: number, changesAll } = this;
+    this.connection.send({ type: "preview_edit", number, display: link.display, part: part.part, name, index, xyz, rpy, together: changesAll });
   }
 
   /**
@@ -276,9 +276,9 @@ export class EditingState {
   private setParts(message: EditableParts): void {
     if (message.display !== this.link?.display || message.link !== this.link.link) return;
     this.editable = message;
-    const before = this.part;
-    this.part = message.parts.find((part) => isSame(part, before)) ?? message.parts[0] ?? null;
-    const stays = before && this.part && isSame(before, this.part) && equal(before.xyz, this.part.xyz) && equal(before.rpy, this.part.rpy);
+    const previousPart = this.part;
+    this.part = message.parts.find((part) => isSame(part, previousPart)) ?? message.parts[0] ?? null;
+    const stays = previousPart && this.part && isSame(previousPart, this.part) && areEqual(previousPart.xyz, this.part.xyz) && areEqual(previousPart.rpy, this.part.rpy);
     if (!stays) this.reset();
     else if (this.isOpen) this.requestPreview();
     this.changed.emit();
@@ -286,10 +286,10 @@ export class EditingState {
   }
 }
 
-function isSame(one: EditablePart, other: EditablePart | null): boolean {
-  return other !== null && one.part === other.part && one.name === other.name && one.index === other.index;
+function isSame(first: EditablePart, second: EditablePart | null): boolean {
+  return second !== null && first.part === second.part && first.name === second.name && first.index === second.index;
 }
 
-function equal(some: readonly number[], others: readonly number[]): boolean {
-  return some.length === others.length && some.every((value, i) => Math.abs(value - (others[i] ?? NaN)) < MIN_CHANGE);
+function areEqual(first: readonly number[], second: readonly number[]): boolean {
+  return first.length === second.length && first.every((value, i) => Math.abs(value - (second[i] ?? NaN)) < MIN_CHANGE);
 }

@@ -17,7 +17,7 @@ export interface Placing {
 /** An entity dropped onto the scene: pixels from the window's upper left corner; null for the center of the scene. */
 export interface Drop {
   readonly placing: Placing;
-  readonly at: { readonly x: number; readonly y: number } | null;
+  readonly position: { readonly x: number; readonly y: number } | null;
 }
 
 const NOTHING: Omit<ModelingState, "type"> = {
@@ -47,7 +47,7 @@ export class Modeling {
   private world = NOTHING;
   private names: readonly string[] = [];
   private mode: GizmoMode = "translate";
-  private chosen: Placing | null = null;
+  private chosenPlacing: Placing | null = null;
   private lastDrop: Drop | null = null;
   private clipboard: readonly string[] = [];
   /** Whether this page added entities, so that the new ones of the next state are to be selected. */
@@ -64,11 +64,11 @@ export class Modeling {
   }
 
   /** Whether there is a world that can be edited. */
-  get available(): boolean {
+  get isAvailable(): boolean {
     return this.world.available;
   }
 
-  get active(): boolean {
+  get isActive(): boolean {
     return this.world.active;
   }
 
@@ -77,7 +77,7 @@ export class Modeling {
     return this.world.file;
   }
 
-  get unsaved(): boolean {
+  get isUnsaved(): boolean {
     return this.world.unsaved;
   }
 
@@ -94,7 +94,7 @@ export class Modeling {
   }
 
   /** The names of the selected entities, in the order of selection. */
-  get selected(): readonly string[] {
+  get selectedNames(): readonly string[] {
     return this.names;
   }
 
@@ -113,7 +113,7 @@ export class Modeling {
   }
 
   get placing(): Placing | null {
-    return this.chosen;
+    return this.chosenPlacing;
   }
 
   /** Whether the selection can be grouped into one model. */
@@ -127,8 +127,8 @@ export class Modeling {
   }
 
   get canScale(): boolean {
-    const [entity, ...more] = this.selectedEntities;
-    return more.length === 0 && entity !== undefined && entity.shape !== null;
+    const [entity, ...others] = this.selectedEntities;
+    return others.length === 0 && entity !== undefined && entity.shape !== null;
   }
 
   find(name: string): WorldEntity | null {
@@ -137,14 +137,14 @@ export class Modeling {
 
   /** Selects entities; `toggle` adds unselected ones and removes selected ones. */
   select(names: readonly string[], mode: "replace" | "toggle" = "replace"): void {
-    const others = this.names.filter((name) => !names.includes(name));
-    const added = names.filter((name) => !this.names.includes(name));
-    this.setSelection(mode === "replace" ? names : [...others, ...added]);
+    const otherNames = this.names.filter((name) => !names.includes(name));
+    const addedNames = names.filter((name) => !this.names.includes(name));
+    this.setSelection(mode === "replace" ? names : [...otherNames, ...addedNames]);
   }
 
   /** Chooses the entity that the next click in the scene adds; null for none. */
-  place(placing: Placing | null): void {
-    this.chosen = placing;
+  startPlacing(placing: Placing | null): void {
+    this.chosenPlacing = placing;
     this.toolChanged.emit();
   }
 
@@ -161,8 +161,8 @@ export class Modeling {
     return drop;
   }
 
-  setActive(active: boolean): void {
-    this.connection.send({ type: "set_modeling", active });
+  setActive(isActive: boolean): void {
+    this.connection.send({ type: "set_modeling", active: isActive });
   }
 
   add({ kind, address }: Placing, { pose, size }: Placement): void {
@@ -194,13 +194,13 @@ export class Modeling {
     if (this.names.length > 0) this.connection.send({ type: "delete_entities", names: [...this.names] });
   }
 
-  group(): void {
+  groupSelected(): void {
     if (!this.canGroup) return;
     this.selectsNew = true;
     this.connection.send({ type: "group_entities", names: [...this.names], name: "group" });
   }
 
-  ungroup(): void {
+  ungroupSelected(): void {
     for (const { name, parts } of this.selectedEntities) {
       if (parts.length === 0) continue;
       this.selectsNew = true;
@@ -233,11 +233,11 @@ export class Modeling {
   }
 
   private setState(state: ModelingState): void {
-    const before = new Set(this.world.entities.map(({ name }) => name));
+    const previousNames = new Set(this.world.entities.map(({ name }) => name));
     this.world = state;
-    const news = state.entities.map(({ name }) => name).filter((name) => !before.has(name));
+    const news = state.entities.map(({ name }) => name).filter((name) => !previousNames.has(name));
     const left = state.active ? this.names.filter((name) => this.find(name)) : [];
-    if (!state.active && this.chosen) this.place(null);
+    if (!state.active && this.chosenPlacing) this.startPlacing(null);
     this.changed.emit();
     if (this.selectsNew && news.length > 0) {
       this.selectsNew = false;

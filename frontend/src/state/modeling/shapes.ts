@@ -39,7 +39,7 @@ export function placementAt(kind: NewKind, [x, y]: Place): Placement {
 }
 
 /** Returns the wall between two positions on the ground; null if they are too close. */
-export function wallBetween(a: Place, b: Place): Placement | null {
+export function placeWall(a: Place, b: Place): Placement | null {
   const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
   const length = Math.hypot(dx, dy);
   if (length < THICKNESS / 2) return null;
@@ -66,11 +66,11 @@ export function scaledSize(shape: Shape, size: readonly number[], scale: readonl
 }
 
 /** Returns the change that resizes an entity; the bottom of an entity that is not tilted stays at its height. */
-export function resizeChange({ name, shape, size: before, pose }: WorldEntity, size: readonly number[]): Change {
+export function resizeChange({ name, shape, size: oldSize, pose }: WorldEntity, size: readonly number[]): Change {
   const [x = 0, y = 0, z = 0, roll = 0, pitch = 0, yaw = 0] = pose;
   const change = { name, size: [...size] };
   if (shape === null || roll !== 0 || pitch !== 0) return change;
-  const rise = restingHeight(shape, size) - restingHeight(shape, before);
+  const rise = restingHeight(shape, size) - restingHeight(shape, oldSize);
   return rise === 0 ? change : { ...change, pose: [x, y, roundNoise(z + rise), roll, pitch, yaw] };
 }
 
@@ -80,10 +80,10 @@ export function roundNoise(value: number): number {
 }
 
 /** Returns the factors by which to stretch the drawing of a shape along x, y and z for another size. */
-export function stretchFactors(shape: Shape, before: readonly number[], after: readonly number[]): [number, number, number] {
-  const by = (i: number): number => ((before[i] ?? 0) > 0 ? (after[i] ?? 0) / (before[i] ?? 1) : 1);
-  if (shape === "sphere") return [by(0), by(0), by(0)];
-  return shape === "cylinder" ? [by(0), by(0), by(1)] : [by(0), by(1), by(2)];
+export function stretchFactors(shape: Shape, oldSize: readonly number[], newSize: readonly number[]): [number, number, number] {
+  const factorAt = (i: number): number => ((oldSize[i] ?? 0) > 0 ? (newSize[i] ?? 0) / (oldSize[i] ?? 1) : 1);
+  if (shape === "sphere") return [factorAt(0), factorAt(0), factorAt(0)];
+  return shape === "cylinder" ? [factorAt(0), factorAt(0), factorAt(1)] : [factorAt(0), factorAt(1), factorAt(2)];
 }
 
 export function isShape(kind: NewKind): kind is Shape {
@@ -91,5 +91,5 @@ export function isShape(kind: NewKind): kind is Shape {
 }
 
 function largestFactor(...factors: number[]): number {
-  return factors.reduce((best, factor) => (Math.abs(Math.log(Math.abs(factor))) > Math.abs(Math.log(Math.abs(best))) ? factor : best), 1);
+  return factors.reduce((largest, factor) => (Math.abs(Math.log(Math.abs(factor))) > Math.abs(Math.log(Math.abs(largest))) ? factor : largest), 1);
 }

@@ -16,7 +16,7 @@ export function snap(value: number, step: number): number {
 /** The grid for moving, rotating and scaling, stored by the browser. */
 export class Snapping {
   readonly changed = new Signal();
-  private on: boolean;
+  private isOn: boolean;
   private length: number;
   private angle = 15;
 
@@ -26,18 +26,18 @@ export class Snapping {
     private readonly key = KEY,
     usual = { on: true, length: 0.1 },
   ) {
-    [this.on, this.length] = [usual.on, usual.length];
+    [this.isOn, this.length] = [usual.on, usual.length];
     const [on, length, angle] = (storage.getItem(key) ?? "").split(" ");
     if (!(Number(length) > 0 && Number(angle) > 0)) return;
-    [this.on, this.length, this.angle] = [on === "on", Number(length), Number(angle)];
+    [this.isOn, this.length, this.angle] = [on === "on", Number(length), Number(angle)];
   }
 
-  get enabled(): boolean {
-    return this.on;
+  get isEnabled(): boolean {
+    return this.isOn;
   }
 
-  set enabled(on: boolean) {
-    this.on = on;
+  set isEnabled(isOn: boolean) {
+    this.isOn = isOn;
     this.store();
   }
 
@@ -61,13 +61,13 @@ export class Snapping {
   }
 
   /** Returns the current steps, m and rad, 0 without a grid; `inverted` while Ctrl is held. */
-  steps(inverted: boolean): { length: number; angle: number } {
-    const on = this.on !== inverted;
-    return { length: on ? this.length : 0, angle: on ? this.angle * DEGREE : 0 };
+  currentSteps(isInverted: boolean): { length: number; angle: number } {
+    const isOn = this.isOn !== isInverted;
+    return { length: isOn ? this.length : 0, angle: isOn ? this.angle * DEGREE : 0 };
   }
 
   private store(): void {
-    this.storage.setItem(this.key, `${this.on ? "on" : "off"} ${this.length} ${this.angle}`);
+    this.storage.setItem(this.key, `${this.isOn ? "on" : "off"} ${this.length} ${this.angle}`);
     this.changed.emit();
   }
 }

@@ -7,8 +7,8 @@ export interface Box {
 }
 
 export interface Link {
-  from: string;
-  to: string;
+  source: string;
+  target: string;
 }
 
 /** A box with the position of its center. */
@@ -44,8 +44,8 @@ interface Vertex {
   x: number;
   y: number;
   height: number;
-  before: Vertex[];
-  after: Vertex[];
+  predecessors: Vertex[];
+  successors: Vertex[];
 }
 
 /**
@@ -58,32 +58,32 @@ interface Vertex {
  * are placed in rows below.
  */
 export function layOutLayers(boxes: readonly Box[], links: readonly Link[]): Layout {
-  const known = new Map(boxes.map((box) => [box.id, box]));
-  const proper = links.filter(({ from, to }) => from !== to && known.has(from) && known.has(to));
-  const linked = new Set(proper.flatMap(({ from, to }) => [from, to]));
-  const turned = cycleClosingLinks(boxes, proper);
-  const forward = proper.map((link) => (turned.has(link) ? { from: link.to, to: link.from } : link));
+  const boxIds = new Map(boxes.map((box) => [box.id, box]));
+  const proper = links.filter(({ source, target }) => source !== target && boxIds.has(source) && boxIds.has(target));
+  const linked = new Set(proper.flatMap(({ source, target }) => [source, target]));
+  const reversed = findCycleClosingLinks(boxes, proper);
+  const forward = proper.map((link) => (reversed.has(link) ? { source: link.target, target: link.source } : link));
   const layerOf = layersOf(boxes.filter(({ id }) => linked.has(id)), forward);
   const vertices = new Map<string, Vertex>();
   const layers: Vertex[][] = [];
   const add = (box: Box | null, layer: number): Vertex => {
-    const vertex = { box, layer, x: 0, y: 0, height: box?.height ?? DUMMY_HEIGHT, before: [], after: [] };
+    const vertex = { box, layer, x: 0, y: 0, height: box?.height ?? DUMMY_HEIGHT, predecessors: [], successors: [] };
     (layers[layer] ??= []).push(vertex);
     if (box) vertices.set(box.id, vertex);
     return vertex;
   };
   for (const box of boxes) if (linked.has(box.id)) add(box, layerOf.get(box.id) ?? 0);
-  const chains = forward.map(({ from, to }) => connectLayers(vertices, from, to, add));
+  const chains = forward.map(({ source, target }) => connectLayers(vertices, source, target, add));
   orderLayers(layers);
   placeVertically(layers);
   const width = placeLayers(layers);
   const result: Layout = { boxes: new Map(), routes: [], width, height: 0 };
   for (const [id, { box, x, y }] of vertices) if (box) result.boxes.set(id, { ...box, id, x, y });
-  const pairs = new Set(proper.map(({ from, to }) => `${from}\n${to}`));
+  const pairs = new Set(proper.map(({ source, target }) => `${source}\n${target}`));
   proper.forEach((link, index) => {
-    const offset = pairs.has(`${link.to}\n${link.from}`) ? (turned.has(link) ? PAIR_OFFSET : -PAIR_OFFSET) : 0;
+    const offset = pairs.has(`${link.target}\n${link.source}`) ? (reversed.has(link) ? PAIR_OFFSET : -PAIR_OFFSET) : 0;
     const points = route(chains[index] ?? [], offset);
-    result.routes.push({ from: link.from, to: link.to, points: turned.has(link) ? points.reverse() : points });
+    result.routes.push({ source: link.source, target: link.target, points: reversed.has(link) ? points.reverse() : points });
   });
   shiftToOrigin(result);
   placeUnlinked(boxes.filter(({ id }) => !linked.has(id)), result);
@@ -91,10 +91,10 @@ export function layOutLayers(boxes: readonly Box[], links: readonly Link[]): Lay
 }
 
 /** Returns the links that close a cycle, by a depth-first search. */
-function cycleClosingLinks(boxes: readonly Box[], links: readonly Link[]): Set<Link> {
+function findCycleClosingLinks(boxes: readonly Box[], links: readonly Link[]): Set<Link> {
   const outgoing = new Map<string, Link[]>();
-  const incoming = new Set(links.map(({ to }) => to));
-  for (const link of links) outgoing.set(link.from, [...(outgoing.get(link.from) ?? []), link]);
+  const incoming = new Set(links.map(({ target }) => target));
+  for (const link of links) outgoing.set(link.source, [...(outgoing.get(link.source) ?? []), link]);
   const closers = new Set<Link>();
   const state = new Map<string, "open" | "done">();
   const visit = (start: string): void => {
@@ -105,10 +105,10 @@ function cycleClosingLinks(boxes: readonly Box[], links: readonly Link[]): Set<L
       if (!link) {
         state.set(top.id, "done");
         path.pop();
-      } else if (state.get(link.to) === "open") closers.add(link);
-      else if (!state.has(link.to)) {
-        state.set(link.to, "open");
-        path.push({ id: link.to, next: 0 });
+      } else if (state.get(link.target) === "open") closers.add(link);
+      else if (!state.has(link.target)) {
+        state.set(link.target, "open");
+        path.push({ id: link.target, next: 0 });
       }
     }
   };
@@ -121,19 +121,19 @@ function cycleClosingLinks(boxes: readonly Box[], links: readonly Link[]): Set<L
 /** Returns the layer of each box: behind all boxes that link to it, and as close to its targets as that permits. */
 function layersOf(boxes: readonly Box[], links: readonly Link[]): Map<string, number> {
   const layer = new Map(boxes.map(({ id }) => [id, 0]));
-  const at = (id: string): number => layer.get(id) ?? 0;
-  for (let round = 0, moved = true; moved && round <= boxes.length; round++) {
-    moved = false;
-    for (const { from, to } of links) {
-      if (at(to) > at(from)) continue;
-      layer.set(to, at(from) + 1);
-      moved = true;
+  const layerOf = (id: string): number => layer.get(id) ?? 0;
+  for (let round = 0, hasMoved = true; hasMoved && round <= boxes.length; round++) {
+    hasMoved = false;
+    for (const { source, target } of links) {
+      if (layerOf(target) > layerOf(source)) continue;
+      layer.set(target, layerOf(source) + 1);
+      hasMoved = true;
     }
   }
-  const pointedAt = new Set(links.map(({ to }) => to));
+  const pointedAt = new Set(links.map(({ target }) => target));
   for (const { id } of boxes) {
     if (pointedAt.has(id)) continue;
-    const targets = links.filter(({ from }) => from === id).map(({ to }) => at(to));
+    const targets = links.filter(({ source }) => source === id).map(({ target }) => layerOf(target));
     layer.set(id, Math.min(...targets) - 1);
   }
   return layer;
@@ -141,22 +141,22 @@ function layersOf(boxes: readonly Box[], links: readonly Link[]): Map<string, nu
 
 function connectLayers(
   vertices: ReadonlyMap<string, Vertex>,
-  from: string,
-  to: string,
+  source: string,
+  target: string,
   add: (box: null, layer: number) => Vertex,
 ): Vertex[] {
-  const [start, end] = [vertices.get(from), vertices.get(to)];
+  const [start, end] = [vertices.get(source), vertices.get(target)];
   if (!start || !end) return [];
-  const way = [start];
-  for (let layer = start.layer + 1; layer < end.layer; layer++) way.push(add(null, layer));
-  way.push(end);
-  for (let index = 1; index < way.length; index++) {
-    const [left, right] = [way[index - 1], way[index]];
+  const chain = [start];
+  for (let layer = start.layer + 1; layer < end.layer; layer++) chain.push(add(null, layer));
+  chain.push(end);
+  for (let index = 1; index < chain.length; index++) {
+    const [left, right] = [chain[index - 1], chain[index]];
     if (!left || !right) continue;
-    left.after.push(right);
-    right.before.push(left);
+    left.successors.push(right);
+    right.predecessors.push(left);
   }
-  return way;
+  return chain;
 }
 
 /**
@@ -165,24 +165,24 @@ function connectLayers(
  */
 function orderLayers(layers: Vertex[][]): void {
   let best = layers.map((layer) => [...layer]);
-  let fewest = crossings(layers);
+  let fewest = countCrossings(layers);
   for (let sweep = 0; sweep < ORDER_SWEEPS && fewest > 0; sweep++) {
-    const forth = sweep % 2 === 0;
+    const isForward = sweep % 2 === 0;
     const places = new Map<Vertex, number>();
-    const number = (layer: Vertex[]): void => layer.forEach((vertex, at) => places.set(vertex, at));
-    layers.forEach(number);
-    for (const layer of forth ? layers : [...layers].reverse()) {
+    const numberPlaces = (layer: Vertex[]): void => layer.forEach((vertex, index) => places.set(vertex, index));
+    layers.forEach(numberPlaces);
+    for (const layer of isForward ? layers : [...layers].reverse()) {
       const middles = new Map(
         layer.map((vertex) => {
-          const near = forth ? vertex.before : vertex.after;
-          const sum = near.reduce((total, each) => total + (places.get(each) ?? 0), 0);
-          return [vertex, near.length > 0 ? sum / near.length : (places.get(vertex) ?? 0)];
+          const neighbors = isForward ? vertex.predecessors : vertex.successors;
+          const sum = neighbors.reduce((total, neighbor) => total + (places.get(neighbor) ?? 0), 0);
+          return [vertex, neighbors.length > 0 ? sum / neighbors.length : (places.get(vertex) ?? 0)];
         }),
       );
       layer.sort((a, b) => (middles.get(a) ?? 0) - (middles.get(b) ?? 0));
-      number(layer);
+      numberPlaces(layer);
     }
-    const count = crossings(layers);
+    const count = countCrossings(layers);
     if (count < fewest) {
       fewest = count;
       best = layers.map((layer) => [...layer]);
@@ -191,15 +191,15 @@ function orderLayers(layers: Vertex[][]): void {
   best.forEach((layer, index) => (layers[index] = layer));
 }
 
-function crossings(layers: readonly (readonly Vertex[])[]): number {
+function countCrossings(layers: readonly (readonly Vertex[])[]): number {
   let count = 0;
   for (let index = 1; index < layers.length; index++) {
-    const places = new Map(layers[index]?.map((vertex, at) => [vertex, at]));
-    const ends = (layers[index - 1] ?? []).map((vertex) => vertex.after.map((each) => places.get(each) ?? 0));
-    const seen: number[] = [];
+    const places = new Map(layers[index]?.map((vertex, index) => [vertex, index]));
+    const ends = (layers[index - 1] ?? []).map((vertex) => vertex.successors.map((neighbor) => places.get(neighbor) ?? 0));
+    const previousEnds: number[] = [];
     for (const group of ends) {
-      for (const end of group) count += seen.filter((other) => other > end).length;
-      seen.push(...group);
+      for (const end of group) count += previousEnds.filter((previousEnd) => previousEnd > end).length;
+      previousEnds.push(...group);
     }
   }
   return count;
@@ -215,18 +215,18 @@ function placeVertically(layers: readonly (readonly Vertex[])[]): void {
     }
   }
   for (let sweep = 0; sweep < PLACE_SWEEPS; sweep++) {
-    const forth = sweep % 2 === 0;
-    for (const layer of forth ? layers : [...layers].reverse()) {
-      const wanted = layer.map((vertex) => {
-        const near = sweep >= PLACE_SWEEPS - 2 ? [...vertex.before, ...vertex.after] : forth ? vertex.before : vertex.after;
-        return near.length > 0 ? near.reduce((sum, each) => sum + each.y, 0) / near.length : vertex.y;
+    const isForward = sweep % 2 === 0;
+    for (const layer of isForward ? layers : [...layers].reverse()) {
+      const wantedHeights = layer.map((vertex) => {
+        const neighbors = sweep >= PLACE_SWEEPS - 2 ? [...vertex.predecessors, ...vertex.successors] : isForward ? vertex.predecessors : vertex.successors;
+        return neighbors.length > 0 ? neighbors.reduce((sum, neighbor) => sum + neighbor.y, 0) / neighbors.length : vertex.y;
       });
       const offsets: number[] = [];
       layer.forEach((vertex, index) => {
-        const above = layer[index - 1];
-        offsets.push(above ? (offsets[index - 1] ?? 0) + (above.height + vertex.height) / 2 + BOX_GAP : 0);
+        const vertexAbove = layer[index - 1];
+        offsets.push(vertexAbove ? (offsets[index - 1] ?? 0) + (vertexAbove.height + vertex.height) / 2 + BOX_GAP : 0);
       });
-      const free = isotonic(wanted.map((y, index) => y - (offsets[index] ?? 0)));
+      const free = isotonic(wantedHeights.map((y, index) => y - (offsets[index] ?? 0)));
       layer.forEach((vertex, index) => (vertex.y = (free[index] ?? 0) + (offsets[index] ?? 0)));
     }
   }
@@ -243,17 +243,17 @@ function placeLayers(layers: readonly (readonly Vertex[])[]): number {
   return Math.max(0, x - LAYER_GAP);
 }
 
-function route(way: readonly Vertex[], offset: number): [number, number][] {
-  return way.map(({ box, x, y }, index) => {
+function route(vertices: readonly Vertex[], offset: number): [number, number][] {
+  return vertices.map(({ box, x, y }, index) => {
     const half = (box?.width ?? 0) / 2;
-    return [index === 0 ? x + half : index === way.length - 1 ? x - half : x, y + offset];
+    return [index === 0 ? x + half : index === vertices.length - 1 ? x - half : x, y + offset];
   });
 }
 
 function shiftToOrigin(layout: Layout): void {
   const boxes = [...layout.boxes.values()];
   if (boxes.length === 0) return;
-  const points = layout.routes.flatMap((each) => each.points);
+  const points = layout.routes.flatMap((edgeRoute) => edgeRoute.points);
   const top = Math.min(...boxes.map(({ y, height }) => y - height / 2), ...points.map(([, y]) => y));
   for (const box of boxes) box.y -= top;
   for (const point of points) point[1] -= top;
@@ -262,10 +262,10 @@ function shiftToOrigin(layout: Layout): void {
 
 /** Places boxes without links in rows below the others. */
 function placeUnlinked(boxes: readonly Box[], layout: Layout): void {
-  const most = Math.max(layout.width, 640);
+  const maxWidth = Math.max(layout.width, 640);
   let [x, y, rowHeight] = [0, layout.height > 0 ? layout.height + 2 * BOX_GAP : 0, 0];
   for (const box of boxes) {
-    if (x > 0 && x + box.width > most) [x, y, rowHeight] = [0, y + rowHeight + BOX_GAP, 0];
+    if (x > 0 && x + box.width > maxWidth) [x, y, rowHeight] = [0, y + rowHeight + BOX_GAP, 0];
     layout.boxes.set(box.id, { ...box, x: x + box.width / 2, y: y + box.height / 2 });
     layout.width = Math.max(layout.width, x + box.width);
     layout.height = Math.max(layout.height, y + box.height);

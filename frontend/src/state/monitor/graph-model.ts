@@ -22,8 +22,8 @@ export interface GraphVertex {
 }
 
 interface GraphEdge {
-  from: string;
-  to: string;
+  source: string;
+  target: string;
   /** The topics of the edge, if topics are not vertices. */
   topics: string[];
 }
@@ -39,21 +39,21 @@ const TF_TOPICS = new Set(["/tf", "/tf_static"]);
 const ACTION = "/_action/";
 
 /** Returns the vertices and edges to draw for a graph. */
-export function drawnGraph(graph: NodeGraph, options: GraphOptions): DrawnGraph {
+export function buildGraph(graph: NodeGraph, options: GraphOptions): DrawnGraph {
   const vertices = new Map<string, GraphVertex>();
   const nodes = graph.nodes.filter((name) => options.debug || !DEBUG_NODES.test(name));
   const owners = new Map(nodes.map((name) => [name, ownerOf(name, options)]));
   for (const owner of owners.values()) {
-    const known = vertices.get(owner.id);
-    if (known) known.count++;
+    const vertex = vertices.get(owner.id);
+    if (vertex) vertex.count++;
     else vertices.set(owner.id, { ...owner });
   }
   const edges = new Map<string, GraphEdge>();
-  const connect = (from: string, to: string, topics: string[]): void => {
-    const key = `${from}\n${to}`;
-    const known = edges.get(key);
-    if (!known) edges.set(key, { from, to, topics });
-    else known.topics = [...new Set([...known.topics, ...topics])];
+  const connect = (source: string, target: string, topics: string[]): void => {
+    const key = `${source}\n${target}`;
+    const edge = edges.get(key);
+    if (!edge) edges.set(key, { source, target, topics });
+    else edge.topics = [...new Set([...edge.topics, ...topics])];
   };
   const endsOf = (names: readonly string[]): string[] => [
     ...new Set(names.map((name) => owners.get(name)?.id).filter((id) => id !== undefined)),
@@ -61,28 +61,28 @@ export function drawnGraph(graph: NodeGraph, options: GraphOptions): DrawnGraph 
   for (const topic of topicsOf(graph, options)) {
     const [publishers, subscribers] = [endsOf(topic.publishers), endsOf(topic.subscribers)];
     if (options.mode !== "all" && (publishers.length === 0 || subscribers.length === 0)) continue;
-    const [first, ...others] = new Set([...publishers, ...subscribers]);
+    const [first, ...otherNodes] = new Set([...publishers, ...subscribers]);
     // Topics within a closed group are not shown.
-    if (others.length === 0 && vertices.get(first ?? "")?.kind === "group") continue;
+    if (otherNodes.length === 0 && vertices.get(first ?? "")?.kind === "group") continue;
     if (options.mode === "nodes") {
-      for (const [from, to] of pairsOf(publishers, subscribers)) connect(from, to, [topic.name]);
+      for (const [source, target] of pairsOf(publishers, subscribers)) connect(source, target, [topic.name]);
       continue;
     }
     const id = `topic:${topic.name}`;
-    vertices.set(id, { id, kind: topic.action ? "action" : "topic", label: topic.name, count: 0 });
-    for (const from of publishers) connect(from, id, []);
-    for (const to of subscribers) connect(id, to, []);
+    vertices.set(id, { id, kind: topic.isAction ? "action" : "topic", label: topic.name, count: 0 });
+    for (const source of publishers) connect(source, id, []);
+    for (const target of subscribers) connect(id, target, []);
   }
   return { vertices: [...vertices.values()], edges: [...edges.values()] };
 }
 
 /** Returns all pairs of a publisher and another subscriber. */
 function pairsOf(publishers: readonly string[], subscribers: readonly string[]): (readonly [string, string])[] {
-  return publishers.flatMap((from) => subscribers.filter((to) => to !== from).map((to) => [from, to] as const));
+  return publishers.flatMap((source) => subscribers.filter((target) => target !== source).map((target) => [source, target] as const));
 }
 
 interface JoinedTopic extends Pick<GraphTopic, "name" | "publishers" | "subscribers"> {
-  action: boolean;
+  isAction: boolean;
 }
 
 /** Returns the topics that pass the filters; the topics of an action are merged into one. */
@@ -91,13 +91,13 @@ function topicsOf(graph: NodeGraph, options: GraphOptions): JoinedTopic[] {
   for (const { name, publishers, subscribers } of graph.topics) {
     if (!options.debug && DEBUG_TOPICS.has(name)) continue;
     if (!options.tf && TF_TOPICS.has(name)) continue;
-    const at = name.indexOf(ACTION);
-    const shown = at < 0 ? name : name.slice(0, at);
-    const known = joined.get(shown);
-    if (known) {
-      known.publishers = [...new Set([...known.publishers, ...publishers])];
-      known.subscribers = [...new Set([...known.subscribers, ...subscribers])];
-    } else joined.set(shown, { name: shown, publishers, subscribers, action: at >= 0 });
+    const index = name.indexOf(ACTION);
+    const shownName = index < 0 ? name : name.slice(0, index);
+    const topic = joined.get(shownName);
+    if (topic) {
+      topic.publishers = [...new Set([...topic.publishers, ...publishers])];
+      topic.subscribers = [...new Set([...topic.subscribers, ...subscribers])];
+    } else joined.set(shownName, { name: shownName, publishers, subscribers, isAction: index >= 0 });
   }
   return [...joined.values()];
 }

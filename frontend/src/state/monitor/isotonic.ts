@@ -6,8 +6,8 @@ export function isotonic(values: readonly number[]): number[] {
   const blocks: { sum: number; count: number }[] = [];
   for (const value of values) {
     let block = { sum: value, count: 1 };
-    for (let last = blocks.at(-1); last && last.sum / last.count > block.sum / block.count; last = blocks.at(-1)) {
-      block = { sum: last.sum + block.sum, count: last.count + block.count };
+    for (let previous = blocks.at(-1); previous && previous.sum / previous.count > block.sum / block.count; previous = blocks.at(-1)) {
+      block = { sum: previous.sum + block.sum, count: previous.count + block.count };
       blocks.pop();
     }
     blocks.push(block);

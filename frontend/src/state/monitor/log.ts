@@ -15,9 +15,9 @@ export function levelOf(line: Pick<LogLine, "level">): Level {
 }
 
 /** Returns a record as text for copying, in the format of the console. */
-export function lineText(line: LogLine, levelName: string): string {
-  const place = line.file === "" ? "" : ` (${line.file}:${line.line})`;
-  return `[${levelName}] [${line.time.toFixed(9)}] [${line.node}]: ${line.message}${place}`;
+export function formatLine(line: LogLine, levelName: string): string {
+  const source = line.file === "" ? "" : ` (${line.file}:${line.line})`;
+  return `[${levelName}] [${line.time.toFixed(9)}] [${line.node}]: ${line.message}${source}`;
 }
 
 /** The records of /rosout that the page has received, and those that pass the filters. */
@@ -26,15 +26,15 @@ export class LogState {
   readonly changed = new Signal();
   lines: LogLine[] = [];
   /** The records that pass the filters. */
-  shown: LogLine[] = [];
+  shownLines: LogLine[] = [];
   /** The number of records that the server could not send in time. */
-  missed = 0;
+  missedCount = 0;
   readonly levels: Set<number>;
-  paused = false;
+  isPaused = false;
   private node = "";
   private text = "";
-  private pending: LogLine[] = [];
-  private opened = false;
+  private pendingLines: LogLine[] = [];
+  private isOpen = false;
   /**
    * Whether the next records are the first of a connection: the server starts with past records, and the page may already
    * have some of them.
@@ -45,14 +45,14 @@ export class LogState {
     private readonly connection: Connection,
     private readonly storage: Pick<Storage, "getItem" | "setItem">,
   ) {
-    const saved = storage.getItem(SAVED_KEY);
-    this.levels = new Set(saved === null ? LEVELS : saved.split(",").map(Number));
+    const savedText = storage.getItem(SAVED_KEY);
+    this.levels = new Set(savedText === null ? LEVELS : savedText.split(",").map(Number));
     connection.on("hello", () => {
       this.isFirstBatch = true;
-      if (this.opened) this.sendWatch();
+      if (this.isOpen) this.sendWatch();
     });
     connection.on("log_lines", ({ lines, missed }) => {
-      this.missed += missed;
+      this.missedCount += missed;
       this.add(this.isFirstBatch ? this.unknownOf(lines) : lines);
       this.isFirstBatch = false;
     });
@@ -63,14 +63,14 @@ export class LogState {
     return [...new Set(this.lines.map((line) => line.node))].sort();
   }
 
-  setOpen(open: boolean): void {
-    if (open === this.opened) return;
-    this.opened = open;
+  setOpen(isOpen: boolean): void {
+    if (isOpen === this.isOpen) return;
+    this.isOpen = isOpen;
     this.sendWatch();
   }
 
-  setLevel(level: number, shown: boolean): void {
-    if (shown) this.levels.add(level);
+  setLevel(level: number, isShown: boolean): void {
+    if (isShown) this.levels.add(level);
     else this.levels.delete(level);
     this.storage.setItem(SAVED_KEY, [...this.levels].join(","));
     this.filter();
@@ -87,30 +87,30 @@ export class LogState {
   }
 
   /** Pauses or resumes; records that arrive during a pause are shown on resuming. */
-  setPaused(paused: boolean): void {
-    this.paused = paused;
-    const { pending } = this;
-    this.pending = [];
-    if (!paused) this.add(pending);
+  setPaused(isPaused: boolean): void {
+    this.isPaused = isPaused;
+    const { pendingLines } = this;
+    this.pendingLines = [];
+    if (!isPaused) this.add(pendingLines);
     this.changed.emit();
   }
 
   clear(): void {
     this.lines = [];
-    this.pending = [];
-    this.missed = 0;
+    this.pendingLines = [];
+    this.missedCount = 0;
     this.filter();
   }
 
   private unknownOf(lines: readonly LogLine[]): LogLine[] {
-    const known = new Set([...this.lines, ...this.pending].map(keyOf));
-    return lines.filter((line) => !known.has(keyOf(line)));
+    const knownKeys = new Set([...this.lines, ...this.pendingLines].map(keyOf));
+    return lines.filter((line) => !knownKeys.has(keyOf(line)));
   }
 
   private add(lines: readonly LogLine[]): void {
-    if (this.paused) {
-      this.pending.push(...lines);
-      if (this.pending.length > MAX_LINES) this.pending = this.pending.slice(-MAX_LINES);
+    if (this.isPaused) {
+      this.pendingLines.push(...lines);
+      if (this.pendingLines.length > MAX_LINES) this.pendingLines = this.pendingLines.slice(-MAX_LINES);
       return;
     }
     this.lines.push(...lines);
@@ -119,12 +119,12 @@ export class LogState {
       this.filter();
       return;
     }
-    this.shown.push(...lines.filter((line) => this.passes(line)));
+    this.shownLines.push(...lines.filter((line) => this.passes(line)));
     this.changed.emit();
   }
 
   private filter(): void {
-    this.shown = this.lines.filter((line) => this.passes(line));
+    this.shownLines = this.lines.filter((line) => this.passes(line));
     this.changed.emit();
   }
 
@@ -135,7 +135,7 @@ export class LogState {
   }
 
   private sendWatch(): void {
-    this.connection.send({ type: "watch_log", watched: this.opened });
+    this.connection.send({ type: "watch_log", watched: this.isOpen });
   }
 }
 

@@ -1,6 +1,6 @@
 import type { Connection } from "../../connection/connection";
 import type { TextStorage } from "../../storage";
-import { fieldText } from "./field-text";
+import { formatField } from "./field-text";
 import { LogState } from "./log";
 import { NavigationState } from "./navigation";
 import { NodeGraphState } from "./node-graph";
@@ -35,20 +35,20 @@ export class MonitorState {
     return {
       plots: plots.plots.map(({ series, range }) => ({
         range,
-        series: series.map((each) => ({
-          name: fieldText(each),
-          error: each.error,
-          samples: each.buffer.length,
-          last: each.buffer.lastValue,
+        series: series.map((samples) => ({
+          name: formatField(samples),
+          error: samples.error,
+          samples: samples.buffer.length,
+          last: samples.buffer.lastValue,
         })),
       })),
-      paused: plots.paused,
+      paused: plots.isPaused,
       window: plots.window,
       topics: topics.topics.map((topic) => ({ ...topic })),
       traffic: Object.fromEntries(topics.traffic),
       nodes: [...graph.graph.nodes],
       parameterNodes: [...parameters.nodes],
-      log: { lines: log.lines.length, shown: log.shown.length, last: log.shown.at(-1)?.message ?? null },
+      log: { lines: log.lines.length, shown: log.shownLines.length, last: log.shownLines.at(-1)?.message ?? null },
       teleop: { aim: teleop.aim, motion: teleop.motion, settings: { ...teleop.settings } },
     };
   }

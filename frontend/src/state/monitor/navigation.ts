@@ -9,11 +9,11 @@ export class NavigationState {
   readonly outcomeChanged = new Signal<GoalOutcome>();
   /** The last state; null until the server has reported one. */
   lastState: ServerState | null = null;
-  private opened = false;
+  private isOpen = false;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
-      if (this.opened) this.sendWatch();
+      if (this.isOpen) this.sendWatch();
     });
     connection.on("navigation_state", (state) => {
       this.lastState = state;
@@ -22,17 +22,17 @@ export class NavigationState {
     connection.on("goal_outcome", (outcome) => this.outcomeChanged.emit(outcome));
   }
 
-  setOpen(opened: boolean): void {
-    if (opened === this.opened) return;
-    this.opened = opened;
+  setOpen(isOpen: boolean): void {
+    if (isOpen === this.isOpen) return;
+    this.isOpen = isOpen;
     this.sendWatch();
   }
 
-  command(command: NavigationCommand): void {
-    this.connection.send({ type: "command_navigation", command });
+  sendCommand(sendCommand: NavigationCommand): void {
+    this.connection.send({ type: "command_navigation", command: sendCommand });
   }
 
   private sendWatch(): void {
-    this.connection.send({ type: "watch_navigation", open: this.opened });
+    this.connection.send({ type: "watch_navigation", open: this.isOpen });
   }
 }

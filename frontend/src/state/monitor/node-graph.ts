@@ -6,11 +6,11 @@ import { Signal } from "../../signal";
 export class NodeGraphState {
   readonly changed = new Signal();
   graph: NodeGraph = { type: "node_graph", nodes: [], topics: [] };
-  private watched = false;
+  private isWatched = false;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
-      if (this.watched) this.sendWatch();
+      if (this.isWatched) this.sendWatch();
     });
     connection.on("node_graph", (graph) => {
       this.graph = graph;
@@ -18,13 +18,13 @@ export class NodeGraphState {
     });
   }
 
-  watch(watched: boolean): void {
-    if (watched === this.watched) return;
-    this.watched = watched;
+  watch(isWatched: boolean): void {
+    if (isWatched === this.isWatched) return;
+    this.isWatched = isWatched;
     this.sendWatch();
   }
 
   private sendWatch(): void {
-    this.connection.send({ type: "watch_node_graph", watched: this.watched });
+    this.connection.send({ type: "watch_node_graph", watched: this.isWatched });
   }
 }

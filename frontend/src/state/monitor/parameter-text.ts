@@ -1,19 +1,19 @@
 import type { ParameterKind } from "../../protocol";
 
 /** Returns a parameter's value as text: arrays as a list in brackets, with strings in quotes. */
-export function parameterText(kind: ParameterKind, values: readonly string[]): string {
+export function formatParameter(kind: ParameterKind, values: readonly string[]): string {
   if (!kind.endsWith("_array")) return values[0] ?? "";
-  const shown = kind === "string_array" ? values.map((value) => JSON.stringify(value)) : values;
-  return `[${shown.join(", ")}]`;
+  const texts = kind === "string_array" ? values.map((value) => JSON.stringify(value)) : values;
+  return `[${texts.join(", ")}]`;
 }
 
 /** Parses a text into values, with optional brackets and quotes; returns null if quotes are not closed. */
-export function parameterValues(kind: ParameterKind, text: string): string[] | null {
+export function parseParameter(kind: ParameterKind, text: string): string[] | null {
   if (!kind.endsWith("_array")) return [text];
-  const inner = text.trim().replace(/^\[/, "").replace(/\]$/, "").trim();
-  if (inner === "") return [];
-  const items = /^(?:[^",]*|\s*"(?:[^"\\]|\\.)*"\s*)(?:,(?:[^",]*|\s*"(?:[^"\\]|\\.)*"\s*))*$/.test(inner)
-    ? (inner.match(/"(?:[^"\\]|\\.)*"|[^,"\s][^,"]*/g) ?? [])
+  const content = text.trim().replace(/^\[/, "").replace(/\]$/, "").trim();
+  if (content === "") return [];
+  const items = /^(?:[^",]*|\s*"(?:[^"\\]|\\.)*"\s*)(?:,(?:[^",]*|\s*"(?:[^"\\]|\\.)*"\s*))*$/.test(content)
+    ? (content.match(/"(?:[^"\\]|\\.)*"|[^,"\s][^,"]*/g) ?? [])
     : null;
   if (items === null) return null;
   try {

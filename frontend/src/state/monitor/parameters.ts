@@ -12,11 +12,11 @@ export class ParametersState {
   node: string | null = null;
   /** The parameters of the chosen node; null until the node has answered. */
   parameters: NodeParameters | null = null;
-  private listed = false;
+  private isListed = false;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
-      if (this.listed) this.sendWatch();
+      if (this.isListed) this.sendWatch();
     });
     connection.on("parameter_nodes", ({ nodes }) => {
       this.nodes = nodes;
@@ -33,9 +33,9 @@ export class ParametersState {
     connection.on("parameter_dump", (dump) => this.dumpArrived.emit(dump));
   }
 
-  watch(watched: boolean): void {
-    if (watched === this.listed) return;
-    this.listed = watched;
+  watch(isWatched: boolean): void {
+    if (isWatched === this.isListed) return;
+    this.isListed = isWatched;
     this.sendWatch();
   }
 
@@ -55,7 +55,7 @@ export class ParametersState {
   }
 
   private sendWatch(): void {
-    const node = this.listed ? this.node : null;
-    this.connection.send({ type: "watch_parameters", listed: this.listed, node });
+    const node = this.isListed ? this.node : null;
+    this.connection.send({ type: "watch_parameters", listed: this.isListed, node });
   }
 }

@@ -2,7 +2,7 @@ import type { Connection } from "../../connection/connection";
 import type { SeriesSamples } from "../../connection/samples";
 import type { TopicFields } from "../../protocol";
 import { Signal } from "../../signal";
-import { fieldText, type FieldName } from "./field-text";
+import { formatField, type FieldName } from "./field-text";
 import { SeriesBuffer, type TimeSource } from "./series-buffer";
 
 /** A line of a plot. */
@@ -41,7 +41,7 @@ export class PlotsState {
   seconds = FIRST_SECONDS;
   source: TimeSource = "received";
   private frozenAt: readonly [number, number] | null = null;
-  private opened = false;
+  private isOpen = false;
   private isLive = true;
   private nextId = 1;
 
@@ -51,11 +51,11 @@ export class PlotsState {
   ) {
     this.restore();
     connection.on("hello", () => {
-      if (this.opened) this.sendWatch();
+      if (this.isOpen) this.sendWatch();
     });
     connection.on("series_states", ({ states }) => {
       for (const { id, error } of states) {
-        const series = this.series.find((each) => each.id === id);
+        const series = this.series.find((candidate) => candidate.id === id);
         if (series) series.error = error;
       }
       this.changed.emit();
@@ -73,22 +73,22 @@ export class PlotsState {
     return this.plots.flatMap((plot) => plot.series);
   }
 
-  get paused(): boolean {
+  get isPaused(): boolean {
     return this.frozenAt !== null;
   }
 
   /** The time span of the plots, s; null if there is nothing to show. */
   get window(): readonly [number, number] | null {
     if (this.frozenAt) return this.frozenAt;
-    const times = this.series.map((each) => each.buffer.latest(this.source)).filter((time) => time !== null);
+    const times = this.series.map((series) => series.buffer.latestTime(this.source)).filter((time) => time !== null);
     if (times.length === 0) return null;
-    const to = Math.max(...times);
-    return [to - this.seconds, to];
+    const end = Math.max(...times);
+    return [end - this.seconds, end];
   }
 
   /** Starts or stops receiving samples, when the panel is opened or closed. */
-  setOpen(open: boolean): void {
-    this.opened = open;
+  setOpen(isOpen: boolean): void {
+    this.isOpen = isOpen;
     this.sendWatch();
   }
 
@@ -105,7 +105,7 @@ export class PlotsState {
   }
 
   addSeries(plot: Plot, field: FieldName): void {
-    if (plot.series.some((each) => fieldText(each) === fieldText(field))) return;
+    if (plot.series.some((series) => formatField(series) === formatField(field))) return;
     plot.series.push({ ...field, id: this.nextId++, buffer: new SeriesBuffer(), error: null });
     this.store();
   }
@@ -133,15 +133,15 @@ export class PlotsState {
   }
 
   /** Freezes or resumes the plots; samples are received in both cases. */
-  setPaused(paused: boolean): void {
-    this.frozenAt = paused ? this.window : null;
+  setPaused(isPaused: boolean): void {
+    this.frozenAt = isPaused ? this.window : null;
     this.changed.emit();
     this.moved.emit();
   }
 
   /** Freezes the plots at a time span. */
-  freezeAt(from: number, to: number): void {
-    this.frozenAt = [from, to];
+  freezeAt(start: number, end: number): void {
+    this.frozenAt = [start, end];
     this.changed.emit();
     this.moved.emit();
   }
@@ -159,13 +159,13 @@ export class PlotsState {
   }
 
   private addSamples(samples: readonly SeriesSamples[]): void {
-    const series = new Map(this.series.map((each) => [each.id, each]));
+    const series = new Map(this.series.map((series) => [series.id, series]));
     for (const { id, received, stamps, values } of samples) series.get(id)?.buffer.append(received, stamps, values);
-    if (!this.paused) this.moved.emit();
+    if (!this.isPaused) this.moved.emit();
   }
 
   private store(): void {
-    const saved: Saved = {
+    const savedState: Saved = {
       seconds: this.seconds,
       source: this.source,
       plots: this.plots.map(({ series, range }) => ({
@@ -173,8 +173,8 @@ export class PlotsState {
         range,
       })),
     };
-    this.storage.setItem(SAVED_KEY, JSON.stringify(saved));
-    if (this.opened) this.sendWatch();
+    this.storage.setItem(SAVED_KEY, JSON.stringify(savedState));
+    if (this.isOpen) this.sendWatch();
     this.changed.emit();
     this.moved.emit();
   }
@@ -183,19 +183,19 @@ export class PlotsState {
     const text = this.storage.getItem(SAVED_KEY);
     if (text === null) return;
     try {
-      const saved = JSON.parse(text) as Saved;
-      for (const { series, range } of saved.plots) {
-        const restored = series.map(({ topic, path }) => ({
+      const savedState = JSON.parse(text) as Saved;
+      for (const { series, range } of savedState.plots) {
+        const plot = series.map(({ topic, path }) => ({
           topic,
           path,
           id: this.nextId++,
           buffer: new SeriesBuffer(),
           error: null,
         }));
-        this.plots.push({ id: this.nextId++, series: restored, range });
+        this.plots.push({ id: this.nextId++, series: plot, range });
       }
-      this.seconds = saved.seconds;
-      this.source = saved.source;
+      this.seconds = savedState.seconds;
+      this.source = savedState.source;
     } catch {
       // The stored plots are from another version of the page: start without any.
       this.plots.length = 0;
@@ -203,7 +203,7 @@ export class PlotsState {
   }
 
   private sendWatch(): void {
-    const series = this.opened ? this.series.map(({ id, topic, path }) => ({ id, topic, path })) : [];
+    const series = this.isOpen ? this.series.map(({ id, topic, path }) => ({ id, topic, path })) : [];
     this.connection.send({ type: "watch_series", series, seconds: this.seconds });
   }
 }

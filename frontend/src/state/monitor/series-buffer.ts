@@ -9,12 +9,12 @@ const RESET_SECONDS = 1;
 
 /** The samples of a series, the newest last; the oldest are dropped when there are too many. */
 export class SeriesBuffer {
-  private received = new Float64Array(FIRST_CAPACITY);
+  private receiveTimes = new Float64Array(FIRST_CAPACITY);
   private stamps = new Float64Array(FIRST_CAPACITY);
   private numbers = new Float64Array(FIRST_CAPACITY);
   private count = 0;
 
-  constructor(private readonly most = MAX_SAMPLES) {}
+  constructor(private readonly maxSamples = MAX_SAMPLES) {}
 
   get length(): number {
     return this.count;
@@ -25,29 +25,29 @@ export class SeriesBuffer {
   }
 
   /** Returns the times of the samples, s; the time of receipt replaces the stamp of messages without a header. */
-  times(source: TimeSource): Float64Array {
-    return (source === "stamp" ? this.stamps : this.received).subarray(0, this.count);
+  timesOf(source: TimeSource): Float64Array {
+    return (source === "stamp" ? this.stamps : this.receiveTimes).subarray(0, this.count);
   }
 
   /** Returns the newest time, s; null if there are no samples. */
-  latest(source: TimeSource): number | null {
-    return this.times(source)[this.count - 1] ?? null;
+  latestTime(source: TimeSource): number | null {
+    return this.timesOf(source)[this.count - 1] ?? null;
   }
 
   get lastValue(): number | null {
     return this.numbers[this.count - 1] ?? null;
   }
 
-  append(received: ArrayLike<number>, stamps: ArrayLike<number>, values: ArrayLike<number>): void {
+  append(receiveTimes: ArrayLike<number>, stamps: ArrayLike<number>, values: ArrayLike<number>): void {
     this.reserve(values.length);
     for (let index = 0; index < values.length; index++) {
-      const time = received[index] ?? 0;
+      const time = receiveTimes[index] ?? 0;
       const header = stamps[index] ?? NaN;
       const stamp = Number.isNaN(header) ? time : header;
       // Samples arrive a second time after a jump to another time of a recording, with samples from before it.
-      if (this.count > 0 && time < (this.received[this.count - 1] ?? 0)) this.count = this.indexFrom("received", time);
+      if (this.count > 0 && time < (this.receiveTimes[this.count - 1] ?? 0)) this.count = this.indexFrom("received", time);
       if (this.count > 0 && stamp < (this.stamps[this.count - 1] ?? 0) - RESET_SECONDS) this.count = 0;
-      this.received[this.count] = time;
+      this.receiveTimes[this.count] = time;
       this.stamps[this.count] = stamp;
       this.numbers[this.count] = values[index] ?? NaN;
       this.count++;
@@ -60,35 +60,35 @@ export class SeriesBuffer {
 
   /** Returns the index of the first sample at or after a time. */
   indexFrom(source: TimeSource, time: number): number {
-    const times = this.times(source);
+    const times = this.timesOf(source);
     let low = 0;
     let high = times.length;
     while (low < high) {
-      const middle = (low + high) >> 1;
-      if ((times[middle] ?? 0) < time) low = middle + 1;
-      else high = middle;
+      const center = (low + high) >> 1;
+      if ((times[center] ?? 0) < time) low = center + 1;
+      else high = center;
     }
     return low;
   }
 
-  private reserve(more: number): void {
-    const needed = this.count + more;
+  private reserve(count: number): void {
+    const needed = this.count + count;
     if (needed <= this.numbers.length) return;
-    if (needed > this.most) {
+    if (needed > this.maxSamples) {
       // Drop half of them, so that this happens rarely.
-      const remaining = Math.min(this.count, Math.max(0, (this.most >> 1) - more));
-      for (const array of [this.received, this.stamps, this.numbers]) array.copyWithin(0, this.count - remaining, this.count);
+      const remaining = Math.min(this.count, Math.max(0, (this.maxSamples >> 1) - count));
+      for (const array of [this.receiveTimes, this.stamps, this.numbers]) array.copyWithin(0, this.count - remaining, this.count);
       this.count = remaining;
-      if (remaining + more <= this.numbers.length) return;
+      if (remaining + count <= this.numbers.length) return;
     }
-    const capacity = Math.max(this.count + more, Math.min(this.most, this.numbers.length * 2));
-    this.received = resized(this.received, capacity);
-    this.stamps = resized(this.stamps, capacity);
-    this.numbers = resized(this.numbers, capacity);
+    const capacity = Math.max(this.count + count, Math.min(this.maxSamples, this.numbers.length * 2));
+    this.receiveTimes = resize(this.receiveTimes, capacity);
+    this.stamps = resize(this.stamps, capacity);
+    this.numbers = resize(this.numbers, capacity);
   }
 }
 
-function resized(array: Float64Array, capacity: number): Float64Array<ArrayBuffer> {
+function resize(array: Float64Array, capacity: number): Float64Array<ArrayBuffer> {
   const larger = new Float64Array(capacity);
   larger.set(array);
   return larger;

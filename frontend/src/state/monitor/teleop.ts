@@ -13,7 +13,7 @@ export interface TeleopSettings {
   angular: number;
   /** The number of velocity messages per second while driving, 10 to 20. */
   rate: number;
-  gamepad: boolean;
+  usesGamepad: boolean;
 }
 
 /** A source of motion; the motions of all sources are added. */
@@ -27,7 +27,7 @@ const DEFAULTS: TeleopSettings = {
   linear: 0.5,
   angular: 1,
   rate: 20,
-  gamepad: false,
+  usesGamepad: false,
 };
 
 /** Sends velocities while a motion is held, and zero when it ends. */
@@ -38,7 +38,7 @@ export class TeleopState {
   /** The target that the server uses; null until it has reported one. */
   aim: Aim | null = null;
   private readonly motions = new Map<Source, Motion>();
-  private opened = false;
+  private isOpen = false;
   private timer = 0;
 
   constructor(
@@ -47,7 +47,7 @@ export class TeleopState {
   ) {
     this.settings = { ...DEFAULTS, ...parseSettings(storage.getItem(SAVED_KEY)) };
     connection.on("hello", () => {
-      if (this.opened) this.sendTarget();
+      if (this.isOpen) this.sendTarget();
     });
     connection.on("teleop_state", (aim) => {
       this.aim = aim;
@@ -63,33 +63,33 @@ export class TeleopState {
     return sumOf(this.motions.values());
   }
 
-  setOpen(open: boolean): void {
-    if (open === this.opened) return;
-    if (!open) this.stop();
-    this.opened = open;
+  setOpen(isOpen: boolean): void {
+    if (isOpen === this.isOpen) return;
+    if (!isOpen) this.stop();
+    this.isOpen = isOpen;
     this.aim = null;
     this.sendTarget();
   }
 
   configure(change: Partial<TeleopSettings>): void {
-    const before = this.settings;
-    this.settings = { ...before, ...change };
+    const previousSettings = this.settings;
+    this.settings = { ...previousSettings, ...change };
     this.storage.setItem(SAVED_KEY, JSON.stringify(this.settings));
     const { topic, kind, frameId } = this.settings;
-    if (topic !== before.topic || kind !== before.kind || frameId !== before.frameId) {
+    if (topic !== previousSettings.topic || kind !== previousSettings.kind || frameId !== previousSettings.frameId) {
       this.stop();
-      if (this.opened) this.sendTarget();
+      if (this.isOpen) this.sendTarget();
     }
     this.changed.emit();
   }
 
   /** Sets the motion of a source from now on. */
   move(source: Source, motion: Motion): void {
-    const before = this.motion;
+    const previousMotion = this.motion;
     if (isStill(motion)) this.motions.delete(source);
     else this.motions.set(source, motion);
     const now = this.motion;
-    if (now.x === before.x && now.y === before.y && now.z === before.z && now.turn === before.turn) return;
+    if (now.x === previousMotion.x && now.y === previousMotion.y && now.z === previousMotion.z && now.turn === previousMotion.turn) return;
     if (isStill(now)) this.stop();
     else if (this.timer === 0) this.drive();
     this.changed.emit();
@@ -97,11 +97,11 @@ export class TeleopState {
 
   /** Ends all motions. */
   stop(): void {
-    const driven = this.timer !== 0;
+    const isDriving = this.timer !== 0;
     clearTimeout(this.timer);
     this.timer = 0;
     this.motions.clear();
-    if (!driven) return;
+    if (!isDriving) return;
     this.send(STILL);
     this.changed.emit();
   }
@@ -123,7 +123,7 @@ export class TeleopState {
 
   private sendTarget(): void {
     const { topic, kind, frameId } = this.settings;
-    const target = this.opened ? { topic, kind, frame_id: frameId } : null;
+    const target = this.isOpen ? { topic, kind, frame_id: frameId } : null;
     this.connection.send({ type: "aim_teleop", target });
   }
 }

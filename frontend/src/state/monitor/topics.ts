@@ -9,55 +9,55 @@ export class TopicsState {
   readonly messageArrived = new Signal<TopicMessage>();
   topics: readonly TopicRow[] = [];
   /** Whether the topics have arrived since the page connected. */
-  known = false;
+  isKnown = false;
   readonly traffic = new Map<string, TopicTraffic>();
   readonly messages = new Map<string, TopicMessage>();
   private readonly readers = new Set<object>();
-  private measured: readonly string[] = [];
-  private opened: readonly string[] = [];
+  private measuredTopics: readonly string[] = [];
+  private openTopics: readonly string[] = [];
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
-      this.known = false;
-      if (this.readers.size > 0 || this.measured.length > 0) this.sendWatch();
+      this.isKnown = false;
+      if (this.readers.size > 0 || this.measuredTopics.length > 0) this.sendWatch();
     });
     connection.on("topic_list", ({ topics }) => {
       this.topics = topics;
-      this.known = true;
+      this.isKnown = true;
       this.listChanged.emit();
     });
     connection.on("topic_figures", ({ traffic }) => {
-      for (const each of traffic) this.traffic.set(each.topic, each);
+      for (const topicTraffic of traffic) this.traffic.set(topicTraffic.topic, topicTraffic);
       this.figuresChanged.emit();
     });
     connection.on("topic_message", (message) => {
-      if (!this.opened.includes(message.topic)) return;
+      if (!this.openTopics.includes(message.topic)) return;
       this.messages.set(message.topic, message);
       this.messageArrived.emit(message);
     });
   }
 
   /** Starts or stops keeping the list of topics up to date for a reader. */
-  watchList(reader: object, wanted: boolean): void {
-    const before = this.readers.size;
-    if (wanted) this.readers.add(reader);
+  watchList(reader: object, isWanted: boolean): void {
+    const previousCount = this.readers.size;
+    if (isWanted) this.readers.add(reader);
     else this.readers.delete(reader);
-    if (before === 0 || this.readers.size === 0) this.sendWatch();
+    if (previousCount === 0 || this.readers.size === 0) this.sendWatch();
   }
 
   /** Sets the topics to measure, and those whose last message is requested. */
-  watch(measured: Iterable<string>, opened: Iterable<string>): void {
-    this.measured = [...measured];
-    this.opened = [...opened];
-    const watched = new Set([...this.measured, ...this.opened]);
+  watch(measuredTopics: Iterable<string>, openTopics: Iterable<string>): void {
+    this.measuredTopics = [...measuredTopics];
+    this.openTopics = [...openTopics];
+    const watched = new Set([...this.measuredTopics, ...this.openTopics]);
     for (const topic of this.traffic.keys()) if (!watched.has(topic)) this.traffic.delete(topic);
-    for (const topic of this.messages.keys()) if (!this.opened.includes(topic)) this.messages.delete(topic);
+    for (const topic of this.messages.keys()) if (!this.openTopics.includes(topic)) this.messages.delete(topic);
     this.sendWatch();
     this.figuresChanged.emit();
   }
 
   private sendWatch(): void {
-    const { measured, opened } = this;
-    this.connection.send({ type: "watch_topics", listed: this.readers.size > 0, measured: [...measured], opened: [...opened] });
+    const { measuredTopics, openTopics } = this;
+    this.connection.send({ type: "watch_topics", listed: this.readers.size > 0, measured: [...measuredTopics], opened: [...openTopics] });
   }
 }

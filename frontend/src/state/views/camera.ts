@@ -45,25 +45,25 @@ export function toTarget(point: Vector, target: Target): Vector {
 }
 
 /** Converts a camera from a target's frame to the fixed frame. */
-export function cameraInFixed(camera: Camera, target: Target): Camera {
-  return transformed(camera, (point) => toFixed(point, target), target.yaw);
+export function cameraToFixed(camera: Camera, target: Target): Camera {
+  return transformCamera(camera, (point) => toFixed(point, target), target.yaw);
 }
 
 /** Converts a camera from the fixed frame to a target's frame. */
-export function cameraInTarget(camera: Camera, target: Target): Camera {
-  return transformed(camera, (point) => toTarget(point, target), -target.yaw);
+export function cameraToTarget(camera: Camera, target: Target): Camera {
+  return transformCamera(camera, (point) => toTarget(point, target), -target.yaw);
 }
 
 /** Returns the ray from the camera through a pixel, counted from the upper left corner. */
-export function rayThrough(camera: Camera, x: number, y: number, { width, height }: ViewSize): Ray {
-  const back = scale(camera.back, -1);
+export function castRay(camera: Camera, x: number, y: number, { width, height }: ViewSize): Ray {
+  const forward = scale(camera.back, -1);
   if (camera.scale !== null) {
-    const [right, up] = [(x - width / 2) / camera.scale, (height / 2 - y) / camera.scale];
-    return { origin: add(add(camera.position, camera.right, right), camera.up, up), direction: back };
+    const [right, upward] = [(x - width / 2) / camera.scale, (height / 2 - y) / camera.scale];
+    return { origin: add(add(camera.position, camera.right, right), camera.up, upward), direction: forward };
   }
   const meters = (2 * Math.tan(FIELD_OF_VIEW / 2)) / height; // a pixel, 1 m from the camera
-  const towards = add(add(back, camera.right, (x - width / 2) * meters), camera.up, (height / 2 - y) * meters);
-  return { origin: camera.position, direction: unit(towards) };
+  const direction = add(add(forward, camera.right, (x - width / 2) * meters), camera.up, (height / 2 - y) * meters);
+  return { origin: camera.position, direction: unit(direction) };
 }
 
 /** Returns the intersection of a ray with the plane z = 0; null if the ray does not reach it. */
@@ -73,19 +73,19 @@ export function onGround({ origin, direction }: Ray): Vector | null {
   return add(origin, direction, distance);
 }
 
-function transformed(camera: Camera, place: (point: Vector) => Vector, yaw: number): Camera {
+function transformCamera(camera: Camera, transformPoint: (point: Vector) => Vector, yaw: number): Camera {
   return {
-    position: place(camera.position),
+    position: transformPoint(camera.position),
     right: rotateZ(camera.right, yaw),
     up: rotateZ(camera.up, yaw),
     back: rotateZ(camera.back, yaw),
     scale: camera.scale,
-    focal: camera.focal && place(camera.focal),
+    focal: camera.focal && transformPoint(camera.focal),
   };
 }
 
 /** Returns the size of a pixel at a point, m. */
-export function pixelSize(camera: Camera, point: Vector, { height }: ViewSize): number {
+export function computePixelSize(camera: Camera, point: Vector, { height }: ViewSize): number {
   if (camera.scale !== null) return 1 / camera.scale;
   const depth = Math.max(1e-3, dot(subtract(camera.position, point), camera.back));
   return (2 * depth * Math.tan(FIELD_OF_VIEW / 2)) / height;

@@ -12,7 +12,7 @@ const NEAR_CLIP = "Near Clip Distance";
 /** The framing of a box from the direction of a camera. */
 export interface Framing {
   /** The center of the box. */
-  readonly middle: Vector;
+  readonly center: Vector;
   /** The distance from the center to a perspective camera, m; 0 for a single point. */
   readonly distance: number;
   /** Pixels per meter of an orthographic camera; 0 for a single point. */
@@ -25,22 +25,22 @@ export interface Framing {
  * Returns the framing that shows a whole box as large as a canvas of this size permits. `values` are those of the
  * camera's view.
  */
-export function framing(camera: Camera, values: ViewValues, span: Span, { width, height }: ViewSize): Framing {
+export function computeFraming(camera: Camera, values: ViewValues, span: Span, { width, height }: ViewSize): Framing {
   const { right, up, back } = camera;
-  const middle = scale(add(span.min, span.max), 0.5);
+  const center = scale(add(span.min, span.max), 0.5);
   const tangent = Math.tan(FIELD_OF_VIEW / 2) / MARGIN;
   let [distance, meters, front] = [0, 0, 0];
-  for (const point of span.points ?? corners(span)) {
-    const corner = subtract(point, middle);
-    const [across, along] = [Math.abs(dot(corner, right)), Math.abs(dot(corner, up))];
-    distance = Math.max(distance, dot(corner, back) + Math.max(along, (across * height) / width) / tangent);
-    meters = Math.max(meters, (2 * across) / width, (2 * along) / height);
+  for (const point of span.points ?? cornersOf(span)) {
+    const corner = subtract(point, center);
+    const [horizontal, vertical] = [Math.abs(dot(corner, right)), Math.abs(dot(corner, up))];
+    distance = Math.max(distance, dot(corner, back) + Math.max(vertical, (horizontal * height) / width) / tangent);
+    meters = Math.max(meters, (2 * horizontal) / width, (2 * vertical) / height);
     front = Math.max(front, dot(corner, back));
   }
   const room = CLIP_SHARE * (distance - front);
   const isClipped = room > 0 && number(values, NEAR_CLIP, 0) > room;
   return {
-    middle,
+    center,
     distance,
     scale: meters > 0 ? 1 / (meters * MARGIN) : 0,
     clip: isClipped ? { [NEAR_CLIP]: Math.max(MIN_CLIP, room) } : {},
@@ -48,14 +48,14 @@ export function framing(camera: Camera, values: ViewValues, span: Span, { width,
 }
 
 /** Returns the bounding box in a target's frame of a box in the fixed frame. */
-export function spanInTarget(span: Span, target: Target): Span {
-  const seen = corners(span).map((corner) => toTarget(corner, target));
+export function spanToTarget(span: Span, target: Target): Span {
+  const cornersInTarget = cornersOf(span).map((corner) => toTarget(corner, target));
   const points = span.points?.map((point) => toTarget(point, target));
-  const extreme = (choose: (...each: number[]) => number): Vector => {
-    const at = (i: 0 | 1 | 2): number => choose(...seen.map((corner) => corner[i]));
-    return [at(0), at(1), at(2)];
+  const extremeOf = (choose: (...coordinates: number[]) => number): Vector => {
+    const coordinate = (i: 0 | 1 | 2): number => choose(...cornersInTarget.map((corner) => corner[i]));
+    return [coordinate(0), coordinate(1), coordinate(2)];
   };
-  return { min: extreme(Math.min), max: extreme(Math.max), ...(points ? { points } : {}) };
+  return { min: extremeOf(Math.min), max: extremeOf(Math.max), ...(points ? { points } : {}) };
 }
 
 /** Whether a box contains another. */
@@ -63,7 +63,7 @@ export function contains(outer: Span, inner: Span): boolean {
   return ([0, 1, 2] as const).every((i) => outer.min[i] <= inner.min[i] && inner.max[i] <= outer.max[i]);
 }
 
-function corners({ min, max }: Span): Vector[] {
+function cornersOf({ min, max }: Span): Vector[] {
   const ends = [min, max];
   return ends.flatMap(([x]) => ends.flatMap(([, y]) => ends.map(([, , z]): Vector => [x, y, z])));
 }

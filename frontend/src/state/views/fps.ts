@@ -1,5 +1,5 @@
 import { toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
-import { framing } from "./fit";
+import { computeFraming } from "./fit";
 import { add, cross, length, subtract, type Span, type Vector } from "./vector";
 import {
   clampPitch,
@@ -30,7 +30,7 @@ export class FpsController implements ViewController {
   readonly followsYaw = false;
   readonly focalColor = 0xffff00;
 
-  camera(values: ViewValues): Camera {
+  computeCamera(values: ViewValues): Camera {
     const yaw = number(values, "Yaw", 0);
     const pitch = clampPitch(number(values, "Pitch", 0));
     const back: Vector = [-Math.cos(yaw) * Math.cos(pitch), -Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
@@ -45,7 +45,7 @@ export class FpsController implements ViewController {
   drag(values: ViewValues, drag: Drag): ViewValues {
     const { left, middle, right, dx, dy } = drag;
     if (!left && !middle && !right) return {};
-    switch (this.motion(drag)) {
+    switch (this.motionOf(drag)) {
       case "rotate3d":
         return {
           Yaw: wrapYaw(number(values, "Yaw", 0) - dx * RADIANS_PER_PIXEL),
@@ -58,56 +58,56 @@ export class FpsController implements ViewController {
     }
   }
 
-  wheel(values: ViewValues, delta: number): ViewValues {
+  applyWheel(values: ViewValues, delta: number): ViewValues {
     return this.fly(values, [0, 0, -delta * METERS_PER_WHEEL_UNIT]);
   }
 
   lookAt(values: ViewValues, point: Vector): ViewValues {
-    const { position, up } = this.camera(values);
+    const { position, up } = this.computeCamera(values);
     return anglesOf(subtract(point, position), up);
   }
 
   fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
-    const camera = this.camera(values);
-    const { middle, distance, clip } = framing(camera, values, box, size);
-    return distance > 0 ? { ...vectorValues("Position", add(middle, camera.back, distance)), ...clip } : this.lookAt(values, middle);
+    const camera = this.computeCamera(values);
+    const { center, distance, clip } = computeFraming(camera, values, box, size);
+    return distance > 0 ? { ...vectorValues("Position", add(center, camera.back, distance)), ...clip } : this.lookAt(values, center);
   }
 
   mimic({ camera }: Look): ViewValues {
-    const ahead = subtract([0, 0, 0], camera.back);
-    return { ...vectorValues("Position", camera.position), ...anglesOf(ahead, camera.up) };
+    const forward = subtract([0, 0, 0], camera.back);
+    return { ...vectorValues("Position", camera.position), ...anglesOf(forward, camera.up) };
   }
 
-  retarget(values: ViewValues, from: Target, to: Target): ViewValues {
-    return vectorValues("Position", toTarget(toFixed(vector(values, "Position", START), from), to));
+  retarget(values: ViewValues, oldTarget: Target, newTarget: Target): ViewValues {
+    return vectorValues("Position", toTarget(toFixed(vector(values, "Position", START), oldTarget), newTarget));
   }
 
-  motion({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): FpsMotion {
+  motionOf({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): FpsMotion {
     if (left && !shift) return "rotate3d";
     if (middle || left) return "moveXY";
     if (right) return "moveZ";
     return shift ? "moveXY" : "rotate3d";
   }
 
-  hint(shift: boolean): MouseHint {
-    return shift ? "flyShift" : "fly";
+  hintFor(isShiftDown: boolean): MouseHint {
+    return isShiftDown ? "flyShift" : "fly";
   }
 
   /** Moves along the camera's own axes: right, up, back. */
   private fly(values: ViewValues, [x, y, z]: Vector): ViewValues {
-    const { position, right, up, back } = this.camera(values);
+    const { position, right, up, back } = this.computeCamera(values);
     return vectorValues("Position", add(add(add(position, right, x), up, y), back, z));
   }
 }
 
 /** Returns yaw and pitch of a direction; `up` defines the yaw of a vertical one. */
-function anglesOf(ahead: Vector, up: Vector): ViewValues {
-  const far = length(ahead);
-  if (far === 0) return {};
-  const down = -ahead[2] / far;
-  const [x, y] = Math.abs(down) > VERTICAL ? [up[0] * down, up[1] * down] : ahead;
+function anglesOf(forward: Vector, up: Vector): ViewValues {
+  const distance = length(forward);
+  if (distance === 0) return {};
+  const descent = -forward[2] / distance;
+  const [x, y] = Math.abs(descent) > VERTICAL ? [up[0] * descent, up[1] * descent] : forward;
   return {
     Yaw: wrapYaw(Math.atan2(y, x)),
-    Pitch: clampPitch(Math.asin(Math.max(-1, Math.min(1, down)))),
+    Pitch: clampPitch(Math.asin(Math.max(-1, Math.min(1, descent)))),
   };
 }

@@ -1,5 +1,5 @@
 import { FIELD_OF_VIEW, toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
-import { framing } from "./fit";
+import { computeFraming } from "./fit";
 import { add, cross, distanceBetween, length, ORIGIN, scale, type Span, type Vector } from "./vector";
 import {
   clampPitch,
@@ -35,12 +35,12 @@ export class OrbitController implements ViewController {
   readonly followsYaw: boolean = false;
   readonly focalColor: number = 0xffff00;
 
-  camera(values: ViewValues): Camera {
+  computeCamera(values: ViewValues): Camera {
     const { distance, yaw, pitch, focal } = orbitOf(values);
     const sign = values["Invert Z Axis"] === true ? -1 : 1;
     const back = orbitDirection(yaw * sign, pitch * sign);
-    const flat = Math.hypot(back[0], back[1]);
-    const right: Vector = [(-back[1] * sign) / flat, (back[0] * sign) / flat, 0];
+    const horizontal = Math.hypot(back[0], back[1]);
+    const right: Vector = [(-back[1] * sign) / horizontal, (back[0] * sign) / horizontal, 0];
     return { position: add(focal, back, distance), right, up: cross(back, right), back, scale: null, focal };
   }
 
@@ -50,7 +50,7 @@ export class OrbitController implements ViewController {
 
   drag(values: ViewValues, drag: Drag): ViewValues {
     const { distance, yaw, pitch } = orbitOf(values);
-    switch (this.motion(drag)) {
+    switch (this.motionOf(drag)) {
       case "rotate3d":
         if (!drag.left) return {};
         return {
@@ -66,19 +66,19 @@ export class OrbitController implements ViewController {
     }
   }
 
-  wheel(values: ViewValues, delta: number, shift: boolean): ViewValues {
+  applyWheel(values: ViewValues, delta: number, isShiftDown: boolean): ViewValues {
     const { distance } = orbitOf(values);
     const amount = delta * ZOOM_PER_WHEEL_UNIT * distance;
-    return shift ? this.dolly(values, -amount) : { Distance: clampDistance(distance - amount) };
+    return isShiftDown ? this.dolly(values, -amount) : { Distance: clampDistance(distance - amount) };
   }
 
   lookAt(values: ViewValues, point: Vector): ViewValues {
-    return orbitFrom(point, this.camera(values).position);
+    return orbitFrom(point, this.computeCamera(values).position);
   }
 
   fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
-    const { middle, distance, clip } = framing(this.camera(values), values, box, size);
-    return { ...vectorValues("Focal Point", middle), ...(distance > 0 ? { Distance: distance } : {}), ...clip };
+    const { center, distance, clip } = computeFraming(this.computeCamera(values), values, box, size);
+    return { ...vectorValues("Focal Point", center), ...(distance > 0 ? { Distance: distance } : {}), ...clip };
   }
 
   mimic({ cls, values, camera }: Look): ViewValues {
@@ -86,26 +86,26 @@ export class OrbitController implements ViewController {
       const { distance, focal } = orbitOf(values);
       return { ...orbitFrom(focal, camera.position), Distance: distance };
     }
-    if (cls === "rviz_default_plugins/TopDownOrtho") return orbitAbove(camera.position);
+    if (cls === "rviz_default_plugins/TopDownOrtho") return lookFromAbove(camera.position);
     const distance = length(camera.position);
     return orbitFrom(add(camera.position, camera.back, -distance), camera.position);
   }
 
-  retarget(values: ViewValues, from: Target, to: Target): ViewValues {
+  retarget(values: ViewValues, oldTarget: Target, newTarget: Target): ViewValues {
     const { focal, yaw } = orbitOf(values);
-    const turned = from.yaw === to.yaw ? {} : { Yaw: wrapYaw(yaw + from.yaw - to.yaw) };
-    return { ...vectorValues("Focal Point", toTarget(toFixed(focal, from), to)), ...turned };
+    const yawChange = oldTarget.yaw === newTarget.yaw ? {} : { Yaw: wrapYaw(yaw + oldTarget.yaw - newTarget.yaw) };
+    return { ...vectorValues("Focal Point", toTarget(toFixed(focal, oldTarget), newTarget)), ...yawChange };
   }
 
-  motion({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
+  motionOf({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
     if (left && !shift) return "rotate3d";
     if (middle || (left && shift)) return "moveXY";
     if (right) return shift ? "moveZ" : "zoom";
     return shift ? "moveXY" : "rotate3d";
   }
 
-  hint(shift: boolean): MouseHint {
-    return shift ? "orbitShift" : "orbit";
+  hintFor(isShiftDown: boolean): MouseHint {
+    return isShiftDown ? "orbitShift" : "orbit";
   }
 
   /** Moves the focal point with the pointer in the camera's plane. */
@@ -113,13 +113,13 @@ export class OrbitController implements ViewController {
     if (!left && !middle) return {};
     const { distance, focal } = orbitOf(values);
     const metersPerPixel = (2 * distance * Math.tan(FIELD_OF_VIEW / 2)) / Math.max(1, height);
-    const { right, up } = this.camera(values);
+    const { right, up } = this.computeCamera(values);
     return vectorValues("Focal Point", add(add(focal, right, -dx * metersPerPixel), up, dy * metersPerPixel));
   }
 
   /** Moves the camera and the focal point along the line of sight. */
   private dolly(values: ViewValues, amount: number): ViewValues {
-    return vectorValues("Focal Point", add(orbitOf(values).focal, this.camera(values).back, amount));
+    return vectorValues("Focal Point", add(orbitOf(values).focal, this.computeCamera(values).back, amount));
   }
 }
 
@@ -145,7 +145,7 @@ export function orbitFrom(focal: Vector, viewpoint: Vector): ViewValues {
 }
 
 /** Returns the values that look straight down at the position of a TopDownOrtho view. */
-export function orbitAbove([x, y]: Vector): ViewValues {
+export function lookFromAbove([x, y]: Vector): ViewValues {
   return orbitFrom([x, y, 0], [x, y - HORIZONTAL_OFFSET, ABOVE_MAP]);
 }
 

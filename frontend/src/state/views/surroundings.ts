@@ -24,36 +24,36 @@ const DIRECTIONS = PITCHES.flatMap((pitch, higher) =>
 const orbit = new OrbitController();
 
 /** Returns whether nothing hides a place from a viewpoint. */
-export type IsVisible = (viewpoint: Vector, place: Vector) => boolean;
+export type IsVisible = (viewpoint: Vector, position: Vector) => boolean;
 
 /** Returns the values of an Orbit view of a whole world from above. */
 export function orbitOverview(values: ViewValues, world: Span, size: ViewSize): ViewValues {
-  const from = { ...values, Pitch: OVERVIEW_PITCH };
-  return { Pitch: OVERVIEW_PITCH, ...orbit.fit(from, world, size) };
+  const startValues = { ...values, Pitch: OVERVIEW_PITCH };
+  return { Pitch: OVERVIEW_PITCH, ...orbit.fit(startValues, world, size) };
 }
 
 /** Returns the values of an Orbit view of a robot and its surroundings, from where most of both is visible. */
 export function orbitAround(values: ViewValues, { min, max }: Span, size: ViewSize, isSeen: IsVisible): ViewValues {
   const span = Math.max(...subtract(max, min));
   const room = Math.max(ROOM, ROOM * span);
-  const middle = scale(add(min, max), 0.5);
-  const top: Vector = [middle[0], middle[1], max[2]];
-  const ring = Array.from({ length: RING_POINTS }, (_, i) => add(middle, rotateZ([1, 0, 0], (i * 2 * Math.PI) / RING_POINTS), span / 2 + room));
-  const all = orbit.fit({ ...values, Pitch: ROBOT_PITCH }, { min: add(min, [1, 1, 1], -room), max: add(max, [1, 1, 1], room) }, size);
-  const far = number(all, "Distance", 0);
-  const covered = (viewpoint: Vector): number => ring.filter((place) => !isSeen(viewpoint, place)).length / RING_POINTS;
+  const center = scale(add(min, max), 0.5);
+  const top: Vector = [center[0], center[1], max[2]];
+  const ring = Array.from({ length: RING_POINTS }, (_, i) => add(center, rotateZ([1, 0, 0], (i * 2 * Math.PI) / RING_POINTS), span / 2 + room));
+  const fittedValues = orbit.fit({ ...values, Pitch: ROBOT_PITCH }, { min: add(min, [1, 1, 1], -room), max: add(max, [1, 1, 1], room) }, size);
+  const maxDistance = number(fittedValues, "Distance", 0);
+  const coveredShare = (viewpoint: Vector): number => ring.filter((position) => !isSeen(viewpoint, position)).length / RING_POINTS;
   for (const nearer of NEARER) {
     let best: { score: number; values: ViewValues } | null = null;
     for (const { most, pitch, side } of DIRECTIONS) {
       if (best && most <= best.score) continue;
       const Yaw = wrapYaw(number(values, "Yaw", 0) + side);
       const Pitch = ROBOT_PITCH + pitch;
-      const viewpoint = add(middle, orbitDirection(Yaw, Pitch), nearer * far);
-      if (!isSeen(viewpoint, middle) || !isSeen(viewpoint, top)) continue;
-      const score = most - covered(viewpoint);
-      if (!best || score > best.score) best = { score, values: { ...all, Yaw, Pitch, Distance: nearer * far } };
+      const viewpoint = add(center, orbitDirection(Yaw, Pitch), nearer * maxDistance);
+      if (!isSeen(viewpoint, center) || !isSeen(viewpoint, top)) continue;
+      const score = most - coveredShare(viewpoint);
+      if (!best || score > best.score) best = { score, values: { ...fittedValues, Yaw, Pitch, Distance: nearer * maxDistance } };
     }
     if (best) return best.values;
   }
-  return all;
+  return fittedValues;
 }

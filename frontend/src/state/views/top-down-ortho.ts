@@ -1,5 +1,5 @@
 import { toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
-import { framing } from "./fit";
+import { computeFraming } from "./fit";
 import { rotateZ, type Span, type Vector } from "./vector";
 import {
   number,
@@ -26,7 +26,7 @@ export class TopDownOrthoController implements ViewController {
   readonly followsYaw = false;
   readonly focalColor = 0xffff00;
 
-  camera(values: ViewValues): Camera {
+  computeCamera(values: ViewValues): Camera {
     const scale = scaleOf(values);
     const angle = number(values, "Angle", 0);
     // A negative scale, which RViz allows by a fast drag, mirrors the view in both directions.
@@ -49,18 +49,18 @@ export class TopDownOrthoController implements ViewController {
     const { left, middle, right, dx, dy } = drag;
     if (!left && !middle && !right) return {};
     const scale = scaleOf(values);
-    switch (this.motion(drag)) {
+    switch (this.motionOf(drag)) {
       case "rotate2d":
         return { Angle: number(values, "Angle", 0) + dx * RADIANS_PER_PIXEL };
       case "moveXY":
-        return shifted(values, rotateZ([-dx / scale, dy / scale, 0], number(values, "Angle", 0)));
+        return shiftValues(values, rotateZ([-dx / scale, dy / scale, 0], number(values, "Angle", 0)));
       case "zoom":
-        return { Scale: zoomed(scale, 1 - dy * ZOOM_PER_PIXEL) };
+        return { Scale: zoomScale(scale, 1 - dy * ZOOM_PER_PIXEL) };
     }
   }
 
-  wheel(values: ViewValues, delta: number): ViewValues {
-    return { Scale: zoomed(scaleOf(values), 1 + delta * ZOOM_PER_WHEEL_UNIT) };
+  applyWheel(values: ViewValues, delta: number): ViewValues {
+    return { Scale: zoomScale(scaleOf(values), 1 + delta * ZOOM_PER_WHEEL_UNIT) };
   }
 
   lookAt(_values: ViewValues, [x, y]: Vector): ViewValues {
@@ -68,8 +68,8 @@ export class TopDownOrthoController implements ViewController {
   }
 
   fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
-    const { middle, scale } = framing(this.camera(values), values, box, size);
-    return { X: middle[0], Y: middle[1], ...(scale > 0 ? { Scale: Math.sign(scaleOf(values)) * scale } : {}) };
+    const { center, scale } = computeFraming(this.computeCamera(values), values, box, size);
+    return { X: center[0], Y: center[1], ...(scale > 0 ? { Scale: Math.sign(scaleOf(values)) * scale } : {}) };
   }
 
   mimic({ cls, values, camera }: Look): ViewValues {
@@ -80,24 +80,24 @@ export class TopDownOrthoController implements ViewController {
     return { X: x, Y: y };
   }
 
-  retarget(values: ViewValues, from: Target, to: Target): ViewValues {
-    const [x, y] = toTarget(toFixed([number(values, "X", 0), number(values, "Y", 0), 0], from), to);
+  retarget(values: ViewValues, oldTarget: Target, newTarget: Target): ViewValues {
+    const [x, y] = toTarget(toFixed([number(values, "X", 0), number(values, "Y", 0), 0], oldTarget), newTarget);
     return { X: x, Y: y };
   }
 
-  motion({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): MapMotion {
+  motionOf({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): MapMotion {
     if (left && !shift) return "rotate2d";
     if (middle || left) return "moveXY";
     if (right) return "zoom";
     return shift ? "moveXY" : "rotate2d";
   }
 
-  hint(shift: boolean): MouseHint {
-    return shift ? "mapShift" : "map";
+  hintFor(isShiftDown: boolean): MouseHint {
+    return isShiftDown ? "mapShift" : "map";
   }
 }
 
-function zoomed(scale: number, factor: number): number {
+function zoomScale(scale: number, factor: number): number {
   return clampScale(scale * Math.max(SMALLEST_FACTOR, factor));
 }
 
@@ -110,6 +110,6 @@ function clampScale(scale: number): number {
   return scale < 0 ? Math.min(-SMALLEST_SCALE, scale) : Math.max(SMALLEST_SCALE, scale);
 }
 
-function shifted(values: ViewValues, [x, y]: Vector): ViewValues {
+function shiftValues(values: ViewValues, [x, y]: Vector): ViewValues {
   return { X: number(values, "X", 0) + x, Y: number(values, "Y", 0) + y };
 }

@@ -40,21 +40,21 @@ export interface ViewController {
   readonly followsYaw: boolean;
   /** The color of the disc at the focal point. */
   readonly focalColor: number;
-  camera(values: ViewValues): Camera;
+  computeCamera(values: ViewValues): Camera;
   /** Returns the values of RViz's Zero button. */
   zero(): ViewValues;
   drag(values: ViewValues, drag: Drag): ViewValues;
   /** Handles the wheel; `delta` is 120 per notch, positive away from the user. */
-  wheel(values: ViewValues, delta: number, shift: boolean): ViewValues;
+  applyWheel(values: ViewValues, delta: number, isShiftDown: boolean): ViewValues;
   lookAt(values: ViewValues, point: Vector): ViewValues;
   /** Fits a box into view from the current direction, in a canvas of this size. */
   fit(values: ViewValues, box: Span, size: ViewSize): ViewValues;
   /** Imitates another view, as far as RViz does. */
-  mimic(look: Look): ViewValues;
+  mimic(previous: Look): ViewValues;
   /** Converts the values to another target frame without moving the camera. */
-  retarget(values: ViewValues, from: Target, to: Target): ViewValues;
-  motion(drag: Pick<Drag, "left" | "middle" | "right" | "shift">): Motion;
-  hint(shift: boolean): MouseHint;
+  retarget(values: ViewValues, oldTarget: Target, newTarget: Target): ViewValues;
+  motionOf(drag: Pick<Drag, "left" | "middle" | "right" | "shift">): Motion;
+  hintFor(isShiftDown: boolean): MouseHint;
 }
 
 const PITCH_LIMIT = Math.PI / 2 - 0.001;
@@ -66,8 +66,8 @@ export function number(values: ViewValues, name: string, fallback: number): numb
 }
 
 export function vector(values: ViewValues, name: string, fallback: Vector): Vector {
-  const at = (axis: "X" | "Y" | "Z", i: 0 | 1 | 2): number => number(values, `${name}/${axis}`, fallback[i]);
-  return [at("X", 0), at("Y", 1), at("Z", 2)];
+  const component = (axis: "X" | "Y" | "Z", i: 0 | 1 | 2): number => number(values, `${name}/${axis}`, fallback[i]);
+  return [component("X", 0), component("Y", 1), component("Z", 2)];
 }
 
 export function vectorValues(name: string, [x, y, z]: Vector): ViewValues {
@@ -75,10 +75,10 @@ export function vectorValues(name: string, [x, y, z]: Vector): ViewValues {
 }
 
 export function wrapYaw(yaw: number): number {
-  const turn = 2 * Math.PI;
+  const fullTurn = 2 * Math.PI;
   // Keep a value in range exactly as the user wrote it.
-  if (yaw >= 0 && yaw < turn) return yaw;
-  return ((yaw % turn) + turn) % turn;
+  if (yaw >= 0 && yaw < fullTurn) return yaw;
+  return ((yaw % fullTurn) + fullTurn) % fullTurn;
 }
 
 export function clampPitch(pitch: number): number {

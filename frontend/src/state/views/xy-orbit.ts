@@ -1,7 +1,7 @@
-import { onGround, rayThrough, type Camera, type ViewSize } from "./camera";
-import { framing } from "./fit";
+import { onGround, castRay, type Camera, type ViewSize } from "./camera";
+import { computeFraming } from "./fit";
 import { add, distanceBetween, length, scale, subtract, type Span, type Vector } from "./vector";
-import { orbitAbove, orbitFrom, OrbitController, orbitOf, type OrbitMotion } from "./orbit";
+import { lookFromAbove, orbitFrom, OrbitController, orbitOf, type OrbitMotion } from "./orbit";
 import { vectorValues, type Drag, type Look, type MouseHint, type ViewValues } from "./view-controller";
 
 /**
@@ -15,61 +15,61 @@ const MAX_STEP = 1;
 export class XYOrbitController extends OrbitController {
   override readonly focalColor: number = 0x00ffff;
 
-  override camera(values: ViewValues): Camera {
-    const camera = super.camera(values);
+  override computeCamera(values: ViewValues): Camera {
+    const camera = super.computeCamera(values);
     return { ...camera, position: add(camera.position, camera.up, RAISE * orbitOf(values).distance) };
   }
 
-  override wheel(values: ViewValues, delta: number): ViewValues {
-    return super.wheel(values, delta, false);
+  override applyWheel(values: ViewValues, delta: number): ViewValues {
+    return super.applyWheel(values, delta, false);
   }
 
   override lookAt(values: ViewValues, [x, y]: Vector): ViewValues {
-    return orbitFrom([x, y, 0], this.camera(values).position);
+    return orbitFrom([x, y, 0], this.computeCamera(values).position);
   }
 
   /**
    * Keeps the focal point on the ground, where the line of sight of a camera that shows the whole box intersects it.
    */
   override fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
-    const camera = this.camera(values);
-    const { middle, distance, clip } = framing(camera, values, box, size);
-    const position = add(middle, camera.back, distance > 0 ? distance : orbitOf(values).distance);
+    const camera = this.computeCamera(values);
+    const { center, distance, clip } = computeFraming(camera, values, box, size);
+    const position = add(center, camera.back, distance > 0 ? distance : orbitOf(values).distance);
     return { ...this.mimic({ cls: "", values, camera: { ...camera, position } }), ...clip };
   }
 
   /** Keeps the camera if it is above the ground and looks at it; otherwise starts from the default, as RViz does. */
   override mimic({ cls, camera }: Look): ViewValues {
-    if (cls === "rviz_default_plugins/TopDownOrtho") return orbitAbove(camera.position);
-    const ahead = onGround({ origin: camera.position, direction: scale(camera.back, -1) });
-    const below = onGround({ origin: camera.position, direction: scale(camera.up, -1) });
-    if (!ahead || !below) return this.zero();
-    const [far, down] = [distanceBetween(camera.position, ahead), distanceBetween(camera.position, below)];
-    const distance = (far * down) / (RAISE * far + down);
+    if (cls === "rviz_default_plugins/TopDownOrtho") return lookFromAbove(camera.position);
+    const centerPoint = onGround({ origin: camera.position, direction: scale(camera.back, -1) });
+    const bottomPoint = onGround({ origin: camera.position, direction: scale(camera.up, -1) });
+    if (!centerPoint || !bottomPoint) return this.zero();
+    const [centerDistance, bottomDistance] = [distanceBetween(camera.position, centerPoint), distanceBetween(camera.position, bottomPoint)];
+    const distance = (centerDistance * bottomDistance) / (RAISE * centerDistance + bottomDistance);
     const viewpoint = add(camera.position, camera.up, -RAISE * distance);
     const focal = onGround({ origin: viewpoint, direction: scale(camera.back, -1) });
     return focal ? orbitFrom(focal, viewpoint) : this.zero();
   }
 
-  override motion(drag: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
-    const motion = super.motion(drag);
+  override motionOf(drag: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
+    const motion = super.motionOf(drag);
     return motion === "moveZ" ? "zoom" : motion;
   }
 
-  override hint(shift: boolean): MouseHint {
-    return shift ? "groundShift" : "orbit";
+  override hintFor(isShiftDown: boolean): MouseHint {
+    return isShiftDown ? "groundShift" : "orbit";
   }
 
   /** Moves the ground with the pointer. */
   protected override pan(values: ViewValues, drag: Drag): ViewValues {
     if (!drag.left && !drag.middle) return {};
-    const camera = this.camera(values);
-    const before = onGround(rayThrough(camera, drag.x, drag.y, drag));
-    const after = onGround(rayThrough(camera, drag.x + drag.dx, drag.y + drag.dy, drag));
-    if (!before || !after) return {};
-    const step = subtract(before, after);
-    const far = length(step);
-    const allowed = far > MAX_STEP ? scale(step, MAX_STEP / far) : step;
+    const camera = this.computeCamera(values);
+    const start = onGround(castRay(camera, drag.x, drag.y, drag));
+    const end = onGround(castRay(camera, drag.x + drag.dx, drag.y + drag.dy, drag));
+    if (!start || !end) return {};
+    const step = subtract(start, end);
+    const stepLength = length(step);
+    const allowed = stepLength > MAX_STEP ? scale(step, MAX_STEP / stepLength) : step;
     return vectorValues("Focal Point", add(orbitOf(values).focal, allowed));
   }
 }

@@ -28,7 +28,7 @@ class Capture extends AudioWorkletProcessor {
   private readonly gaps = new GapFinder(sampleRate);
   private readonly block = new Int16Array(MOST_SAMPLES);
   private filled = 0;
-  private began = false;
+  private hasBegun = false;
 
   constructor() {
     super();
@@ -36,8 +36,8 @@ class Capture extends AudioWorkletProcessor {
   }
 
   process([channels = []]: readonly Float32Array[][]): boolean {
-    if (!this.began) {
-      this.began = true;
+    if (!this.hasBegun) {
+      this.hasBegun = true;
       this.send();
     }
     const [first] = channels;

@@ -19,7 +19,7 @@ const SETTLING = 2;
  * samples, so that all later samples arrive late.
  */
 export class GapFinder {
-  private lost = 0;
+  private lostSamples = 0;
   private zeros = 0;
   private edge = new Float32Array(EDGE);
   private edgeAt = 0;
@@ -41,7 +41,7 @@ export class GapFinder {
     this.minimumDelay = Math.min(this.minimumDelay, now - (1000 * this.sampleCount) / this.rate);
     if (this.sampleCount < this.windowEnd) return;
     const later = this.minimumDelay - this.previousDelay;
-    if (this.windows >= SETTLING && later > LATE_MS) this.lost += later / 1000;
+    if (this.windows >= SETTLING && later > LATE_MS) this.lostSamples += later / 1000;
     this.windows += 1;
     this.windowEnd += WINDOW * this.rate;
     this.previousDelay = this.minimumDelay;
@@ -50,9 +50,9 @@ export class GapFinder {
 
   /** Returns the seconds lost since the last call. */
   takeLost(): number {
-    const { lost } = this;
-    this.lost = 0;
-    return lost;
+    const { lostSamples } = this;
+    this.lostSamples = 0;
+    return lostSamples;
   }
 
   private lookForHole(sample: number): void {
@@ -61,8 +61,8 @@ export class GapFinder {
       return;
     }
     if (this.zeros >= HOLE) {
-      const isCutOff = this.edge.some((each) => Math.abs(each) > LOUD);
-      if (isCutOff && this.zeros < SILENCE * this.rate) this.lost += this.zeros / this.rate;
+      const isCutOff = this.edge.some((sample) => Math.abs(sample) > LOUD);
+      if (isCutOff && this.zeros < SILENCE * this.rate) this.lostSamples += this.zeros / this.rate;
       this.edge.fill(0);
     }
     this.zeros = 0;

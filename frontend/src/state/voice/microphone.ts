@@ -16,7 +16,7 @@ export interface Capture {
 }
 
 /** Resolves once the capture has started; `block` receives sound, and the seconds missing from it. */
-export type OpenCapture = (block: (samples: Int16Array, lostSeconds: number) => void, lost: () => void) => Promise<Capture>;
+export type OpenCapture = (onBlock: (samples: Int16Array, lostSeconds: number) => void, onLost: () => void) => Promise<Capture>;
 
 /** The browser's microphone, which is opened on the first request and closed when it is no longer needed. */
 export class Microphone {
@@ -69,24 +69,24 @@ export class Microphone {
   }
 
   private async start(): Promise<boolean> {
-    const turn = ++this.attempt;
+    const attempt = ++this.attempt;
     try {
       const capture = await this.openCapture(
         (samples, lostSeconds) => {
-          if (turn === this.attempt) this.addBlock(samples, lostSeconds);
+          if (attempt === this.attempt) this.addBlock(samples, lostSeconds);
         },
         () => {
-          if (turn === this.attempt) this.fail("lost");
+          if (attempt === this.attempt) this.fail("lost");
         },
       );
-      if (turn !== this.attempt) {
+      if (attempt !== this.attempt) {
         capture.close();
         return false;
       }
       this.capture = capture;
       return true;
     } catch (error) {
-      if (turn === this.attempt) this.fail(problemOf(error), error instanceof Error ? error.message : String(error));
+      if (attempt === this.attempt) this.fail(problemOf(error), error instanceof Error ? error.message : String(error));
       return false;
     } finally {
       this.opening = null;
@@ -97,7 +97,7 @@ export class Microphone {
   private addBlock(samples: Int16Array, lostSeconds: number): void {
     this.lostSeconds += lostSeconds;
     if (samples.length === 0) return;
-    this.peak = samples.reduce((most, sample) => Math.max(most, Math.abs(sample)), 0) / 32768;
+    this.peak = samples.reduce((maximum, sample) => Math.max(maximum, Math.abs(sample)), 0) / 32768;
     this.block.emit(samples);
   }
 
@@ -125,7 +125,7 @@ function problemOf(error: unknown): MicrophoneProblem {
 }
 
 /** Opens the microphone that the user allows, through an AudioWorklet. */
-async function openBrowserCapture(block: (samples: Int16Array, lostSeconds: number) => void, gone: () => void): Promise<Capture> {
+async function openBrowserCapture(onBlock: (samples: Int16Array, lostSeconds: number) => void, onLost: () => void): Promise<Capture> {
   // On an insecure address, browsers do not define this property.
   const devices = (navigator as Partial<Navigator>).mediaDevices;
   if (!isSecureContext || !devices) throw new InsecureError("no secure context");
@@ -138,32 +138,32 @@ async function openBrowserCapture(block: (samples: Int16Array, lostSeconds: numb
   try {
     // Load the module first: sound between opening the microphone and loading would be lost.
     await context.audioWorklet.addModule(workletUrl);
-    const running = context.resume();
-    running.catch(() => undefined); // it is awaited below, unless there is no microphone
+    const resumed = context.resume();
+    resumed.catch(() => undefined); // it is awaited below, unless there is no microphone
     const stream = await devices.getUserMedia({
       audio: { channelCount: 1, echoCancellation: true, noiseSuppression: true, autoGainControl: true },
     });
     tracks = stream.getTracks();
     const node = new AudioWorkletNode(context, "linkwright-capture", { numberOfOutputs: 0 });
-    const waiting = new Map<number, () => void>();
-    let asked = 0;
-    const began = new Promise<void>((resolve) => {
+    const resolvers = new Map<number, () => void>();
+    let requestCount = 0;
+    const firstBlock = new Promise<void>((resolve) => {
       node.port.onmessage = ({ data: { samples, lost, answers } }: MessageEvent<CaptureMessage>) => {
         resolve();
-        block(samples, lost);
+        onBlock(samples, lost);
         if (answers === null) return;
-        waiting.get(answers)?.();
-        waiting.delete(answers);
+        resolvers.get(answers)?.();
+        resolvers.delete(answers);
       };
     });
     context.createMediaStreamSource(stream).connect(node);
-    for (const track of tracks) track.addEventListener("ended", gone);
-    await running;
-    await began;
+    for (const track of tracks) track.addEventListener("ended", onLost);
+    await resumed;
+    await firstBlock;
     const flush = (): Promise<void> =>
       new Promise((resolve) => {
-        waiting.set((asked += 1), resolve);
-        node.port.postMessage(asked);
+        resolvers.set((requestCount += 1), resolve);
+        node.port.postMessage(requestCount);
       });
     return { flush, close };
   } catch (error) {

@@ -13,40 +13,40 @@ export class Resampler {
   private readonly cutoff: number;
   private buffered: Float32Array;
   /** The time of the next output sample, in samples of `buffered`. */
-  private at: number;
+  private position: number;
 
-  constructor(from: number, to: number) {
-    this.step = from / to;
-    this.cutoff = BAND * Math.min(1, to / from);
+  constructor(inputRate: number, outputRate: number) {
+    this.step = inputRate / outputRate;
+    this.cutoff = BAND * Math.min(1, outputRate / inputRate);
     this.half = Math.ceil(REACH / this.cutoff);
     this.buffered = new Float32Array(this.half);
-    this.at = this.half;
+    this.position = this.half;
   }
 
   /** Adds samples of the stream, and returns the output samples that this completes. */
   add(samples: Float32Array): Float32Array {
-    const all = new Float32Array(this.buffered.length + samples.length);
-    all.set(this.buffered);
-    all.set(samples, this.buffered.length);
-    const count = Math.max(0, Math.ceil((all.length - this.half - this.at) / this.step));
+    const buffer = new Float32Array(this.buffered.length + samples.length);
+    buffer.set(this.buffered);
+    buffer.set(samples, this.buffered.length);
+    const count = Math.max(0, Math.ceil((buffer.length - this.half - this.position) / this.step));
     const output = new Float32Array(count);
-    for (let i = 0; i < count; i++) output[i] = this.sampleAt(all, this.at + i * this.step);
-    const next = this.at + count * this.step;
-    const drop = Math.min(all.length, Math.max(0, Math.floor(next) - this.half));
-    this.buffered = all.slice(drop);
-    this.at = next - drop;
+    for (let i = 0; i < count; i++) output[i] = this.sampleAt(buffer, this.position + i * this.step);
+    const next = this.position + count * this.step;
+    const drop = Math.min(buffer.length, Math.max(0, Math.floor(next) - this.half));
+    this.buffered = buffer.slice(drop);
+    this.position = next - drop;
     return output;
   }
 
-  private sampleAt(all: Float32Array, at: number): number {
-    const first = Math.max(0, Math.ceil(at - this.half));
-    const last = Math.min(all.length - 1, Math.floor(at + this.half));
+  private sampleAt(samples: Float32Array, position: number): number {
+    const first = Math.max(0, Math.ceil(position - this.half));
+    const end = Math.min(samples.length - 1, Math.floor(position + this.half));
     let sum = 0;
-    for (let i = first; i <= last; i++) sum += (all[i] ?? 0) * this.weight(i - at);
+    for (let i = first; i <= end; i++) sum += (samples[i] ?? 0) * this.weightAt(i - position);
     return sum;
   }
 
-  private weight(distance: number): number {
+  private weightAt(distance: number): number {
     const x = Math.PI * this.cutoff * distance;
     const window = 0.5 + 0.5 * Math.cos((Math.PI * distance) / (this.half + 1));
     return window * (Math.abs(x) < 1e-9 ? this.cutoff : (this.cutoff * Math.sin(x)) / x);

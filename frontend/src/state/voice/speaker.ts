@@ -3,7 +3,7 @@ import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
 
 export interface SpeakerSettings {
-  on: boolean;
+  isOn: boolean;
   /** The URI of the voice; empty for the browser's choice. */
   voice: string;
 }
@@ -14,7 +14,7 @@ const SAVED_KEY = "linkwright.speaker.1";
 export class Speaker {
   /** The settings or the available voices changed. */
   readonly changed = new Signal();
-  settings: SpeakerSettings = { on: false, voice: "" };
+  settings: SpeakerSettings = { isOn: false, voice: "" };
   private readonly synthesis = (globalThis as { speechSynthesis?: SpeechSynthesis }).speechSynthesis ?? null;
 
   constructor(private readonly storage: TextStorage) {
@@ -29,26 +29,26 @@ export class Speaker {
   /** The available voices, those of the user's languages first. */
   get voices(): readonly SpeechSynthesisVoice[] {
     const { languages } = navigator;
-    const rank = (voice: SpeechSynthesisVoice): number => {
-      const at = languages.findIndex((language) => voice.lang.toLowerCase().startsWith(language.slice(0, 2).toLowerCase()));
-      return at < 0 ? languages.length : at;
+    const rankOf = (voice: SpeechSynthesisVoice): number => {
+      const index = languages.findIndex((language) => voice.lang.toLowerCase().startsWith(language.slice(0, 2).toLowerCase()));
+      return index < 0 ? languages.length : index;
     };
-    return [...(this.synthesis?.getVoices() ?? [])].sort((a, b) => rank(a) - rank(b) || a.name.localeCompare(b.name));
+    return [...(this.synthesis?.getVoices() ?? [])].sort((a, b) => rankOf(a) - rankOf(b) || a.name.localeCompare(b.name));
   }
 
-  get speaking(): boolean {
+  get isSpeaking(): boolean {
     return this.synthesis?.speaking ?? false;
   }
 
   configure(change: Partial<SpeakerSettings>): void {
     this.settings = { ...this.settings, ...change };
     this.storage.setItem(SAVED_KEY, JSON.stringify(this.settings));
-    if (!this.settings.on) this.hush();
+    if (!this.settings.isOn) this.stopSpeaking();
     this.changed.emit();
   }
 
   speak(text: string): void {
-    if (!this.settings.on || !this.synthesis || text === "") return;
+    if (!this.settings.isOn || !this.synthesis || text === "") return;
     const utterance = new SpeechSynthesisUtterance(text);
     const voice = this.voices.find(({ voiceURI }) => voiceURI === this.settings.voice);
     if (voice) {
@@ -59,7 +59,7 @@ export class Speaker {
   }
 
   /** Stops speaking immediately. */
-  hush(): void {
+  stopSpeaking(): void {
     this.synthesis?.cancel();
   }
 }

@@ -25,7 +25,7 @@ export interface ConversationLine {
  * Returns a binary frame with a block of sound and the seconds lost in it; `viewer/protocol/voice.py` defines its
  * format.
  */
-export function soundFrame(samples: Int16Array, lostSeconds = 0): ArrayBuffer {
+export function encodeSound(samples: Int16Array, lostSeconds = 0): ArrayBuffer {
   const frame = new ArrayBuffer(HEADER_BYTES + 2 * samples.length);
   const view = new DataView(frame);
   view.setUint32(0, SOUND_KIND, true);
@@ -76,7 +76,7 @@ export class VoiceState {
     connection.on("hello", () => {
       this.mode = "off";
       this.sendMode();
-      if (this.watched) this.connection.send({ type: "watch_voice", watched: true });
+      if (this.isWatched) this.connection.send({ type: "watch_voice", watched: true });
     });
     connection.stateChanged.on((state) => {
       if (state === "connected") return;
@@ -91,23 +91,23 @@ export class VoiceState {
       this.changed.emit();
     });
     this.speaker.changed.on(() => {
-      this.watch(this.speaker, this.speaker.settings.on);
+      this.watch(this.speaker, this.speaker.settings.isOn);
       this.changed.emit();
     });
-    this.watch(this.speaker, this.speaker.settings.on);
+    this.watch(this.speaker, this.speaker.settings.isOn);
   }
 
   /** Whether the button is held. */
-  get held(): boolean {
+  get isHeld(): boolean {
     return this.isPressed;
   }
 
   /** Whether the page listens all the time. */
-  get open(): boolean {
+  get isPanelOpen(): boolean {
     return this.isListening;
   }
 
-  get watched(): boolean {
+  get isWatched(): boolean {
     return this.watching.size > 0;
   }
 
@@ -117,18 +117,18 @@ export class VoiceState {
   }
 
   /** Whether the robot has answered since the button was last pressed; in that case it asks for a repetition itself. */
-  get answered(): boolean {
+  get hasAnswer(): boolean {
     return this.isAnswered;
   }
 
   /** Starts or stops receiving the conversation for `who`. */
-  watch(who: object, wanted: boolean): void {
-    const before = this.watched;
-    if (wanted) this.watching.add(who);
-    else this.watching.delete(who);
-    if (this.watched === before) return;
-    if (!this.watched) this.serverState = null;
-    this.connection.send({ type: "watch_voice", watched: this.watched });
+  watch(watcher: object, isWatching: boolean): void {
+    const wasWatched = this.isWatched;
+    if (isWatching) this.watching.add(watcher);
+    else this.watching.delete(watcher);
+    if (this.isWatched === wasWatched) return;
+    if (!this.isWatched) this.serverState = null;
+    this.connection.send({ type: "watch_voice", watched: this.isWatched });
   }
 
   /** Handles a press of the button: speech from now on is a command. */
@@ -137,7 +137,7 @@ export class VoiceState {
     this.isPressed = true;
     this.isAnswered = false;
     this.lostBefore = this.microphone.lostSeconds;
-    this.speaker.hush();
+    this.speaker.stopSpeaking();
     this.watch(this.microphone, true);
     this.openMicrophone();
   }
@@ -156,11 +156,11 @@ export class VoiceState {
   }
 
   /** Listens all the time, or only while the button is held. */
-  setOpen(open: boolean): void {
-    if (open === this.isListening) return;
-    this.isListening = open;
+  setOpen(isOpen: boolean): void {
+    if (isOpen === this.isListening) return;
+    this.isListening = isOpen;
     this.watch(this.microphone, true);
-    if (open) this.openMicrophone();
+    if (isOpen) this.openMicrophone();
     else {
       this.sendMode();
       this.scheduleClose();
@@ -175,7 +175,7 @@ export class VoiceState {
   }
 
   /** Whether the current speech is a recording of a word rather than a command. */
-  get recording(): boolean {
+  get isRecording(): boolean {
     return this.isRecordingWord;
   }
 
@@ -183,14 +183,14 @@ export class VoiceState {
    * Opens the microphone for a recording; `begun` is called before the first sound is sent, and cancels the recording
    * by returning false.
    */
-  async record(begun: () => boolean): Promise<boolean> {
-    this.speaker.hush();
+  async record(hasBegun: () => boolean): Promise<boolean> {
+    this.speaker.stopSpeaking();
     this.setOpen(false);
     clearTimeout(this.timer);
-    const opened = await this.microphone.open();
+    const isOpen = await this.microphone.open();
     this.lostBefore = this.microphone.lostSeconds;
     this.sendMode();
-    this.isRecordingWord = opened && begun();
+    this.isRecordingWord = isOpen && hasBegun();
     if (!this.isRecordingWord) this.scheduleClose();
     return this.isRecordingWord;
   }
@@ -214,15 +214,15 @@ export class VoiceState {
 
   /** Returns the state for `window.linkwright`. */
   inspect(): object {
-    const { history, partial, serverState, microphone, mode, recording } = this;
+    const { history, partial, serverState, microphone, mode, isRecording } = this;
     const { problem, isOpen, peak } = microphone;
-    return { mode, recording, problem, isOpen, peak, partial, serverState, history: history.map((each) => ({ ...each })) };
+    return { mode, recording: isRecording, problem, isOpen, peak, partial, serverState, history: history.map((line) => ({ ...line })) };
   }
 
   private openMicrophone(): void {
     clearTimeout(this.timer);
-    void this.microphone.open().then((opened) => {
-      if (opened) this.scheduleClose();
+    void this.microphone.open().then((isOpen) => {
+      if (isOpen) this.scheduleClose();
     });
     this.sendMode();
     this.changed.emit();
@@ -236,13 +236,13 @@ export class VoiceState {
   }
 
   private sendMode(): void {
-    const mode = this.wanted;
+    const mode = this.wantedMode;
     if (mode === this.mode) return;
     this.mode = mode;
     this.connection.send({ type: "talk", mode });
   }
 
-  private get wanted(): TalkMode {
+  private get wantedMode(): TalkMode {
     if (!this.microphone.isOpen) return "off";
     if (this.isPressed || this.isFlushing) return "held";
     return this.isListening ? "open" : "ready";
@@ -250,12 +250,12 @@ export class VoiceState {
 
   private send(samples: Int16Array): void {
     this.changed.emit();
-    const lost = this.microphone.lostSeconds - this.lostUntil;
+    const lostSeconds = this.microphone.lostSeconds - this.lostUntil;
     this.lostUntil = this.microphone.lostSeconds;
     if (this.mode !== "held" && this.mode !== "open" && !this.isRecordingWord) return;
     // The page's own speech is not a command.
-    if (this.mode === "open" && this.speaker.speaking) return;
-    this.connection.sendBytes(soundFrame(samples, lost));
+    if (this.mode === "open" && this.speaker.isSpeaking) return;
+    this.connection.sendBytes(encodeSound(samples, lostSeconds));
   }
 
   private addText(part: ConversationPart, text: string): void {

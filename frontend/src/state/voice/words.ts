@@ -15,18 +15,18 @@ export class WordsState {
   readonly enrollRequested = new Signal();
   words: readonly EnrolledWord[] = [];
   /** The number of recordings needed for each word. */
-  enough = 3;
+  requiredTakes = 3;
   file = "";
   problem: string | null = null;
   /** The result of the last recording of each word. */
-  readonly judged = new Map<string, TakeJudged>();
+  readonly judgments = new Map<string, TakeJudged>();
   /** The word being recorded. */
   recording: string | null = null;
   /** The number of recordings of each word at the user's current place; null while the user does not enroll there. */
   takesHere: Map<string, number> | null = null;
   /** Words that were added but have no recording yet. */
   private readonly newWords = new Set<string>();
-  private watched = false;
+  private isWatched = false;
 
   constructor(
     private readonly connection: Connection,
@@ -37,44 +37,44 @@ export class WordsState {
       for (const { name } of words) this.newWords.delete(name);
       this.changed.emit();
     });
-    connection.on("take_judged", (judged) => {
-      this.judged.set(judged.name, judged);
-      if (judged.code === null) this.takesHere?.set(judged.name, (this.takesHere.get(judged.name) ?? 0) + 1);
+    connection.on("take_judged", (judgment) => {
+      this.judgments.set(judgment.name, judgment);
+      if (judgment.code === null) this.takesHere?.set(judgment.name, (this.takesHere.get(judgment.name) ?? 0) + 1);
       this.changed.emit();
     });
     connection.on("voice_words_file", ({ text }) => this.fileArrived.emit(text));
     connection.on("hello", () => {
-      if (this.watched) connection.send({ type: "watch_words", watched: true });
+      if (this.isWatched) connection.send({ type: "watch_words", watched: true });
     });
   }
 
   /** All words, including those without a recording. */
-  get all(): readonly EnrolledWord[] {
+  get enrolledWords(): readonly EnrolledWord[] {
     return [...this.words, ...[...this.newWords].map((name) => ({ name, takes: 0 }))];
   }
 
   /** The words still to be recorded at the user's current place. */
   get missingHere(): readonly EnrolledWord[] {
-    return this.all.filter(({ name }) => (this.takesHere?.get(name) ?? 0) < this.enough);
+    return this.enrolledWords.filter(({ name }) => (this.takesHere?.get(name) ?? 0) < this.requiredTakes);
   }
 
   /** Starts or ends enrollment at the user's current place. */
-  enrollHere(begun: boolean): void {
-    this.takesHere = begun ? new Map<string, number>() : null;
+  enrollHere(hasBegun: boolean): void {
+    this.takesHere = hasBegun ? new Map<string, number>() : null;
     this.changed.emit();
   }
 
-  watch(watched: boolean): void {
-    if (watched === this.watched) return;
-    this.watched = watched;
-    this.connection.send({ type: "watch_words", watched });
+  watch(isWatched: boolean): void {
+    if (isWatched === this.isWatched) return;
+    this.isWatched = isWatched;
+    this.connection.send({ type: "watch_words", watched: isWatched });
   }
 
   /** Adds a word to the list, to be recorded. */
   addWord(name: string): void {
-    const trimmed = name.trim();
-    if (trimmed === "" || this.all.some((word) => word.name === trimmed)) return;
-    this.newWords.add(trimmed);
+    const newWord = name.trim();
+    if (newWord === "" || this.enrolledWords.some((word) => word.name === newWord)) return;
+    this.newWords.add(newWord);
     this.changed.emit();
   }
 
@@ -82,20 +82,20 @@ export class WordsState {
   async startTake(name: string): Promise<void> {
     if (this.recording !== null) return;
     this.recording = name;
-    this.judged.delete(name); // later judgments are about this recording
+    this.judgments.delete(name); // later judgments are about this recording
     this.changed.emit();
-    const begun = await this.voice.record(() => {
+    const hasBegun = await this.voice.record(() => {
       if (this.recording === name) this.connection.send({ type: "begin_take", name });
       return this.recording === name;
     });
-    if (!begun && this.recording === name) this.stop();
+    if (!hasBegun && this.recording === name) this.stop();
     else this.changed.emit();
   }
 
   /** Ends the recording. */
   endTake(): void {
     if (this.recording === null) return;
-    if (!this.voice.recording) {
+    if (!this.voice.isRecording) {
       this.stop();
       return;
     }
@@ -108,14 +108,14 @@ export class WordsState {
   }
 
   remove(name: string): void {
-    this.judged.delete(name);
+    this.judgments.delete(name);
     if (this.newWords.delete(name)) this.changed.emit();
     else this.connection.send({ type: "remove_word", name });
   }
 
-  rename(name: string, to: string): void {
-    if (this.newWords.delete(name)) this.addWord(to);
-    else this.connection.send({ type: "rename_word", name, new_name: to });
+  rename(name: string, newName: string): void {
+    if (this.newWords.delete(name)) this.addWord(newName);
+    else this.connection.send({ type: "rename_word", name, new_name: newName });
   }
 
   importFile(text: string): void {
@@ -128,7 +128,7 @@ export class WordsState {
 
   /** Whether the word can be spoken now: its button is held and the microphone is open. */
   get isHearing(): boolean {
-    return this.recording !== null && this.voice.recording;
+    return this.recording !== null && this.voice.isRecording;
   }
 
   private stop(): void {
