@@ -128,7 +128,7 @@ def refactor(
     try:
         result = _ACTIONS[action](project, texts, file, text, (start, end))
     except UnprovedError as error:
-        message = phrase("the text stays as it is: {reason}", reason=error.reason)
+        message = phrase("the text is not changed: {reason}", reason=error.reason)
         raise LinkwrightError(Diagnostic("LANG105", message, error.span)) from None
     return result
 

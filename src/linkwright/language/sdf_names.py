@@ -99,7 +99,7 @@ def rename_in_sdf(
     if definition is None or scope is None:
         raise UnprovedError(phrase("the name is not defined in this file"), span)
     if any(other.value("name") == new for other in _named_children(scope)):
-        raise UnprovedError(phrase("'{name}' exists already", name=new), span)
+        raise UnprovedError(phrase("'{name}' already exists", name=new), span)
     edits = {
         Edit(use.file, use.start, use.end, new)
         for use in sdf_names(text, name.file)

@@ -90,7 +90,7 @@ async def _refactoring_edit(
 
 
 def _modified() -> JsonRpcException:
-    message = localized(phrase("a text has changed meanwhile"))
+    message = localized(phrase("a text has changed in the meantime"))
     return JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
 
 
