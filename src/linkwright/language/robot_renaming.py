@@ -224,7 +224,7 @@ class RobotRenaming:
                 proposal = next(self._sources.edits(written, before, wanted), None)
                 if proposal is None:
                     raise _computed_name_error(written, before, old.attribute_span(key) if key else old.span())
-                if {*proposal} <= {*edits}:  # the edits did not change the value
+                if {*proposal} <= {*edits}:  # The edits did not change the value.
                     raise _computed_name_error(written, before, old.attribute_span(key) if key else old.span())
                 yield from proposal
 

@@ -254,7 +254,7 @@ def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...]
             continue
         given = _child_text(include, "name", text)
         scope = _scope(include.parent)
-        if given and len(path) == 1:  # the include gives a name of its own to the model
+        if given and len(path) == 1:  # The include assigns another name to the model.
             continue
         names = [given or path[0], *path[1:]]
         for element in elements if scope is not None else ():

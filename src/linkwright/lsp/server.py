@@ -368,7 +368,7 @@ class LinkwrightServer(LanguageServer):
             uri = self.uri_of(file)
             document = self.workspace.text_documents.get(uri)
             if document is not None and texts.get(file) != document.source:
-                continue  # the text has changed since then, and is checked again
+                continue  # The text has changed since the check, and is checked again.
             self.text_document_publish_diagnostics(
                 types.PublishDiagnosticsParams(
                     uri,
