@@ -182,7 +182,9 @@ def _configure_queries(verbs: _Subparsers) -> None:
         "prefix", help="print the install prefix of a package", description="print the install prefix of a package"
     )
     prefix_parser.add_argument("package", metavar="PACKAGE", help="the package")
-    prefix_parser.add_argument("--share", action="store_true", help="print its share folder instead of the prefix")
+    prefix_parser.add_argument(
+        "--share", action="store_true", help="print the package's share folder instead of its prefix"
+    )
     prefix_parser.set_defaults(answer=_prefix)
 
     executables_parser = verbs.add_parser(

@@ -7,7 +7,7 @@ GROUPS = {
     "robot descriptions": {
         "view": "show a URDF or xacro file in the browser, with joint sliders",
         "diagram": "draw links and joints as urdf_to_graphviz does (.gv and PDF or SVG)",
-        "review": "report what commits do to robots, worlds and launch files, for a pull request",
+        "review": "report how commits change robots, worlds and launch files, for a pull request",
         "bisect": "find the commit that moved a link, or changed the result of a command",
         "export": "write a robot as one HTML file for any browser, or as glTF (.glb)",
     },

@@ -171,9 +171,9 @@ def _path_before_rename(repository: GitRepository, commit: str, relative_path: P
             return Path(old_name)
     message = phrase("commit '{name}' has no file '{inside}'", name=name, inside=new_path)
     if repository.run("log", "--max-count=1", "--format=%h", "--", new_path).stdout:
-        hint = phrase("run `git log -- {inside}` to list the commits that have it", inside=new_path)
+        hint = phrase("run `git log -- {inside}` to list the commits that contain the file", inside=new_path)
     else:
-        hint = phrase("no commit has it yet; compare it with another file: `linkwright diff OLD NEW`")
+        hint = phrase("no commit contains the file yet; compare it with another file: `linkwright diff OLD NEW`")
     raise LinkwrightError(Diagnostic("CLI344", message, hint=hint))
 
 

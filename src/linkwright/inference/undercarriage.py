@@ -138,7 +138,7 @@ class Survey:
         caster_wheels = [wheel for wheel in ground_wheels if self._is_caster(wheel)]
         other_wheels = [wheel for wheel in ground_wheels if wheel not in caster_wheels]
         if any(wheel.width is not None for wheel in other_wheels):
-            caster_wheels += [wheel for wheel in other_wheels if wheel.width is None]  # balls in addition to wheels
+            caster_wheels += [wheel for wheel in other_wheels if wheel.width is None]  # balls, in addition to wheels
         other_wheels = [wheel for wheel in other_wheels if wheel not in caster_wheels]
         misaligned = tuple(
             wheel for wheel in other_wheels if wheel.steering is None and abs(wheel.axis[1]) < _VERTICAL_COSINE

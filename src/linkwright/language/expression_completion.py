@@ -110,7 +110,7 @@ def _parameters(cursor: Cursor) -> tuple[Parameter, ...]:
     )
     try:
         return tuple(parse_parameters(next(iter(params_values), "")))
-    except Fault:  # it is being typed
+    except Fault:  # The name is still being typed.
         return ()
 
 

@@ -52,7 +52,7 @@ def expressions_in(text: str) -> Iterator[SourceExpression]:
         return
     try:
         parts = tokenize(decode_entities(text))
-    except Fault:  # it is being typed
+    except Fault:  # The expression is still being typed.
         return
     for part in parts:
         if part.kind is TokenKind.EXPRESSION:

@@ -26,9 +26,9 @@ _NUMBER = lazy_pattern(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _COMPONENTS = {"xyz": ("x", "y", "z"), "rpy": ("roll", "pitch", "yaw"), "size": ("x", "y", "z")}
 """The attributes that contain several numbers, and the names of these numbers."""
 _UNEVALUATED_ATTRIBUTES = frozenset({(MACRO, "params"), ("xacro:include", "ns"), ("xacro:property", "scope")})
-"""The attributes whose value xacro does not evaluate as a text."""
+"""The attributes whose values xacro does not evaluate as text."""
 _UNEVALUATED_NAMES = frozenset({"xacro:macro", "xacro:property", "xacro:arg", "xacro:insert_block"})
-"""The elements whose ``name`` xacro does not evaluate as a text."""
+"""The elements whose ``name`` xacro does not evaluate as text."""
 _NAMESPACES = ("math", "python", "xacro")
 """The namespaces of functions in xacro expressions."""
 
@@ -98,7 +98,7 @@ def _is_evaluated(element: SourceElement, attribute: TokenAttribute) -> bool:
 def _selection(
     element: SourceElement, attribute: str, value: str, value_start: int, selected: tuple[int, int]
 ) -> ValueSelection | None:
-    """Return the selected part of a value, without the spaces at its ends, or None.
+    """Return the selected part of a value without surrounding spaces, or None.
 
     Args:
         element: the element.
@@ -148,7 +148,7 @@ def _selection(
 
 
 def _is_plain_part(value: str, start: int, end: int) -> bool:
-    """Return whether a range of a value cuts through no expression, substitution or number."""
+    """Return whether a range of a value splits no expression, substitution or number."""
     if "$" in value and any(
         expression.start < edge < expression.end for edge in (start, end) for expression in expressions_in(value)
     ):

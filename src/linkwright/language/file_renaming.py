@@ -110,7 +110,7 @@ def _path_references(project: Workspace, file: Path, text: str) -> Iterator[File
 def _reference_edit(file: Path, text: str, start: int, end: int, old: Path, new: Path) -> Edit | None:
     """Return the edit of a reference to a renamed file, or None if it cannot be edited.
 
-    The edit replaces the last names, which the reference shares with the old path. The new path must be below the
+    The edit replaces the last components, which the reference shares with the old path. The new path must be below the
     folder that contains them.
     """
     written = PurePosixPath(text[start:end])

@@ -92,7 +92,7 @@ def _values(text: str) -> Iterator[tuple[int, str]]:
 def _in_value(value: str, start: int) -> Iterator[Highlight]:
     try:
         parts = tokenize(value)
-    except Fault:  # it is being typed
+    except Fault:  # The expression is still being typed.
         return
     for part in parts:
         if part.kind is TokenKind.TEXT:

@@ -77,7 +77,7 @@ def _parts(
     robots = [*robots_of(project, texts, part.file)]
     own = [robot for robot in robots if _is_made_by(robot, part, project.text(part.file, texts) or "")]
     if own or part.is_definition:
-        robots = own  # another file may give another robot a link of this name
+        robots = own  # Another file may define a link with this name for another robot.
     for name in names[:_MAX_PARTS]:
         facts = next((facts for robot in robots if (facts := part_facts(robot, part.kind, name))), None)
         if facts is not None:
@@ -85,7 +85,7 @@ def _parts(
 
 
 def _is_made_by(robot: Robot, part: Occurrence, text: str) -> bool:
-    """Return whether the link or joint element around an occurrence creates a part of a robot."""
+    """Return whether the link or joint element around an occurrence generates a part of a robot."""
     start = max(text.rfind(tag, 0, part.start) for tag in ("<link", "<joint"))
     links, joints = robot.links.values(), robot.joints.values()
     elements = (*(link.element for link in links), *(joint.element for joint in joints))

@@ -65,7 +65,7 @@ def fill_in_inertia(
         raise UnprovedError(phrase("'{file}' has changed since it was read", file=file.name))
     edits = tuple(Edit(file, replacement.start, replacement.end, replacement.text) for replacement in replacements)
     if not edits:
-        raise UnprovedError(phrase("the link '{name}' has this inertia already", name=expanded.name))
+        raise UnprovedError(phrase("the link '{name}' already has this inertia", name=expanded.name))
     for pair in ExpansionProof(project, texts, file).pairs(edits):
         first, second = (_without_inertial(root, expanded.name) for root in (pair.before, pair.after))
         if first != second:

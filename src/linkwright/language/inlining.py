@@ -159,7 +159,7 @@ def _expression_around(piece: _Piece, use: Occurrence) -> SourceExpression | Non
 
 
 def _replaced(around: SourceExpression, piece: _Piece, names: Sequence[Occurrence], value: str, *, is_raw: bool) -> str:
-    """Return the replacement of an expression that uses the property."""
+    """Return the text that replaces an expression with the property."""
     quotes = {"'": "&apos;", '"': "&quot;"}
     source, low = around.source, piece.start + around.inner_range[0]
     if source.strip() == names[0].name and (is_raw or _as_expression(value, piece.quote) is None):

@@ -155,7 +155,7 @@ class PythonLaunchText:
             given = frozenset(part.value for parts in first_parts for part in parts if isinstance(part, Text))
             programs = self._programs(outer, "remappings")
             first = group.items[0].parts[0] if group.items[0].parts else None
-            if item is not group.items[0]:  # the new name
+            if item is not group.items[0]:  # This string is the new name.
                 old = first.value if isinstance(first, Text) else ""
                 return _StringMeaning("topic", text, choices=_new_names(old), programs=programs)
             return _StringMeaning("topic", text, programs=programs, given=given)
@@ -186,7 +186,7 @@ class PythonLaunchText:
         return NodeProgram(self.paths.text_of(package) or "", self.paths.text_of(executable) or "")
 
     def parameters(self, meaning: _StringMeaning) -> list[ParameterInfo]:
-        """Return the possible parameters of the nodes to which a string belongs."""
+        """Return the parameters that the nodes to which a string belongs may have."""
         found: dict[str, ParameterInfo] = {}
         for program in meaning.programs:
             names = (node_name(*program), program.executable)
@@ -275,7 +275,7 @@ def _names_in(item: Item | None) -> set[str]:
 
 
 def _new_names(old: str) -> tuple[str, ...]:
-    """Return the other forms of a name: relative, absolute and without namespaces."""
+    """Return the other forms of a name: relative, absolute, and without namespaces."""
     name = plain_name(old)
     forms = dict.fromkeys((name, f"/{name}", name.rpartition("/")[2])) if name else ()
     return tuple(form for form in forms if form != old)
@@ -466,7 +466,7 @@ def _links(document: Document) -> Iterator[FileReference]:
 
 
 def _continues(item: Item) -> bool:
-    """Return whether an item is a part of a joined path, but not the last."""
+    """Return whether an item is a component of a joined path other than the last one."""
     return item.group.function in JOINS and item is not item.group.items[-1]
 
 

@@ -105,14 +105,14 @@ def extract_macro(
 
 
 def _joined(first: Edit, second: Edit) -> tuple[Edit, ...]:
-    """Return two edits, merged into one if they are adjacent."""
+    """Merge two edits into one if they are adjacent, and return the edits."""
     if first.end == second.start:
         return (Edit(first.file, first.start, second.end, first.text + second.text),)
     return first, second
 
 
 def _macro_name(element: SourceElement) -> str:
-    """Return a macro name made of the element's tag and the nearest name around it."""
+    """Return a macro name that consists of the element's tag and the nearest name around it."""
     tag = element.name.removeprefix(PREFIX)
     for ancestor in element.ancestors_and_self():
         literal = re.sub(r"\$\{[^}]*\}|\$\([^)]*\)", "", ancestor.value("name")).strip("_- ")

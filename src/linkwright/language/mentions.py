@@ -108,7 +108,7 @@ def _in_yaml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
         elif isinstance(node, yaml.SequenceNode):
             pending += [(item, keys, False) for item in reversed(node.value)]
         elif isinstance(node, yaml.ScalarNode) and node.value.removeprefix("/") in names:
-            name = node.value.removeprefix("/")  # frames of tf 1 began with a slash
+            name = node.value.removeprefix("/")  # In tf 1, frame names began with a slash.
             start = node.start_mark.index + (1 if node.style in ("'", '"') else 0) + len(node.value) - len(name)
             if text[start : start + len(name)] == name:
                 yield Mention(name, file, start, _kinds_of_keys(keys, is_key=is_key))
@@ -137,7 +137,7 @@ def _kinds_of_keys(keys: Sequence[str], *, is_key: bool) -> tuple[NameKind, ...]
 
 
 def kinds_of_key(key: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that a parameter may contain, derived from the parameter's name."""
+    """Return the kinds of names that a parameter may contain, according to the parameter's name."""
     if _JOINTS.search(key):
         return (NameKind.JOINT,)
     return (NameKind.LINK,) if _FRAMES.search(key) else ()
@@ -158,7 +158,7 @@ def _in_python(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention
             continue
         column = len(lines[node.lineno - 1].encode()[: node.col_offset].decode(errors="replace"))
         start = starts[node.lineno - 1] + column + 1
-        if text[start : start + len(node.value)] == node.value:  # a string with one quote and no prefix
+        if text[start : start + len(node.value)] == node.value:  # a string with a single quotation mark and no prefix
             yield Mention(node.value, file, start, kinds.get(id(node), ()))
 
 

@@ -48,7 +48,7 @@ class SourceValue:
 
     @property
     def is_literal(self) -> bool:
-        """Whether it has no expressions."""
+        """Whether the text contains no expressions."""
         return "$" not in self.text
 
 
@@ -103,7 +103,7 @@ def renamed_template(old: str, new: str, value: str) -> str | None:
 
 
 class NameSources:
-    """Proposes edits for computed names.
+    """A generator of proposed edits for computed names.
 
     Args:
         project: the workspace.
@@ -266,7 +266,7 @@ class NameSources:
             for other, given in tags:
                 if other == tag and given.get("name", ("", 0))[0] == name and key in given:
                     text, start = given[key]
-                    default = _OPTIONAL.fullmatch(text)  # the environment seldom has a value
+                    default = _OPTIONAL.fullmatch(text)  # An environment variable seldom provides the value.
                     if default is not None:
                         text, start = default[1], start + default.start(1)
                     yield SourceValue(file, start, text, None)

@@ -220,7 +220,7 @@ class _Scan:
             return
         try:
             parts = tokenize(decode_entities(text))
-        except Fault:  # it is being typed
+        except Fault:  # The expression is still being typed.
             return
         for part in parts:
             begin = start + part.start + 2
@@ -281,5 +281,5 @@ class _Scan:
 def _parameters(params: str) -> tuple[Parameter, ...]:
     try:
         return parse_parameters(params)
-    except Fault:  # they are being typed
+    except Fault:  # These parameters are still being typed.
         return ()

@@ -66,7 +66,7 @@ class OtherFiles:
                 text = self._project.text(file, self._texts) or ""
                 mentions = [*_mentions(text, file, names, old_names)]
                 robots = self._robots_of(file) if mentions else []
-                if robots and not any(map(self._is_affected, robots)):  # the file is about other robots
+                if robots and not any(map(self._is_affected, robots)):  # The file refers to other robots.
                     unchanged += [mention for mention in mentions if self._depends(file, names, mention)]
                     continue
                 others = [robot for robot in robots if not self._is_affected(robot)]

@@ -36,7 +36,7 @@ class OutlineElement:
 
     @property
     def is_named(self) -> bool:
-        """Whether it has a name, or includes a file."""
+        """Whether the element has a name, or includes a file."""
         return any(attribute.name in _NAMING[:3] and attribute.value for attribute in self.tag.attributes())
 
     def all(self) -> Iterator[OutlineElement]:

@@ -65,7 +65,7 @@ def _node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> Iterator
     present = {child.key for child in others}
     is_top = cursor.parent_entry.parent is None
     if is_top and others and not any(sections(outline)):
-        return  # another kind of file
+        return  # This is another kind of file.
     body, above = f"{PARAMETERS}:\n    $0", cursor.parent_entry.key
     if not is_top:
         if above in _COSTMAPS and len(cursor.parent_entry.path) == 1 and not present:

@@ -45,7 +45,7 @@ def sources_of(document: Document, section: Section) -> list[DeclaredParameter]:
 
 
 def kinds_of_parameter(key: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that a parameter may contain, derived from the parameter's name."""
+    """Return the kinds of names that a parameter may contain, according to the parameter's name."""
     last = key.rpartition(".")[2]
     return kinds_of_key(last)
 
@@ -119,7 +119,7 @@ def _robot_values(document: Document, key: str, default: str) -> Iterator[tuple[
     if default in _USUAL_FRAMES:
         yield default, localized(phrase("default"))
     parts = robot_names(document)
-    if NameKind.JOINT in kinds:  # movable joints first
+    if NameKind.JOINT in kinds:  # List the movable joints first.
         parts.sort(key=lambda name: name.detail == "fixed")
     for name in parts:
         if name.kind in kinds:

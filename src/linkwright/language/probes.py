@@ -16,11 +16,11 @@ from linkwright.xacro.macros import Parameter, parse_parameters
 
 _XACRO = "http://www.ros.org/wiki/xacro"
 _VALUES = ("probe", "1", "0")
-"""The values of the parameters in the calls: a name, a true number and a false number."""
+"""The values of the parameters in the calls: a name, the number for true, and the number for false."""
 
 
 def is_reached(proof: ExpansionProof, text: str, name: Occurrence) -> bool:
-    """Return whether an expansion contains the element of a name.
+    """Return whether an expansion contains the element to which a name belongs.
 
     If the element belongs to xacro, any element of its macro counts. Outside macros, the result is then True.
 

@@ -43,9 +43,9 @@ _MAX_BYTES = 300_000
 _REGISTERED = re.compile(r"(?i)\brclcpp_components_register_nodes?\s*\(([^)]*)\)")
 _CLASS = re.compile(r"\b[A-Za-z_]\w*(?:::\w+)+")
 DEPENDENCY = re.compile(r"<(?:exec_|run_)?depend\b[^<>]*>\s*([a-z]\w*)\s*<")
-"""The packages in ``package.xml`` on which a package depends when it runs."""
+"""The dependency tags of ``package.xml`` that name packages needed at run time."""
 BUILD_DEPENDENCY = re.compile(r"<(?:build_|buildtool_)?depend\b[^<>]*>\s*([a-z]\w*)\s*<")
-"""The packages in ``package.xml`` on which a package depends when it is built."""
+"""The dependency tags of ``package.xml`` that name packages needed at build time."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -41,7 +41,7 @@ class Value:
 
 
 class PythonPaths:
-    """Evaluates string and path expressions in a Python text.
+    """An evaluator of the string and path expressions in a Python text.
 
     Args:
         python: the text.
@@ -94,7 +94,7 @@ class PythonPaths:
             earlier = group.items[: group.items.index(item)]
             value = self._join(earlier, 0) if earlier else None
             return None if value is None else Value(value.text + "/", value.is_path)
-        if in_list and not group.callee:  # a list of substitutions, which launch concatenates
+        if in_list and not group.callee:  # This is a list of substitutions, which launch concatenates.
             return self._concatenated([self.value_of(other) for other in group.items[: group.items.index(item)]])
         return None
 

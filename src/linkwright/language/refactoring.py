@@ -103,7 +103,7 @@ def offers_at(text: str, file: Path, start: int, end: int, names: Iterable[NameD
 
 
 def _has_one_value(name: str, names: Iterable[NameDefinition]) -> bool:
-    """Return whether a property has exactly one definition, and the definition is a value."""
+    """Return whether a property has exactly one definition, and whether this definition is a value."""
     definitions = [candidate for candidate in names if candidate.kind is NameKind.PROPERTY and candidate.name == name]
     return len(definitions) == 1 and bool(definitions[0].detail)
 
@@ -128,7 +128,7 @@ def refactor(
     try:
         result = _ACTIONS[action](project, texts, file, text, (start, end))
     except UnprovedError as error:
-        message = phrase("the text stays as it is: {reason}", reason=error.reason)
+        message = phrase("the text is not changed: {reason}", reason=error.reason)
         raise LinkwrightError(Diagnostic("LANG105", message, error.span)) from None
     return result
 

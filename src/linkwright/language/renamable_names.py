@@ -117,7 +117,7 @@ def _fits(written: str, name: str) -> bool:
 
 
 def rename_name(project: Workspace, texts: Mapping[Path, str], renamable: RenamableName, new: str) -> Renaming:
-    """Return the edits that rename the name at a place.
+    """Return the edits that rename a name.
 
     Args:
         project: the workspace.
@@ -179,7 +179,7 @@ def _rename_mention(project: Workspace, texts: Mapping[Path, str], mention: Ment
 
 
 def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
-    """Rename a link or joint from its use in an SRDF."""
+    """Rename a link or joint, starting from its use in an SRDF."""
     if "$" not in name.name:
         return _rename_mention(project, texts, Mention(name.name, name.file, name.start, (name.kind,)), new)
     error: LinkwrightError | None = None

@@ -49,7 +49,7 @@ class Renaming:
 
 def occurrence_at(text: str, file: Path, offset: int) -> Occurrence | None:
     """Return the name at an offset, or None if there is no renamable name."""
-    if root_of(file) is SDF:  # the names of SDF models have their own scopes
+    if root_of(file) is SDF:  # Names in SDF models have their own scopes.
         return None
     return _innermost(occurrences_in(text, file), offset)
 
@@ -77,7 +77,7 @@ def references(project: Workspace, texts: Mapping[Path, str], name: Occurrence) 
     """
     found: dict[Path, list[Occurrence]] = {}
     pending = [name.file]
-    is_shared = name.kind not in ROBOT_NAME_KINDS  # a link of another robot with the same name is another link
+    is_shared = name.kind not in ROBOT_NAME_KINDS  # A link with the same name in another robot is a different link.
     for start in pending:
         for file in project.index.related(start, texts, computed=True):
             if file not in found:
@@ -119,7 +119,7 @@ def _proved(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new
     proof = ExpansionProof(project, texts, name.file, is_partial=True)
     notes: list[Phrase] = []
     probes = {} if is_reached(proof, project.text(name.file, texts) or "", name) else probes_of(project, texts, name)
-    if probes:  # no expansion contains the name, so generated calls of its macro are compared
+    if probes:  # No expansion contains the name, so generated calls of its macro are compared.
         texts = {**texts, **probes}
         proof = ExpansionProof(project, texts, name.file, is_partial=True)
         notes.append(phrase("no description calls this macro, so the edits were checked with generated calls"))

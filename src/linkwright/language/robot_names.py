@@ -39,7 +39,7 @@ class _Robot:
     state: _State
     names: tuple[NameDefinition, ...]
     mentioned_files: frozenset[str] = frozenset()
-    """The names of YAML files in its elements, such as parameters of controllers."""
+    """The names in the description's YAML files, such as parameters of controllers."""
     is_expanded: bool = True
 
 
@@ -62,7 +62,7 @@ def robot_names(document: Document) -> list[NameDefinition]:
     begin = time.monotonic()
     for entry in _likely_robots(document):
         if time.monotonic() - begin > _MAX_SECONDS:
-            break  # the next request continues
+            break  # The next request continues the expansion.
         robot = _robot(document, entry)
         if robot is not None:
             robots.append(robot)
@@ -84,7 +84,7 @@ def part_names(document: Document) -> list[NameDefinition]:
     entries = document.project.index.entries(document.file, document.texts)[:_MAX_ENTRIES]
     for entry in dict.fromkeys((*entries, document.file)):
         if entry == document.file and entry not in entries and any(robot.is_expanded for robot in robots):
-            continue  # the file alone counts only if no description that includes it can be expanded
+            continue  # The file alone counts only if no description that includes it can be expanded.
         robot = _robot(document, entry)
         if robot is None:
             raise NotYetKnownError
@@ -121,7 +121,7 @@ def _names(robots: Iterable[_Robot]) -> list[NameDefinition]:
 
 
 def _robot(document: Document, entry: Path) -> _Robot | None:
-    """Return the names of a description, or None if they are unknown and it may not wait."""
+    """Return the names of a description, or None if they are unknown and must not be waited for."""
     cache = _robots.setdefault(document.project, {})
     robot = cache.get(entry)
     if robot is not None and robot.state == _state((path for path, _ in robot.state), document.texts):

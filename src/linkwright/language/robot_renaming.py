@@ -211,7 +211,7 @@ class RobotRenaming:
         """Yield edits of the definitions and references in an expansion that still have an old name."""
         for old, new in zip(pair.before.walk(), pair.after.walk(), strict=False):
             if old.tag != new.tag:
-                raise UnprovedError(phrase("the robot would have other elements"))
+                raise UnprovedError(phrase("the elements of the robot would change"))
             for kinds, key in _names_in(old, is_top=_is_definition(pair.before, old)):
                 before = old.attributes.get(key, "") if key else old.text().strip()
                 after = new.attributes.get(key, "") if key else new.text().strip()
@@ -224,7 +224,7 @@ class RobotRenaming:
                 proposal = next(self._sources.edits(written, before, wanted), None)
                 if proposal is None:
                     raise _computed_name_error(written, before, old.attribute_span(key) if key else old.span())
-                if {*proposal} <= {*edits}:  # the edits did not change the value
+                if {*proposal} <= {*edits}:  # The edits did not change the value.
                     raise _computed_name_error(written, before, old.attribute_span(key) if key else old.span())
                 yield from proposal
 
@@ -281,7 +281,10 @@ def _check_overlap(edits: Iterable[Edit]) -> None:
     for first, second in pairwise(ordered):
         if first.file == second.file and first.end > second.start:
             raise UnprovedError(
-                phrase("one text would have to become {names}", names=quoted_names((first.text, second.text), " and "))
+                phrase(
+                    "the same text would need several new names: {names}",
+                    names=quoted_names((first.text, second.text), " and "),
+                )
             )
 
 
@@ -352,10 +355,10 @@ def _differences(before: Element, after: Element) -> Iterator[tuple[str, str, st
     """Yield the attribute (empty for a text) and both values of each difference."""
     old_elements, new_elements = [*before.walk()], [*after.walk()]
     if [old.tag for old in old_elements] != [new.tag for new in new_elements]:
-        raise UnprovedError(phrase("the robot would have other elements"))
+        raise UnprovedError(phrase("the elements of the robot would change"))
     for old, new in zip(old_elements, new_elements, strict=True):
         if old.attributes.keys() != new.attributes.keys():
-            raise UnprovedError(phrase("<{tag}> would have other attributes", tag=old.tag))
+            raise UnprovedError(phrase("the attributes of <{tag}> would change", tag=old.tag))
         for key, value in old.attributes.items():
             if new.attributes[key] != value:
                 yield key, value, new.attributes[key]

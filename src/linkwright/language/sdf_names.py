@@ -99,7 +99,7 @@ def rename_in_sdf(
     if definition is None or scope is None:
         raise UnprovedError(phrase("the name is not defined in this file"), span)
     if any(other.value("name") == new for other in _named_children(scope)):
-        raise UnprovedError(phrase("'{name}' exists already", name=new), span)
+        raise UnprovedError(phrase("'{name}' already exists", name=new), span)
     edits = {
         Edit(use.file, use.start, use.end, new)
         for use in sdf_names(text, name.file)
@@ -254,7 +254,7 @@ def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...]
             continue
         given = _child_text(include, "name", text)
         scope = _scope(include.parent)
-        if given and len(path) == 1:  # the include gives a name of its own to the model
+        if given and len(path) == 1:  # The include assigns another name to the model.
             continue
         names = [given or path[0], *path[1:]]
         for element in elements if scope is not None else ():

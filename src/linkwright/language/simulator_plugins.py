@@ -58,7 +58,7 @@ class SimulatorPlugin:
 
     @property
     def is_classic(self) -> bool:
-        """Whether it is a plugin of Gazebo classic."""
+        """Whether the plugin belongs to Gazebo classic."""
         return not self.class_name
 
     @property

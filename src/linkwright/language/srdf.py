@@ -204,7 +204,7 @@ def _parts(semantics: _Semantics, kind: NameKind, value: str) -> Iterator[Target
         names = document.project.names(file, document.texts)
         found = [name for name in names if name.kind is kind and _matches(name.name, value)]
         if kind is NameKind.JOINT:
-            found = [name for name in found if name.detail]  # only the definition of a joint has a type
+            found = [name for name in found if name.detail]  # Only the definition of a joint has a type.
         exact = [name for name in found if name.name == value]
         for name in dict.fromkeys(exact or found):
             yield Target(name.file, name.start, name.start + len(name.name))

@@ -1,8 +1,8 @@
 """The expansions of a description for the proof of edits, with arguments and gaps.
 
-The callers of a description rarely reach all of its branches. So the arguments in conditions are switched, too, one at
-a time. A description that cannot be expanded, because a package is missing or a caller decides a value, is expanded
-without the failing elements. Spaces replace these elements, so all offsets stay the same.
+The callers of a description rarely reach all of its branches. Therefore, the arguments in conditions are also switched,
+one at a time. A description that cannot be expanded, because a package is missing or a caller decides a value, is
+expanded without the failing elements. Spaces replace these elements, so all offsets stay the same.
 """
 
 from __future__ import annotations

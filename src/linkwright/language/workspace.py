@@ -38,8 +38,8 @@ _CHECK_INPUTS = (
 
 
 MAX_CHARACTERS = 1_000_000
-"""The number of characters above which a file is large: it is checked, and has no other functions of the editor. The
-largest public description that was found has 300,000."""
+"""The number of characters above which a file is large. A large file is checked, but has no other editor functions. The
+largest known public description has 300,000 characters."""
 _MAX_ROBOTS = 16
 """The number of descriptions whose robots are stored."""
 
@@ -221,7 +221,7 @@ class Workspace:
             self.index.refresh()
         elif not is_description and file not in texts:
             below = [other for other in (*self.index.files, *self._results) if other.is_relative_to(file)]
-            if below or file.is_dir():  # a folder that was created, moved or deleted
+            if below or file.is_dir():  # A folder was created, moved or deleted.
                 entries = [entry for other in below for entry in self.index.entries(other, texts)]
                 self.index.refresh()
                 return [*dict.fromkeys((*entries, *below))]
@@ -229,7 +229,7 @@ class Workspace:
         found = self.index.entries(file, texts) if is_description else []
         subjects = [*found, *([] if package is None else [real_path(package[1])])]
         if subjects and file not in subjects:
-            self._results.pop(file, None)  # of the file alone, before it belonged to a description or a package
+            self._results.pop(file, None)  # findings about the file alone, before it had subjects
         return subjects
 
     def check(

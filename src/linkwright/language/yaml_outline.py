@@ -1,6 +1,6 @@
 """The keys and items of a YAML text, found by the indentation of its lines.
 
-This is not a YAML parser: anchors and tags are parts of the values. It also reads texts that are being typed, which a
+This is not a YAML parser: anchors and tags are parts of the values. The outline also covers incomplete texts, which a
 parser would reject.
 """
 
@@ -59,7 +59,7 @@ class YamlEntry:
 
     @property
     def is_item(self) -> bool:
-        """Whether it is an item of a list."""
+        """Whether the entry is an item of a list."""
         return not self.key and self.parent is not None
 
     @property
@@ -167,7 +167,7 @@ class YamlOutline:
             if offset > entry.start and (not entry.key or offset >= entry.value_start) and entry.value_start <= offset:
                 return self._in_value(entry, offset)
         if on_line and on_line[0].key and offset > on_line[0].start:
-            return nothing  # directly after the colon
+            return nothing  # The cursor is directly after the colon.
         if on_line and before.strip():
             return nothing
         return self._in_new_line(before, last, line, offset)
@@ -284,7 +284,7 @@ def _pop_to_column(stack: list[YamlEntry], column: int, *, is_item: bool) -> Non
     """Pop the entries that a line at a column does not belong to."""
     while stack[-1].column >= column:
         if is_item and stack[-1].column == column and stack[-1].key and not stack[-1].value:
-            return  # a list may begin at the column of its key
+            return  # A list may begin at the column of its key.
         stack.pop()
 
 

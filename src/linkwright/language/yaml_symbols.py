@@ -47,7 +47,7 @@ def _symbols(entries: Iterable[YamlEntry], depth: int) -> Iterator[Symbol]:
 
 
 def by_typed(items: Iterable[Completion], typed: str) -> list[Completion]:
-    """Remove duplicates, and sort completions by their match with the typed text.
+    """Remove duplicate completions, and sort the others by their match with the typed text.
 
     Labels that begin with the text come first, then labels that contain it, then the others.
     """

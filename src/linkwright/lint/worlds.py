@@ -143,7 +143,9 @@ def _axis_findings(models: Iterable[Model]) -> Iterator[Diagnostic]:
             axis_element = joint.element.first(tag)
             xyz = axis_element.first("xyz") if axis_element is not None else None
             message = phrase("the axis of {owner} has no direction", owner=described(joint.element))
-            finding = _warning("SDF122", message, xyz or joint.element, phrase("write its direction, such as 0 0 1"))
+            finding = _warning(
+                "SDF122", message, xyz or joint.element, phrase("write the direction of the axis, such as 0 0 1")
+            )
             if joint.type == "fixed":
                 fixed_joint_findings.setdefault(finding.span, finding)
             else:

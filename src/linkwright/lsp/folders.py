@@ -39,7 +39,7 @@ async def show_progress(server: LanguageServer, title: Phrase, work: asyncio.Fut
     token = str(uuid4())
     try:
         await server.work_done_progress.create_async(token)
-    except JsonRpcException:  # the editor rejected the progress
+    except JsonRpcException:  # The editor rejected the progress indicator.
         return
     server.work_done_progress.begin(token, types.WorkDoneProgressBegin(localized(title)))
     await asyncio.wait([work])

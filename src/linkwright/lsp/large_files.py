@@ -38,7 +38,7 @@ async def findings_of_process(
     def work() -> tuple[Diagnostic, ...] | None:
         with receiver, sender:
             try:
-                process.start()  # returns when the process has read the texts
+                process.start()  # This returns when the process has read the texts.
                 sender.close()
                 found: tuple[Diagnostic, ...] | None = None if is_cancelled.is_set() else receiver.recv()
             except (EOFError, OSError):
@@ -59,7 +59,7 @@ async def findings_of_process(
 def _check(sender: Connection, folders: list[Path], subject: Path, texts: dict[Path, str]) -> None:
     """Send the findings about a subject."""
     project = Workspace(folders)
-    with redirect_stdout(sys.stderr):  # standard output carries only the responses of the server
+    with redirect_stdout(sys.stderr):  # Standard output carries only the responses of the server.
         project.index.refresh()
         sender.send(project.checked(subject, texts))
     sender.close()

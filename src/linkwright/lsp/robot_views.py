@@ -21,7 +21,7 @@ from linkwright.lint.targets import DESCRIPTIONS
 
 _ADDRESS = re.compile(rb"https?://\S+")
 _LOADED_FILES = (".yaml", ".yml")
-"""Endings of files that descriptions load."""
+"""The suffixes of files that descriptions load."""
 
 
 class TextEditor(Protocol):
@@ -70,7 +70,7 @@ class RobotView:
             stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.DEVNULL,
-            env={**os.environ, "PYTHONSAFEPATH": "1"},  # a file queue.py of the workspace is not to be imported
+            env={**os.environ, "PYTHONSAFEPATH": "1"},  # A file queue.py in the workspace must not be imported.
         )
         self._reader_task = asyncio.get_running_loop().create_task(self._read(self._process))
         return await self.address()
@@ -98,7 +98,7 @@ class RobotView:
 
     async def _read(self, process: asyncio.subprocess.Process) -> None:
         assert process.stdout is not None, "it is a pipe"
-        with suppress(ValueError):  # a line that is longer than any of ours
+        with suppress(ValueError):  # The line is longer than any valid message.
             async for line in process.stdout:
                 if line.startswith(b"{"):
                     self._receive(line)

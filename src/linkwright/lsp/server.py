@@ -220,7 +220,7 @@ class LinkwrightServer(LanguageServer):
         """
         current = self.positions(path)
         if current is None or current.text != positions.text:
-            message = localized(phrase("a text has changed meanwhile"))
+            message = localized(phrase("a text has changed in the meantime"))
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
 
     @property
@@ -368,7 +368,7 @@ class LinkwrightServer(LanguageServer):
             uri = self.uri_of(file)
             document = self.workspace.text_documents.get(uri)
             if document is not None and texts.get(file) != document.source:
-                continue  # the text has changed since then, and is checked again
+                continue  # The text has changed since the check, and is checked again.
             self.text_document_publish_diagnostics(
                 types.PublishDiagnosticsParams(
                     uri,

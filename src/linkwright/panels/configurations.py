@@ -79,7 +79,7 @@ class ConfigurationFeature(PageFeature):
         self._sent_states: dict[VisualizationManager, Configuration] = {}
 
     def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the state of the configuration: its file, and the edits to undo and redo."""
+        """Return the state of the configuration: its file, and the edits to undo or redo."""
         self._sent_states[manager] = self._state(manager)
         return [self._sent_states[manager]]
 

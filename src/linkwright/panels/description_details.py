@@ -51,7 +51,7 @@ class SourcePositions:
         try:
             document, _ = parse_as_urdfdom(text, _EXPANDED_NAME)
         except LinkwrightError:
-            return  # not expected, because a robot was read from this text
+            return  # This is not expected, because a robot was read from this text.
         for element in document.root.elements():
             key = (element.tag, element.attributes.get("name", ""))
             self._expanded_elements.setdefault(key, element)
@@ -72,7 +72,7 @@ class SourcePositions:
 
 
 def _calls(element: Element) -> Iterator[CallSite]:
-    """Yield the macro calls and includes that produced an element.
+    """Yield the macro calls and includes that produced an element, the innermost first, without duplicates.
 
     They begin with the innermost, without duplicates.
     """

@@ -50,7 +50,7 @@ class DisplaysFeature(PageFeature):
                 self._send_size(display)
 
     def _send_size(self, display: ViewerDisplay) -> None:
-        """Send a display the largest size of its panels in all pages, or 0 if there are none."""
+        """Send a display the maximum size of its panels in all pages, or 0 without panels."""
         sizes = self._sizes_by_display[display].values()
         width = max((size.width for size in sizes), default=0)
         height = max((size.height for size in sizes), default=0)

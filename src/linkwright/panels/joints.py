@@ -107,7 +107,7 @@ class JointsFeature(PageFeature):
             [
                 JointControl(
                     name=slider.name,
-                    kind=cast("Any", slider.kind),  # all movable joints have one of these kinds
+                    kind=cast("Any", slider.kind),  # All movable joints have one of these kinds.
                     lower=slider.lower,
                     upper=slider.upper,
                     zero=slider.zero,

@@ -230,7 +230,7 @@ class LiveHistory:
             return self.live
         if type(message) is QueuedMessage:
             message = message.message
-        with self._lock:  # so that no message is duplicated or reordered when the present is shown again
+        with self._lock:  # Otherwise messages could be duplicated or reordered when the present is shown again.
             self._new_messages.append((topic, self._now_ns(), message))
             if not self.live or len(self._new_messages) >= _MAX_NEW_MESSAGES:
                 self._flush()

@@ -199,7 +199,7 @@ class RecordingFeature(PageFeature):
     def _on_saved(self, task: asyncio.Task[None]) -> None:
         self._save_task = self._saved_fraction = None
         error = None if task.cancelled() else task.exception()
-        if error is not None:  # without a problem, pages would wait forever
+        if error is not None:  # If no problem was reported, pages would wait forever.
             self.context.node.get_logger().error(f"The last minutes were not saved: {error!r}")
             self._report_errors(
                 [_finding(phrase("the last minutes were not saved: {reason}", reason=foreign(repr(error))))]

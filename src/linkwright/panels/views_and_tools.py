@@ -83,7 +83,7 @@ class ViewsFeature(PageFeature):
             elif isinstance(message, RemoveSavedView):
                 views.remove(message.id)
         except KeyError:
-            return  # another page has removed the view
+            return  # Another page has removed the view.
         except ValueError as error:
             self.context.node.get_logger().warning(f"A page sent an invalid view: {error}")
             return
@@ -235,7 +235,7 @@ class ToolsFeature(PageFeature):
         """
         tool_kind = TOOL_KINDS.get(entry.cls)
         if tool_kind is not None and tool_kind.action is not None:
-            from linkwright.panels.goals import GoalSender  # imported here, because few configurations use it
+            from linkwright.panels.goals import GoalSender  # This is imported here, because few configurations use it.
 
             tool_set.goals[entry.id] = GoalSender(self.context.node, *tool_kind.action)
         if tool_kind is None or tool_kind.publishes is None:

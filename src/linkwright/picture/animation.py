@@ -1,4 +1,4 @@
-"""Files of animations."""
+"""Encoding of animations as files."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _WEBP_QUALITY = 88
 
 
 def require_webp() -> None:
-    """Check that WebP files can be written.
+    """Raise an error if the installed Pillow cannot write WebP files.
 
     Raises:
         LinkwrightError: PIC120, Pillow is not installed, or has no WebP.
@@ -28,7 +28,7 @@ def require_webp() -> None:
 
 
 def animation(images: Sequence[Image], frame_seconds: float, ending: str) -> bytes:
-    """Return an endless animation as a file.
+    """Encode images as an endlessly repeated animation.
 
     Args:
         images: the images, all of the same size.

@@ -1,4 +1,4 @@
-"""The things in a scene: surfaces with materials, and the bodies that carry them."""
+"""The contents of a scene: surfaces with materials, and the bodies to which they belong."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from linkwright.picture.smoothing import smooth_mesh
 from linkwright.picture.vectors import Indices, unit_vectors
 
 Color: TypeAlias = tuple[float, float, float]
-"""Red, green and blue as displayed, 0 to 1."""
+"""Red, green and blue as displayed, each from 0 to 1."""
 Texture: TypeAlias = NDArray[np.uint8]
-"""Pixels of shape (height, width, 3), the upper row first."""
+"""Pixels of shape (height, width, 3), with the top row first."""
 
 
 _POSITION_GRID = float(1 << 30)
-"""Positions in mesh files are rounded to about 1 nm, as rotations in these files differ between machines in the last
+"""Positions in mesh files are rounded to about 1 nm, because the last bits of rotations differ between machines.
 bits."""
 
 
@@ -52,7 +52,7 @@ class Surface:
 
     @classmethod
     def of_triangles(cls, triangles: Triangles, texture: Texture | None = None) -> Surface:
-        """Return the white surface of triangles, smooth except at creases. Normals of the file are not used."""
+        """Return triangles as a white surface, smooth except at creases. Normals in the file are ignored."""
         faces = triangles.indices.reshape(-1, 3)
         if not len(faces) or not (np.abs(triangles.positions) <= MAX_COORDINATE).all():
             return cls(triangles.positions, np.zeros_like(triangles.positions), faces)
@@ -70,17 +70,17 @@ class Surface:
         )
 
     def colored(self, color: Color, alpha: float) -> Surface:
-        """Return the surface with a color and opacity."""
+        """Return a copy of the surface with another color and opacity."""
         return replace(self, color=color, alpha=alpha)
 
     def scaled(self, scale: Vector3) -> Surface:
-        """Return the surface scaled along its axes. A negative factor mirrors it."""
+        """Return a copy of the surface, scaled along its axes. A negative factor mirrors the surface."""
         if scale == (1.0, 1.0, 1.0):
             return self
         factors = np.array(scale)
         inverse = np.array([1.0 / factor if factor else 0.0 for factor in scale])
         is_mirrored = scale[0] * scale[1] * scale[2] < 0
-        with np.errstate(over="ignore", invalid="ignore"):  # `is_in_range` finds numbers that are too large
+        with np.errstate(over="ignore", invalid="ignore"):  # `is_in_range` detects numbers that are too large.
             points, normals = self.points * factors, unit_vectors(self.normals * inverse)
         return replace(
             self,
@@ -90,7 +90,7 @@ class Surface:
         )
 
     def placed(self, frame: Placement) -> Surface:
-        """Return the surface in the parent frame of its frame."""
+        """Return a copy of the surface in the parent of its frame."""
         if frame.rotation == IDENTITY and frame.position == (0.0, 0.0, 0.0):
             return self
         matrix = np.eye(4)
@@ -128,7 +128,7 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class Anchor:
-    """A point of a scene that can have a label.
+    """A point of a scene that can be labeled.
 
     Attributes:
         text: the label.
@@ -141,7 +141,7 @@ class Anchor:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Labels:
-    """The points that can have labels: the origins of links and of joints."""
+    """The points that can be labeled: the origins of links and of joints."""
 
     links: tuple[Anchor, ...] = ()
     joints: tuple[Anchor, ...] = ()

@@ -14,11 +14,11 @@ from linkwright.geometry.single import Vector3, add_vectors, cross, scaled
 from linkwright.picture.vectors import along
 
 FIELD = 0.22
-"""The tangent of half the field of view of the shorter side, for cameras with perspective."""
+"""The tangent of half the field of view along the shorter side, for perspective cameras."""
 _MARGIN = 1.16
-"""The size of the image in relation to what it must show."""
+"""The ratio of the image's size to the size of the content that must be visible."""
 _SMALLEST_EXTENT = 1e-6
-"""The extent in m of an image of a single point."""
+"""The width of the visible area in m if the scene is a single point."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,12 +42,12 @@ VIEWS = {
     "left": View(90.0, 0.0, perspective=False),
     "top": View(180.0, 90.0, perspective=False),
 }
-"""The views that have a name. The top view has x up and y to the left, as on maps."""
+"""The named views. In the top view, x points up and y to the left, as on maps."""
 
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """A camera outside of everything that it shows.
+    """A camera outside of all bodies that it shows.
 
     Attributes:
         right: the direction of the image's right side.
@@ -83,7 +83,7 @@ class Camera:
         return self.size[0] / 2 + x * self.scale, self.size[1] / 2 - y * self.scale, nearness
 
     def points_at(self, x: Array, y: Array, depth: Array) -> Array:
-        """Return the points that pixels show, shape (n, 3): the inverse of `project`.
+        """Return the points that are visible at pixels, shape (n, 3): the inverse of `project`.
 
         Args:
             x: the pixels from the left.
@@ -100,7 +100,7 @@ class Camera:
         return np.stack(coordinates, axis=1)
 
     def to_plane(self, height: float, x: Array, y: Array) -> Array:
-        """Return the points at which rays through pixels meet a horizontal plane, shape (n, 3).
+        """Return the points at which the rays of pixels meet a horizontal plane, shape (n, 3).
 
         Args:
             height: z of the plane in m.
@@ -129,7 +129,7 @@ class Camera:
 
 
 def fitting_camera(view: View, size: tuple[int, int], points: Sequence[Array]) -> Camera:
-    """Return the camera that shows all points as large as possible.
+    """Return the camera that shows all points at the largest possible size.
 
     Args:
         view: the direction of the camera.
@@ -159,7 +159,7 @@ def fitting_camera(view: View, size: tuple[int, int], points: Sequence[Array]) -
 
 
 def camera_axes(view: View) -> tuple[Vector3, Vector3, Vector3]:
-    """Return the directions right, up and toward the camera."""
+    """Return the unit vectors that point right, up and toward the camera."""
     sine, cosine = sine_and_cosine(radians(view.azimuth))
     sine_up, cosine_up = sine_and_cosine(radians(view.elevation))
     toward = (cosine_up * cosine, cosine_up * sine, sine_up)

@@ -1,4 +1,4 @@
-"""Shadows that bodies cast on each other."""
+"""Shadows that bodies cast on other bodies."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from linkwright.picture.rasterizer import DepthBuffer, ScreenTriangles
 from linkwright.picture.vectors import Floats, along, unit_vector
 
 _CELLS = 720
-"""The number of cells along the longer side of the map."""
+"""The number of cells along the longer side of the shadow map."""
 _REACH = 2
-"""The reach in cells of the blur of shadows' borders."""
+"""The radius in cells of the blur at the borders of shadows."""
 _OFFSET = 2.0
-"""The distance in cells from a surface at which it is tested, so that no surface shades itself."""
+"""The distance in cells by which a tested point is moved off its surface, so that no surface shades itself."""
 _STRENGTH = 0.42
-"""The part of the light that a shadow takes."""
+"""The fraction of the light that a shadow removes."""
 
 
 class CastShadows:
@@ -52,7 +52,7 @@ class CastShadows:
             self._distances[seen.window][seen.mask] = seen.distances
 
     def light(self, points: Array, normals: Floats) -> Floats:
-        """Return the light that shadows leave at points of surfaces, from 0 to 1.
+        """Return the fraction of the light that reaches points of surfaces despite shadows, from 0 to 1.
 
         Args:
             points: the points in m, shape (n, 3).

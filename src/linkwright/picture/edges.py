@@ -1,4 +1,4 @@
-"""Thin dark lines where the visible surface ends, jumps or bends."""
+"""Thin dark lines along the borders and creases of the visible surface."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from linkwright.picture.smoothing import CREASE_COSINE
 from linkwright.picture.vectors import Floats
 
 _JUMP = 0.006
-"""The change of the distance's slope where a surface ends in front of another, as a part of the scene's depth."""
+"""The change of the distance's slope, relative to the scene's depth, that marks a surface in front of another."""
 _OUTER, _INNER = 0.88, 0.55
-"""How dark lines are at the ends of surfaces and at creases, 0 to 1."""
+"""The darkness of lines at the ends of surfaces and at creases, from 0 to 1."""
 _DENSE = 0.30
-"""The share of samples on lines from which details are smaller than lines, and lines fade."""
+"""The share of samples on lines above which lines fade, because details are smaller than the lines."""
 _REACH = 2
-"""The pixels around a pixel in which lines are counted."""
+"""The number of pixels around a pixel in which lines are counted."""
 
 
 def edge_strength(distances: Floats, normals: Floats, bodies: NDArray[np.int32], per_pixel: int) -> Floats:
-    """Return how dark the lines are at each sample, 0 to 1.
+    """Return the darkness of lines at each sample, from 0 to 1.
 
     Args:
         distances: the distance at each sample, shape (rows, width); 2 where nothing is seen.
@@ -55,7 +55,7 @@ def edge_strength(distances: Floats, normals: Floats, bodies: NDArray[np.int32],
 
 
 def _neighbors(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return the samples beside those of a mask."""
+    """Return the samples next to the samples in a mask."""
     beside = np.zeros_like(mask)
     for axis in (0, 1):
         first, second = _pairs(axis)
@@ -65,14 +65,14 @@ def _neighbors(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def _pairs(axis: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
-    """Return the selections of all samples but the last, and of all but the first, along an axis."""
+    """Return the slices of all samples except the last, and of all except the first, along an axis."""
     if axis == 0:
         return (slice(None, -1), slice(None)), (slice(1, None), slice(None))
     return (slice(None), slice(None, -1)), (slice(None), slice(1, None))
 
 
 def _fading(is_line: NDArray[np.bool_], is_seen: NDArray[np.bool_], per_pixel: int) -> Floats:
-    """Return a factor for each pixel, smaller than 1 where lines are denser than a drawing can show."""
+    """Return a factor for each pixel, which is below 1 where lines are too dense to be distinguished."""
     lines, seen = (box_sums(pixel_sums(mask, per_pixel), _REACH) for mask in (is_line, is_seen))
     density = lines.astype(np.float32) / np.maximum(seen, 1).astype(np.float32)
     excess = np.maximum(density / np.float32(_DENSE), np.float32(1.0))
@@ -91,7 +91,7 @@ def pixel_sums(mask: NDArray[np.bool_], per_pixel: int) -> NDArray[np.int64]:
 
 
 def box_sums(values: NDArray[np.int64], reach: int) -> NDArray[np.int64]:
-    """Return the sums of integers over the squares around each place, cut off at the border."""
+    """Return the sums of integers over the square around each pixel, clipped at the border."""
     for axis in (0, 1):
         totals = np.cumsum(values, axis=axis)
         count = values.shape[axis]

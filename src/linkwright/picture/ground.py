@@ -17,15 +17,15 @@ from linkwright.picture.rasterizer import ScreenTriangles, fragments
 from linkwright.picture.vectors import Floats
 
 _CELLS = 320
-"""The number of cells along the longer side of the shadow's map."""
+"""The number of cells along the longer side of the shadow map."""
 _HEIGHTS = (0.015, 0.05, 0.12, 0.25, 0.5, 1e9)
-"""The upper limits of the layers of the shadow, as parts of the scene's height and width. Higher layers are softer."""
+"""The upper limits of the shadow's layers, relative to the size of the scene. Shadows of higher layers are softer."""
 _SOFTNESS = 0.30
-"""The reach of the blur, in relation to the height above the ground."""
+"""The radius of the blur, relative to the height above the ground."""
 _LEAST_SOFTNESS = 0.012
 _DARKNESS = 0.50
 _LINES = 8
-"""The number of cells of the grid along the longer side of the scene, approximately."""
+"""The approximate number of grid cells along the longer side of the scene."""
 _LINE_WIDTH, _AXIS_WIDTH = 0.9, 1.8
 """The widths of lines in pixels."""
 _LINE_STRENGTH, _AXIS_STRENGTH = 0.30, 0.65
@@ -33,12 +33,12 @@ _GRID_COLOR: Color = (0.30, 0.34, 0.40)
 _AXIS_COLORS: tuple[Color, Color] = ((0.80, 0.20, 0.18), (0.22, 0.60, 0.22))
 """The colors of the lines along x and along y through the origin."""
 _FLAT = 0.06
-"""The least sine of the elevation from which the ground is drawn."""
+"""The minimum sine of the camera's elevation at which the ground is drawn."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShadowMap:
-    """The shadow on the ground, in cells.
+    """A map of the shadow on the ground, divided into cells.
 
     Attributes:
         height: z of the ground.
@@ -68,7 +68,7 @@ class ShadowMap:
 
 
 def shadow_map(mesh: Mesh, key: Vector3) -> ShadowMap | None:
-    """Return the shadow of a scene on the plane below it, or None if nothing casts a shadow.
+    """Return the shadow map of a scene on the plane below it, or None if no body casts a shadow.
 
     Args:
         mesh: the triangles of the scene.
@@ -105,7 +105,7 @@ def shadow_map(mesh: Mesh, key: Vector3) -> ShadowMap | None:
 
 
 def _blurred(mask: NDArray[np.bool_], reach: int) -> Floats:
-    """Return a mask blurred twice by squares, 0 to 1."""
+    """Return a mask after two box blurs, with values from 0 to 1."""
     area = 2 * reach + 1
     sums = box_sums(box_sums(mask.astype(np.int64), reach), reach)
     return (sums.astype(np.float64) / float(area**4)).astype(np.float32)
@@ -118,7 +118,7 @@ def is_ground_visible(camera: Camera) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class GroundGrid:
-    """A grid on the ground, with lines at multiples of its spacing, around a scene.
+    """A grid on the ground around a scene, with lines at multiples of its spacing.
 
     Attributes:
         height: z of the ground in m.
@@ -134,7 +134,7 @@ class GroundGrid:
 
     @classmethod
     def around(cls, points: Array) -> GroundGrid:
-        """Return the grid for a scene with these points, shape (n, 3)."""
+        """Return the grid for a scene that contains these points, shape (n, 3)."""
         low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()
         extent = max(high[0] - low[0], high[1] - low[1], (high[2] - low[2]) / 2, 1e-3)
         spacing = 1e-6
@@ -144,7 +144,7 @@ class GroundGrid:
         return cls(low[2], spacing, ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2), extent * 1.6)
 
     def draw(self, light: Floats, alpha: Floats, camera: Camera, first_row: int) -> None:
-        """Draw the grid over rows of an image.
+        """Draw the grid into rows of an image.
 
         Args:
             light: the light of the pixels multiplied by their opacity, shape (rows, width, 3), which is changed.
@@ -156,7 +156,7 @@ class GroundGrid:
         points = ground_points(camera, self.height, first_row, last_row)
         right = ground_points(camera, self.height, first_row, last_row, (1.0, 0.0))
         down = ground_points(camera, self.height, first_row, last_row, (0.0, 1.0))
-        steps = np.abs(right - points) + np.abs(down - points)  # how far a pixel reaches on the ground
+        steps = np.abs(right - points) + np.abs(down - points)  # the size of a pixel on the ground
         x, y = points[:, 0] - self.center[0], points[:, 1] - self.center[1]
         fading = np.clip(2.0 - 2.0 * np.sqrt(x * x + y * y) / self.radius, 0.0, 1.0)
         for axis, color in ((1, _AXIS_COLORS[0]), (0, _AXIS_COLORS[1])):

@@ -1,4 +1,4 @@
-"""Names of links or joints beside what they name."""
+"""Labels with the names of links or joints, next to their origins."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from linkwright.picture.stroke_font import LINE_HEIGHT, text_lines
 from linkwright.picture.vectors import Floats
 
 _HEIGHT = 15.0
-"""The height of a line of text in pixels, in an image whose shorter side has `_USUAL_SIDE` pixels."""
+"""The height of a line of text in pixels, for an image whose shorter side has `_USUAL_SIDE` pixels."""
 _USUAL_SIDE, _LEAST_SCALE = 600.0, 0.75
 _PEN, _HALO, _DOT = 0.75, 2.6, 2.4
-"""Half the width of lines, the reach of the light area around them, and the radius of the dots, in pixels."""
+"""In pixels: half the width of lines, the radius of the bright area around them, and the radius of the dots."""
 _OFFSET, _SPACING, _BORDER = 14.0, 2.0, 4.0
 _INK, _PAPER = 0.008, 0.96
-"""The light of the text and of the area around it."""
+"""The brightness of the text and of the area around it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ def draw_labels(light: Floats, alpha: Floats, anchors: Sequence[Anchor], camera:
     Args:
         light: the light of the pixels multiplied by their opacity, shape (height, width, 3), which is changed.
         alpha: the opacity of the pixels, shape (height, width), which is changed.
-        anchors: the texts and the points that they name.
+        anchors: the texts of the labels, and the points to which they belong.
         camera: the camera of the image.
     """
     if not anchors:
@@ -67,7 +67,7 @@ def draw_labels(light: Floats, alpha: Floats, anchors: Sequence[Anchor], camera:
 def _place(
     text: str, anchor: tuple[float, float], others: Sequence[_Placed], size: tuple[int, int], scale: float
 ) -> _Placed:
-    """Return a label beside its anchor, at the first place where it overlaps no other label."""
+    """Return a label next to its anchor, at the first position where it does not overlap another label."""
     unit = _HEIGHT * scale / LINE_HEIGHT
     extent = (text_lines(text)[1] * unit, _HEIGHT * scale)
     is_left = anchor[0] + _OFFSET * scale + extent[0] + _BORDER > size[0]
@@ -85,7 +85,7 @@ def _place(
 
 
 def _leader(label: _Placed) -> Array:
-    """Return the line from an anchor to its text."""
+    """Return the line that connects an anchor to its text."""
     is_right = label.corner[0] > label.anchor[0]
     x = label.corner[0] - _SPACING if is_right else label.corner[0] + label.extent[0] + _SPACING
     return np.array([(label.anchor, (x, label.corner[1] + label.extent[1] / 2))])
@@ -101,7 +101,7 @@ def _letters(label: _Placed) -> Array:
 
 
 def _draw(light: Floats, alpha: Floats, lines: Array, pen: float, halo: float) -> None:
-    """Draw lines, shape (n, 2, 2) in pixels, with a light area around them."""
+    """Draw lines, shape (n, 2, 2) in pixels, with a bright area around them."""
     if not len(lines):
         return
     height, width = alpha.shape

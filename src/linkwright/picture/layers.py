@@ -13,7 +13,7 @@ from linkwright.picture.bodies import Body, Color, Surface, Texture
 from linkwright.picture.vectors import Indices
 
 OPAQUE = 0.996
-"""The opacity from which a surface counts as opaque."""
+"""The minimum opacity of an opaque surface."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -38,7 +38,7 @@ class Mesh:
 
     @classmethod
     def of(cls, bodies: Sequence[Body]) -> Mesh:
-        """Return the triangles of bodies."""
+        """Combine the triangles of bodies."""
         surfaces, owners = [], []
         for body in bodies:
             for surface in body.surfaces:
@@ -59,17 +59,17 @@ class Mesh:
         )
 
     def selected(self, is_wanted: Sequence[bool]) -> Indices:
-        """Return the indices of the triangles of some surfaces, given a truth value for each surface."""
+        """Return the indices of the triangles whose surfaces are selected by a mask over the surfaces."""
         return np.flatnonzero(np.array(is_wanted, dtype=bool)[self.parts]) if self.surfaces else np.zeros(0, np.int64)
 
     @property
     def opaque(self) -> Indices:
-        """The indices of the opaque triangles, shape (n,), without those of ghosts."""
+        """The indices of the opaque triangles, shape (n,), except those of ghosts."""
         return self.selected([part.alpha >= OPAQUE and body.ghost is None for part, body in self._pairs])
 
     @property
     def transparent(self) -> Indices:
-        """The indices of the triangles of transparent materials, shape (n,), without those of ghosts."""
+        """The indices of the triangles with transparent materials, shape (n,), except those of ghosts."""
         return self.selected([0.0 < part.alpha < OPAQUE and body.ghost is None for part, body in self._pairs])
 
     @property
@@ -83,7 +83,7 @@ class Mesh:
         return self.selected([part.alpha > 0.0 and body.ghost is None for part, body in self._pairs])
 
     def outlined(self) -> dict[Color, Indices]:
-        """Return the indices of the triangles of bodies with an outline, by its color."""
+        """Return the indices of the triangles of outlined bodies, by the color of the outline."""
         colors = dict.fromkeys(body.outline for body in self.bodies if body.outline is not None)
         return {color: self.selected([body.outline == color for body in self.bodies]) for color in colors}
 
@@ -100,7 +100,7 @@ class Mesh:
 
     @property
     def textures(self) -> dict[int, Texture]:
-        """The textures by the indices of their surfaces."""
+        """The textures, by the indices of their surfaces."""
         pairs = enumerate(self._pairs)
         return {index: part.texture for index, (part, body) in pairs if part.texture is not None and body.ghost is None}
 

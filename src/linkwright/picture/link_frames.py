@@ -1,6 +1,6 @@
-"""Frames of links that have the same bits on every machine.
+"""Frames of links that are bit-identical on every machine.
 
-`linkwright.kinematics` is faster, but its sines and its products of matrices depend on the processor in the last bit.
+`linkwright.kinematics` is faster, but the last bit of its sines and matrix products depends on the processor.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ _ORIGIN = Placement(IDENTITY, (0.0, 0.0, 0.0))
 
 
 def exact_placement(pose: Pose) -> Placement:
-    """Return the rotation and position of a pose of a description."""
+    """Return the rotation and the position for a pose in a description."""
     quaternion = exact_quaternion(pose.rpy) if pose.quaternion is None else normalized(*pose.quaternion)
     return Placement(rotation_matrix(quaternion), pose.xyz)
 
 
 def link_frames(robot: Robot, positions: Mapping[str, float]) -> dict[str, Placement]:
-    """Return the frames of all links in the root link's frame, by the names of the links.
+    """Return the frames of all links in the root link's frame, by link name.
 
     Args:
         robot: the robot. Links that are not connected to its root are left out.
@@ -34,7 +34,7 @@ def link_frames(robot: Robot, positions: Mapping[str, float]) -> dict[str, Place
     Raises:
         UnknownNameError: KIN101 or KIN102, a name is not that of a joint that has a position.
     """
-    KinematicTree(robot).positions(positions)  # refuses unknown names
+    KinematicTree(robot).positions(positions)  # raises an error for unknown names
     moving_joints = [joint.name for joint in robot.joints.values() if joint.type in MOVING]
     independent_joints, relations = resolve_mimics(robot, moving_joints)
     leaders = {name: positions.get(name, start_position(robot.joints[name])) for name in independent_joints}
@@ -57,14 +57,14 @@ def link_frames(robot: Robot, positions: Mapping[str, float]) -> dict[str, Place
 
 
 def start_position(joint: Joint) -> float:
-    """Return 0, or the middle of the limits of a joint that cannot be at 0."""
+    """Return 0, or the middle of the limits of a joint whose limits exclude 0."""
     if joint.limit is None or joint.type == "continuous" or joint.limit.lower <= 0.0 <= joint.limit.upper:
         return 0.0
     return (joint.limit.lower + joint.limit.upper) / 2.0
 
 
 def _motion(joint: Joint, position: float) -> Placement:
-    """Return the frame of a joint's child link in the frame of the joint at rest."""
+    """Return the frame of a joint's child link in the frame of the joint at position 0."""
     norm = length(joint.axis)
     if joint.type not in MOVING or not norm > 0.0:
         return _ORIGIN

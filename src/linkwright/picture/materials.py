@@ -18,11 +18,11 @@ from linkwright.geometry.surfaces import box, capsule, cylinder, sphere
 from linkwright.picture.bodies import Color, Surface, Texture
 
 ROUND_SIDES = 72
-"""The number of sides of round shapes, so many that their edges are not seen."""
+"""The number of sides of round shapes, which is high enough that their edges are invisible."""
 DEFAULT_COLOR: Color = (1.0, 0.0, 0.0)
 """The color of a shape without a material, as in RViz."""
 _MAX_TEXTURE = 768
-"""The maximum width and height of textures. Larger ones are reduced."""
+"""The maximum width and height of textures in pixels. Larger textures are reduced."""
 _MISSING_EXTRA = "INR104"
 
 
@@ -42,7 +42,7 @@ class MeshSurface:
 
 
 class SurfaceLibrary:
-    """A reader of mesh files that reads each file once, for one scene or several.
+    """A reader that reads each mesh file once, for one or several scenes.
 
     Attributes:
         colorless: the files that were read without their colors, because a library is not installed, each with the
@@ -104,7 +104,7 @@ def _resolver(path: Path) -> object:
 
 
 def _plain_part(path: Path) -> MeshPart:
-    """Return a mesh file without its colors."""
+    """Return the triangles of a mesh file as one surface without its colors."""
     mesh = read_mesh(path)
     return MeshPart(Triangles(mesh.vertices, np.asarray(mesh.faces, np.int64).reshape(-1)), None)
 
@@ -125,7 +125,7 @@ def shape_surface(shape: SimpleShape, texture: Texture | None = None) -> Surface
 def surface_color(
     file_material: FileMaterial | None, described: Color | None, *, is_textured: bool, is_gray: bool
 ) -> Color:
-    """Return the color of a surface by the rules of RViz.
+    """Return the color of a surface by RViz's rules.
 
     Args:
         file_material: the material in the mesh file, which precedes the description's.
@@ -148,7 +148,7 @@ def _texture(part: MeshPart) -> Texture | None:
 
 
 def decoded_texture(data: bytes) -> Texture | None:
-    """Return the pixels of an image file, or None if it cannot be decoded or Pillow is not installed."""
+    """Return the pixels of an image file, or None if the file cannot be decoded or Pillow is missing."""
     try:
         from PIL import Image
     except ModuleNotFoundError:

@@ -1,6 +1,6 @@
-"""Ambient occlusion: less light in corners and where parts are close to each other.
+"""Ambient occlusion: less light reaches corners and narrow gaps between parts.
 
-For each pixel, points of the image around it are examined. A point that is above the tangent plane keeps light away.
+For each pixel, surrounding points of the image are examined. Points above the pixel's tangent plane block light.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from linkwright.picture.vectors import Floats
 
 _DIRECTIONS = 10
 _RINGS = (0.10, 0.28, 0.56, 1.0)
-"""The distances of the examined points, as parts of the reach."""
+"""The distances of the examined points, relative to the maximum distance."""
 _REACH = 0.085
-"""The reach in relation to the shorter side of the image."""
+"""The maximum distance, relative to the shorter side of the image."""
 _BIAS = 0.12
-"""The sine of the angle above the tangent plane from which a point keeps light away; rounded surfaces stay light."""
+"""The minimum sine of the angle above the tangent plane at which a point blocks light. Round surfaces stay bright."""
 _STRENGTH = 2.6
 _BLUR = 2
-"""The reach in pixels of the blur that hides the pattern of the examined points."""
+"""The radius in pixels of the blur that hides the pattern of the examined points."""
 _STEPS = 4096
 _LEAST = 0.30
-"""The light that remains in the deepest corner."""
+"""The fraction of the light that remains in the deepest corner."""
 
 
 def occlusion_reach(camera: Camera) -> int:
@@ -38,7 +38,7 @@ def _examined_reach(camera: Camera) -> int:
 
 
 def ambient_light(depth: Floats, normals: Floats, is_seen: NDArray[np.bool_], camera: Camera) -> Floats:
-    """Return the light that reaches each pixel, from 0 to 1.
+    """Return the fraction of the light that reaches each pixel, from 0 to 1.
 
     Args:
         depth: the component along the camera's `toward` of the surface at each pixel, in m, shape (rows, columns).
@@ -78,7 +78,7 @@ def _add_blocked(
     shift: tuple[int, int],
     reach: float,
 ) -> None:
-    """Add the light that points of the image at a distance, in pixels to the right and downward, keep away."""
+    """Add the light that is blocked by the points at an offset in pixels, to the right and down."""
     across, down = shift
     rows, columns = depth.shape
     here = (slice(max(0, -down), min(rows, rows - down)), slice(max(0, -across), min(columns, columns - across)))

@@ -1,4 +1,4 @@
-"""Lines around bodies that a reader should notice."""
+"""Outlines that highlight bodies."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from linkwright.picture.vectors import Floats
 _WIDTH = 2.2
 """The width of an outline in pixels."""
 _TINT = np.float32(0.20)
-"""How strongly the body itself takes the color."""
+"""The strength with which the outline's color tints the body."""
 
 
 def draw_outline(light: Floats, alpha: Floats, mask: NDArray[np.bool_], color: Color, per_pixel: int) -> None:
-    """Draw a line around a mask, and tint what is inside.
+    """Draw a line around a mask, and tint the area inside.
 
     Args:
         light: the light of samples multiplied by their opacity, shape (rows, width, 3), which is changed.
@@ -36,7 +36,7 @@ def draw_outline(light: Floats, alpha: Floats, mask: NDArray[np.bool_], color: C
 
 
 def _dilated(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
-    """Return the samples within a distance of a mask."""
+    """Return the samples within a distance from a mask."""
     dilated = np.zeros_like(mask)
     rows = len(mask)
     widened: dict[int, NDArray[np.bool_]] = {}
@@ -53,7 +53,7 @@ def _dilated(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
 
 
 def _widened(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
-    """Return a mask that extends further along the rows on both sides."""
+    """Return a mask extended to both sides along its rows."""
     columns = mask.shape[1]
     totals = np.zeros((len(mask), columns + 2 * reach + 1), np.int32)
     totals[:, reach + 1 : reach + 1 + columns] = np.cumsum(mask, axis=1, dtype=np.int32)

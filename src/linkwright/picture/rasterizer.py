@@ -1,4 +1,4 @@
-"""Rasterization of triangles into samples, by arithmetic on arrays.
+"""Rasterization of triangles into samples with array operations.
 
 The triangles become rows, and the rows become fragments: samples whose center is inside the triangle. The corners are
 snapped to a grid finer than a sample, and an edge that two triangles share is computed in the same way for both, so
@@ -17,18 +17,18 @@ from linkwright.geometry.arrays import Array
 from linkwright.picture.vectors import Floats, Indices, expanded
 
 _SNAP = 256.0
-"""Corners are at multiples of 1 / _SNAP samples."""
+"""Corners are rounded to multiples of 1 / _SNAP samples."""
 _MAX_FRAGMENTS = 1 << 20
-"""The number of fragments to compute at once, approximately."""
+"""The approximate number of fragments to compute at once."""
 _SLIVER = 1e-7
-"""Twice the area, in samples, below which a triangle is taken as parallel to the image."""
+"""Twice the area, in samples, below which a triangle is treated as parallel to the image."""
 _TRIANGLE_BITS = 27
 MAX_TRIANGLES = 1 << _TRIANGLE_BITS
 """The maximum number of triangles in an image."""
 _DEPTH_STEPS = float(1 << 20)
-"""The number of distances in a scene. Surfaces in the same plane must be at the same distance despite rounding."""
+"""The number of distance steps in a scene. Surfaces in one plane must get the same step despite rounding."""
 NOTHING = np.iinfo(np.int64).max
-"""The key of a sample without a triangle."""
+"""The key of a sample at which no triangle is visible."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ class ScreenTriangles:
 
     @classmethod
     def of(cls, x: Array, y: Array, nearness: Array, faces: Indices) -> ScreenTriangles:
-        """Return the triangles with these corners; `faces` has the indices of their corners, shape (n, 3)."""
+        """Return the triangles with the given corners. `faces` has the indices of the corners, shape (n, 3)."""
         tx, ty, tn = x[faces], y[faces], nearness[faces]
         x1, y1, n1 = tx[:, 1] - tx[:, 0], ty[:, 1] - ty[:, 0], tn[:, 1] - tn[:, 0]
         x2, y2, n2 = tx[:, 2] - tx[:, 0], ty[:, 2] - ty[:, 0], tn[:, 2] - tn[:, 0]
@@ -63,7 +63,7 @@ class ScreenTriangles:
 
 @dataclass(frozen=True, slots=True)
 class Fragments:
-    """Samples inside triangles.
+    """Samples that are inside triangles.
 
     Attributes:
         triangles: the index of the triangle of each fragment.
@@ -128,7 +128,7 @@ def _filled(
     downward = triangles.gradients[own, 1] * (rows + 0.5 - triangles.y[own, 0])
     across, corner, base = triangles.gradients[own, 0], triangles.x[own, 0], triangles.nearness[own, 0]
     counts = right - left
-    # Rounding must not carry the nearness of a narrow triangle beyond its corners.
+    # The nearness of a narrow triangle must not exceed that of its corners after rounding.
     low, high = limits[0][items], limits[1][items]
     at_left = np.clip(base + across * (left + 0.5 - corner) + downward, low, high)
     at_right = np.clip(base + across * (right - 0.5 - corner) + downward, low, high)
@@ -151,7 +151,7 @@ def _filled(
 
 
 def _sorted_by_row(x: Array, y: Array) -> tuple[Array, Array]:
-    """Return the corners of each triangle from top to bottom, and from left to right in a row."""
+    """Return the corners of each triangle sorted from top to bottom, and from left to right within a row."""
     xs, ys = [x[:, corner] for corner in range(3)], [y[:, corner] for corner in range(3)]
     for first, second in ((0, 1), (1, 2), (0, 1)):
         swaps = (ys[second] < ys[first]) | ((ys[second] == ys[first]) & (xs[second] < xs[first]))
@@ -164,7 +164,7 @@ def _sorted_by_row(x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def _slopes(x: Array, y: Array) -> tuple[Array, Array, Array]:
-    """Return how much x changes per row along the upper, lower and long edge of each triangle."""
+    """Return the change of x per row along the upper, lower and long edge of each triangle."""
     slopes = []
     for first, second in ((0, 1), (1, 2), (0, 2)):
         height = y[:, second] - y[:, first]
@@ -175,7 +175,7 @@ def _slopes(x: Array, y: Array) -> tuple[Array, Array, Array]:
 def _spans(
     x: Array, y: Array, slopes: tuple[Array, Array, Array], items: Indices, centers: Floats, width: int
 ) -> tuple[Indices, Indices]:
-    """Return the first sample of each row that is inside its triangle, and the one after the last."""
+    """Return the first sample of each row that is inside its triangle, and the sample after the last one."""
     is_upper = centers < y[items, 1]
     corner = np.where(is_upper, 0, 1)
     short = x[items, corner] + (centers - y[items, corner]) * np.where(is_upper, slopes[0][items], slopes[1][items])
@@ -187,7 +187,7 @@ def _spans(
 
 @dataclass(frozen=True, slots=True)
 class SeenTriangles:
-    """The samples of a buffer at which a triangle is seen.
+    """The samples of a buffer at which a triangle is visible.
 
     Attributes:
         window: the rows and columns that contain them.
@@ -207,7 +207,7 @@ class SeenTriangles:
 
 
 class DepthBuffer:
-    """The nearest triangle at each sample.
+    """A buffer with the nearest triangle at each sample.
 
     Each sample has a key: the distance in steps, then the index of the triangle. Of triangles at the same distance, the
     first one is seen, whatever the order in which they were added.
@@ -228,14 +228,14 @@ class DepthBuffer:
         self._steps = _DEPTH_STEPS / max(nearest - farthest, 1e-12)
 
     def empty_copy(self) -> DepthBuffer:
-        """Return a buffer of the same extent without triangles."""
+        """Return an empty buffer of the same extent."""
         copy = DepthBuffer(self.width, self.first_row, self.last_row, self._nearest, self._nearest - 1.0)
         copy._steps = self._steps
         return copy
 
     @property
     def is_empty(self) -> bool:
-        """Whether no triangle is seen."""
+        """Whether the buffer contains no triangle."""
         return bool((self.keys == NOTHING).all())
 
     def add(
@@ -265,7 +265,7 @@ class DepthBuffer:
             np.minimum.at(self.keys, samples, keys)
 
     def seen(self, aligned: int) -> SeenTriangles | None:
-        """Return what the buffer shows, or None if it shows nothing.
+        """Return the visible triangles, or None if there are none.
 
         Args:
             aligned: a number of samples; the extent of the result is a multiple of it.
@@ -292,6 +292,6 @@ class DepthBuffer:
 
 
 def _aligned(indices: Indices, count: int, step: int) -> slice:
-    """Return the range of indices, extended by one step on both sides and to multiples of the step."""
+    """Return a range of indices, extended by one step on both sides and rounded outward to multiples of the step."""
     first, last = int(indices[0]) // step - 1, int(indices[-1]) // step + 2
     return slice(max(first * step, 0), min(last * step, count))

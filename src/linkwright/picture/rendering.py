@@ -1,4 +1,4 @@
-"""Rendering of a scene into the pixels of an image."""
+"""Rendering of a scene to the pixels of an image."""
 
 from __future__ import annotations
 
@@ -23,25 +23,25 @@ from linkwright.picture.vectors import Floats, Indices, along
 Image = NDArray[np.uint8]
 
 _PER_PIXEL, _PER_PIXEL_OF_LARGE = 3, 2
-"""The samples per pixel along a row, in images of usual and of large size."""
+"""The samples per pixel along a row, in images of normal and of large size."""
 _FILTERS = {2: (1, 3, 3, 1), 3: (1, 2, 3, 2, 1)}
-"""The weights of the samples along a row in a pixel, from the last sample of the pixel before, by samples per pixel."""
+"""By samples per pixel: the weights of a pixel's samples along a row, with one sample of each neighbor."""
 _LARGE_IMAGE = 2_500_000
 _BAND_SAMPLES = 6_000_000
-"""The number of samples to render at once, approximately."""
+"""The approximate number of samples to render at once."""
 _LINE_REACH = 8
-"""The pixels around a pixel on which its lines depend."""
+"""The number of pixels around a pixel that affect its lines."""
 _PEELED_LAYERS = 3
-"""The number of transparent surfaces that are drawn one behind the other."""
+"""The maximum number of transparent surfaces drawn behind each other."""
 _GHOST_ALPHA = 0.38
 _EDGE_LIGHT = 0.012
 _UPPER, _LOWER = (0.98, 0.984, 0.988), (0.87, 0.89, 0.914)
-"""The colors of the background at its upper and lower side."""
+"""The colors of the background at the top and at the bottom."""
 
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """The parts of an image besides the bodies.
+    """The parts of an image other than the bodies.
 
     Attributes:
         transparent: whether the background is transparent.
@@ -61,7 +61,7 @@ def render(
     style: Style = Style(),
     camera: Camera | None = None,
 ) -> Image:
-    """Return the image of a scene.
+    """Render the image of a scene.
 
     Args:
         scene: the bodies.
@@ -104,7 +104,7 @@ class _Renderer:
         return _quantized(light, alpha)
 
     def _band(self, first: int, last: int) -> tuple[Floats, Floats]:
-        """Return light multiplied by opacity, and opacity, of the pixels of some rows."""
+        """Return the light of some rows of pixels, multiplied by the opacity, and the opacity."""
         overlap = _LINE_REACH + occlusion_reach(self._camera)
         upper, lower = max(0, first - overlap), min(self._height, last + overlap)
         light, alpha = self._bodies(upper, lower)
@@ -117,7 +117,7 @@ class _Renderer:
     # --- bodies ------------------------------------------------------------------------------------------------
 
     def _bodies(self, upper: int, lower: int) -> tuple[Floats, Floats]:
-        """Return light multiplied by opacity, shape (rows, width, 3), and opacity, shape (rows, width), of pixels."""
+        """Return the bodies' light multiplied by opacity, shape (rows, width, 3), and opacity, shape (rows, width)."""
         mesh, scale = self._mesh, self._per_pixel
         width = self._width * scale
         opaque = DepthBuffer(width, upper * scale, lower * scale, *self._range)
@@ -142,7 +142,7 @@ class _Renderer:
         return _filtered(light, scale), _filtered(alpha, scale)
 
     def _peeled(self, transparent: Indices, opaque: DepthBuffer) -> list[DepthBuffer]:
-        """Return the transparent surfaces before the opaque ones, the nearest first."""
+        """Return the transparent surfaces in front of the opaque ones, the nearest first."""
         layers: list[DepthBuffer] = []
         for _ in range(_PEELED_LAYERS):
             layer = opaque.empty_copy()
@@ -161,7 +161,7 @@ class _Renderer:
         opacity: float | None = None,
         is_first: bool = False,
     ) -> None:
-        """Draw what a buffer shows over the light of samples and their opacity.
+        """Draw the visible triangles of a buffer over the current light and opacity of samples.
 
         Args:
             light: the light of samples multiplied by their opacity, which is changed.
@@ -191,7 +191,7 @@ class _Renderer:
         alpha[seen.mask] = alphas
 
     def _ambient(self, seen: SeenTriangles, normals: Floats) -> Floats:
-        """Return the light that reaches samples, computed in the middle of each pixel."""
+        """Return the fraction of ambient light at samples, computed at the center of each pixel."""
         scale, camera = self._per_pixel, self._camera
         middles = (slice(scale // 2, None, scale), slice(scale // 2, None, scale))
         is_seen = seen.mask[middles]
@@ -215,7 +215,7 @@ class _Renderer:
         return spread
 
     def _lines(self, seen: SeenTriangles, normals: Floats) -> Floats:
-        """Return how dark the lines are at samples."""
+        """Return the darkness of lines at samples."""
         bodies = np.full(seen.mask.shape, -1, np.int32)
         bodies[seen.mask] = self._body_numbers[self._mesh.parts[seen.triangles]]
         distances = np.full(seen.mask.shape, 2.0, np.float32)
@@ -229,7 +229,7 @@ class _Renderer:
     # --- ground ------------------------------------------------------------------------------------------------
 
     def _ground(self, first: int, last: int) -> tuple[Floats, Floats]:
-        """Return light multiplied by opacity, and opacity, of the ground and background in some rows of pixels."""
+        """Return the light of ground and background in some rows, multiplied by the opacity, and the opacity."""
         shape = (last - first, self._width)
         light: Floats
         alpha: Floats
@@ -251,12 +251,12 @@ class _Renderer:
 
 
 def _filtered(samples: Floats, per_pixel: int) -> Floats:
-    """Return pixels from samples, shape (rows, columns, ...): weighted averages that reach into neighboring pixels."""
+    """Return pixels as weighted averages of samples, shape (rows, columns, ...), that overlap neighbors."""
     return _filtered_rows(_filtered_rows(samples.swapaxes(0, 1), per_pixel).swapaxes(0, 1), per_pixel)
 
 
 def _filtered_rows(samples: Floats, per_pixel: int) -> Floats:
-    """Return weighted averages along the first axis, one for each pixel."""
+    """Return weighted averages along the first axis, one per pixel."""
     count = len(samples) // per_pixel
     weights = _FILTERS[per_pixel]
     total = np.zeros((count, *samples.shape[1:]), np.float32)
@@ -275,7 +275,7 @@ def _filtered_rows(samples: Floats, per_pixel: int) -> Floats:
 
 
 def _quantized(light: Floats, alpha: Floats) -> Image:
-    """Return the pixels of light multiplied by opacity."""
+    """Convert light multiplied by opacity to 8-bit pixels."""
     image = np.empty((*alpha.shape, 4), np.uint8)
     light = light / np.maximum(alpha, np.float32(1e-6))[:, :, None]
     image[:, :, :3] = np.rint(np.sqrt(np.clip(light, 0.0, 1.0)) * 255.0)

@@ -16,9 +16,9 @@ from linkwright.picture.scene import Scene
 from linkwright.urdf import Link, Material, Mesh, Robot, Visual
 
 GHOST_COLOR: Color = (0.25, 0.45, 0.85)
-"""The usual color of ghosts."""
+"""The default color of ghosts."""
 OUTLINE_COLOR: Color = (0.93, 0.36, 0.05)
-"""The usual color of outlines."""
+"""The default color of outlines."""
 
 
 def robot_scene(
@@ -32,7 +32,7 @@ def robot_scene(
     library: SurfaceLibrary | None = None,
     root: Placement | None = None,
 ) -> Scene:
-    """Return the scene of a robot's visuals.
+    """Return a scene with a robot's visuals.
 
     Args:
         robot: the robot.
@@ -72,7 +72,7 @@ def _labels(robot: Robot, frames: Mapping[str, Placement]) -> Labels:
 
 
 class _VisualReader:
-    """Converts visuals to surfaces.
+    """A converter of visuals to surfaces.
 
     Attributes:
         problems: the findings about visuals that are drawn incompletely.
@@ -84,7 +84,7 @@ class _VisualReader:
         self._files = files
 
     def surfaces(self, link: Link) -> tuple[Surface, ...]:
-        """Return the surfaces of a link's visuals in the link's frame."""
+        """Convert the visuals of a link to surfaces in the link's frame."""
         surfaces = []
         for visual in link.visuals:
             for surface in self._visual(link, visual):
@@ -96,7 +96,7 @@ class _VisualReader:
         return tuple(surfaces)
 
     def add_out_of_range(self, link: str) -> None:
-        """Add the finding that a link is too large or too far away."""
+        """Add a finding that a link is too large or too far away."""
         message = phrase("link '{link}' is drawn incompletely: a coordinate is out of range", link=link)
         self._add(Diagnostic("PIC101", message, severity=Severity.WARNING))
 

@@ -1,4 +1,4 @@
-"""Scenes: what an image shows, and the cameras for them."""
+"""Scenes of bodies, and the cameras that show them."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ class Scene:
 
     @property
     def points(self) -> Array:
-        """The points that an image must show: all vertices, or the origins of the bodies if nothing is drawn."""
+        """The points that an image must show: all vertices, or the origins of the bodies if there are no vertices."""
         if len(self.mesh.points):
             return self.mesh.points
         return np.array([body.frame.position for body in self.bodies] or [(0.0, 0.0, 0.0)])
 
 
 def camera_for(view: View, size: tuple[int, int], *scenes: Scene) -> Camera:
-    """Return the camera that shows all scenes as large as possible, so that their images can be compared.
+    """Return the camera that shows all scenes at the largest possible common size, so that images are comparable.
 
     Args:
         view: the direction of the camera.

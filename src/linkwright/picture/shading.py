@@ -1,7 +1,7 @@
-"""Light on surfaces: the color of samples from normals, materials and lights.
+"""Shading of surfaces: the color of samples from normals, materials and lights.
 
-Colors are computed in proportion to light, which is taken as the square of the displayed value. That is close to sRGB,
-and unlike its power it has the same bits on every machine.
+Colors are proportional to light, which is defined as the square of the displayed value. The square is close to the
+power in sRGB, and is bit-identical on every machine.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from linkwright.picture.vectors import Floats, Indices, along, unit_vector, unit
 _KEY, _FILL, _SKY, _GROUND, _SHINE, _RIM = 0.74, 0.14, 0.34, 0.14, 0.09, 0.05
 """The strengths of the lights."""
 _WRAP = 0.35
-"""How far the strongest light reaches around a shape, so that no side is black."""
+"""The extent to which the strongest light reaches around a shape, so that no side is black."""
 _BATCH = 1 << 18
 
 
 @dataclass(frozen=True, slots=True)
 class Lights:
-    """The directions to the lights, which move with the camera so that each view is lit alike.
+    """The directions to the lights. They move with the camera, so all views are lit alike.
 
     Attributes:
         key: the direction to the strongest light, from the upper left of the camera.
@@ -40,7 +40,7 @@ class Lights:
 
     @classmethod
     def of(cls, camera: Camera) -> Lights:
-        """Return the lights for a camera."""
+        """Return the lights that belong to a camera."""
 
         def direction(right: float, up: float, toward: float, vertical: float) -> Vector3:
             parts = add_vectors(scaled(camera.right, right), scaled(camera.up, up))
@@ -65,7 +65,7 @@ class Shaded:
 
 
 class Shader:
-    """Computes the colors of samples.
+    """A shader that computes the colors of samples.
 
     Args:
         mesh: the triangles of the scene.
@@ -89,7 +89,7 @@ class Shader:
         self._starts = np.cumsum([0, *(len(surface.points) for surface in mesh.surfaces)])
 
     def shade(self, seen: SeenTriangles) -> Shaded:
-        """Return the colors of the samples at which triangles are seen."""
+        """Return the colors of the samples at which triangles are visible."""
         table, rows = self._table(seen.triangles)
         parts = [
             self._shade(seen.x[part], seen.y[part], seen.triangles[part], table, rows[part])
@@ -102,7 +102,7 @@ class Shader:
         )
 
     def _table(self, triangles: Indices) -> tuple[Floats, Indices]:
-        """Return what samples need of each visible triangle, and the row of each sample's triangle.
+        """Return the table of values of the visible triangles, and the table row of each sample.
 
         The columns are: the corner, the gradients of two barycentric coordinates, a normal and its two differences.
         """
@@ -140,7 +140,7 @@ class Shader:
         lights = self._lights
         facing = np.maximum(along(normals, lights.toward), 0.0)
         key = np.maximum((along(normals, lights.key) + _WRAP) / (1.0 + _WRAP), 0.0)
-        key = (key + key * key) * 0.5  # without a visible border between light and shade
+        key = (key + key * key) * 0.5  # smooths the border between light and shade
         fill = along(normals, lights.fill) * 0.5 + 0.5
         sky = (normals[:, 2] + 1.0) * 0.5
         diffuse = _KEY * key + _FILL * fill * fill + (_GROUND + (_SKY - _GROUND) * sky)
@@ -154,7 +154,7 @@ class Shader:
         return lit
 
     def _albedo(self, triangles: Indices, parts: Indices, second: Floats, third: Floats) -> Floats:
-        """Return the colors of the materials, in proportion to light."""
+        """Return the material colors of samples, proportional to light."""
         albedo = self._light[parts]
         for index, texture in self._textures.items():
             selected = np.flatnonzero(parts == index)
@@ -176,7 +176,7 @@ class Shader:
     def _interpolated(
         self, values: NDArray[np.float64], part: int, triangles: Indices, second: Floats, third: Floats
     ) -> NDArray[np.float64]:
-        """Return values at vertices of a surface, interpolated at samples."""
+        """Return values of a surface's vertices, interpolated at samples."""
         corners = values[self._mesh.faces[triangles] - self._starts[part]]
         first_values = corners[:, 0]
         mixed: NDArray[np.float64] = (

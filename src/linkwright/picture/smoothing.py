@@ -17,18 +17,18 @@ from linkwright.picture.vectors import (
 )
 
 CREASE_COSINE = 0.8
-"""Triangles at a larger angle to each other, about 37 degrees, meet at a crease."""
+"""The cosine of about 37 degrees. Triangles that meet at a larger angle form a crease."""
 _WELDED_STEPS = (1 << 20) - 1
-"""Corners that agree in this fraction of the mesh's extent are one."""
+"""Corners closer than this fraction of the mesh's extent are treated as one vertex."""
 _MAX_NEIGHBORS = 48
-"""The largest number of triangles at a creased corner to compare with each other; beyond, their shading is flat."""
+"""The maximum number of triangles compared at a corner on a crease. With more triangles, the shading is flat."""
 _NORMAL_GRID = 4096.0
-"""Components of normals are multiples of 1 / _NORMAL_GRID."""
+"""Components of normals are rounded to multiples of 1 / _NORMAL_GRID."""
 
 
 @dataclass(frozen=True, slots=True)
 class SmoothMesh:
-    """A mesh whose vertices have one normal each.
+    """A mesh with one normal per vertex.
 
     Attributes:
         sources: the index of each vertex in the mesh that it comes from, shape (n,).
@@ -78,7 +78,7 @@ def smooth_mesh(points: Array, faces: Indices, *, merged: bool = True) -> Smooth
 
 
 def _welded_points(points: Array) -> Indices:
-    """Return a number for each point, which is the same for points at the same place."""
+    """Return a number for each point, equal for points at the same position."""
     low = points.min(axis=0)
     extent = float((points.max(axis=0) - low).max())
     steps = np.rint((points - low) * (_WELDED_STEPS / extent if extent > 0 else 0.0)).astype(np.int64)
@@ -105,7 +105,7 @@ def _corner_weights(points: Array, faces: Indices) -> tuple[Array, Array]:
 
 
 def _creased_normals(rough_corners: Indices, welded: Indices, face_normals: Array, weights: Array) -> Array:
-    """Return a normal for each corner at a crease: the mean of the triangles around it that it meets smoothly."""
+    """Return a normal for each corner at a crease: the mean over the adjacent triangles that it meets smoothly."""
     faces = rough_corners // 3
     places = welded[rough_corners]
     order = np.argsort(places, kind="stable")

@@ -1,4 +1,4 @@
-"""A font of lines for the characters of ASCII.
+"""A stroke font for ASCII characters.
 
 A character outside of ASCII is drawn as an empty box.
 """
@@ -12,7 +12,7 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 
 LINE_HEIGHT = 8.0
-"""The height of a line of text, in units of the font: from the lowest point of small letters to the top of capitals."""
+"""The height of a line of text in units of the font, from the lowest point of small letters to the top of capitals."""
 _GAP = 1.8
 _SPACE = 2.4
 
@@ -118,12 +118,12 @@ _MISSING = "080242480808"
 
 
 def is_drawable(text: str) -> bool:
-    """Return whether the font has all characters of a text."""
+    """Return whether the font contains all characters of a text."""
     return all(character == " " or character in _GLYPHS for character in text)
 
 
 def text_lines(text: str) -> tuple[Array, float]:
-    """Return the lines of a text in one line, and its width.
+    """Return the strokes of a text on a single line, and the width of the text.
 
     Returns:
         The lines from point to point, as x and y to the right and upward in units of the font, shape (n, 2, 2); and the

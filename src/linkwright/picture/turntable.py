@@ -25,7 +25,7 @@ _MAX_THREADS = 4
 def turntable(
     scene: Scene, view: View, size: tuple[int, int], style: Style, count: int, report: Callable[[int], None]
 ) -> list[Image]:
-    """Return the images of a turn around a scene.
+    """Render the images of one full turn around a scene.
 
     Args:
         scene: the bodies.
@@ -43,14 +43,14 @@ def turntable(
             for image in pool.map(lambda camera: render(scene, view, size, style, camera), cameras):
                 images.append(image)
                 report(len(images))
-        except BaseException:  # such as Ctrl-C: do not wait for images that have not begun
+        except BaseException:  # After Ctrl-C, for example, do not wait for images that have not begun.
             pool.shutdown(wait=False, cancel_futures=True)
             raise
     return images
 
 
 def turning_cameras(view: View, size: tuple[int, int], points: Array, count: int) -> Iterator[Camera]:
-    """Yield cameras on a circle around points of shape (n, 3), all at the same distance from the circle's axis."""
+    """Yield cameras on a circle around points of shape (n, 3), all at the same distance from the axis."""
     low, high = points.min(axis=0), points.max(axis=0)
     pivot: Vector3 = (float(low[0] + high[0]) / 2, float(low[1] + high[1]) / 2, float(low[2] + high[2]) / 2)
     first = fitting_camera(view, size, [_swept(points, pivot)])
@@ -63,7 +63,7 @@ def turning_cameras(view: View, size: tuple[int, int], points: Array, count: int
 
 
 def _swept(points: Array, pivot: Vector3) -> Array:
-    """Return points around the volume through which a turn about a vertical axis moves points."""
+    """Return points around the volume that the points sweep when they turn about a vertical axis."""
     x, y, z = points[:, 0] - pivot[0], points[:, 1] - pivot[1], points[:, 2]
     radii = np.sqrt(x * x + y * y)
     low, high = float(z.min()), float(z.max())

@@ -1,4 +1,4 @@
-"""Arithmetic of vectors whose results have the same bits on every machine.
+"""Vector arithmetic with bit-identical results on every machine.
 
 Sums are written out term by term. `numpy.linalg.norm`, `numpy.dot` and `numpy.sum` add in an order that depends on the
 processor and on the version of numpy.
@@ -25,7 +25,7 @@ def dot_products(first: Floats, second: Floats) -> Floats:
 
 
 def along(vectors: Floats, direction: Vector3) -> Floats:
-    """Return the components of vectors, shape (n, 3), along a direction."""
+    """Return the components of vectors, shape (n, 3), along a direction, shape (n,)."""
     x, y, z = direction
     components: Floats = vectors[:, 0] * x + vectors[:, 1] * y + vectors[:, 2] * z
     return components
@@ -53,12 +53,12 @@ def unit_vector(vector: Vector3) -> Vector3:
 
 
 def sums_by_index(indices: Indices, vectors: Floats, count: int) -> Array:
-    """Return the sums of the vectors that have the same index, shape (count, 3), added one after the other."""
+    """Sum the vectors that have the same index, one after the other, shape (count, 3)."""
     return np.stack([np.bincount(indices, vectors[:, axis], count) for axis in range(3)], axis=1)
 
 
 def expanded(counts: Indices) -> tuple[Indices, Indices]:
-    """Return, for items that repeat, the index of each repetition's item and its number among them, from 0."""
+    """Return, for items with repetition counts, the item index of each repetition, and its number from 0."""
     items = np.repeat(np.arange(len(counts)), counts)
     starts = np.cumsum(counts) - counts
     return items, np.arange(len(items)) - starts[items]

@@ -23,7 +23,7 @@ from linkwright.sdf.worlds import Sdf
 _DEFAULT_COLOR = (0.7, 0.7, 0.7, 1.0)
 """The color of shapes without a material: gray, as in Gazebo."""
 _POSE_GRID = float(1 << 36)
-"""Poses are rounded to multiples of 1 / _POSE_GRID, as sines differ between machines in the last bits."""
+"""Poses are rounded to multiples of 1 / _POSE_GRID, because the last bits of sines differ between machines."""
 
 
 def world_scene(sdf: Sdf, finder: ResourceFinder, *, library: SurfaceLibrary | None = None) -> Scene:
@@ -63,7 +63,7 @@ def _placement(pose: Transform) -> Placement:
 
 
 class _WorldReader:
-    """Converts visuals of SDF to surfaces.
+    """A converter of SDF visuals to surfaces.
 
     Attributes:
         problems: the findings about visuals that are drawn incompletely.
@@ -75,13 +75,13 @@ class _WorldReader:
         self._finder = finder
 
     def surfaces(self, placed_link: PlacedLink) -> Iterator[Surface]:
-        """Yield the surfaces of a link's visuals, in the link's frame."""
+        """Yield the surfaces of a link's visuals in the link's frame."""
         link, frames = placed_link.link, placed_link.frames
         for visual in link.visuals:
             try:
                 frame = _placement(frames.in_link(visual.pose, link.name))
             except FrameError:
-                continue  # the check of references reports it
+                continue  # The check of references reports this error.
             for surface in self._visual(placed_link.name, visual):
                 placed = surface.placed(frame)
                 if placed.is_in_range:

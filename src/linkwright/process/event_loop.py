@@ -67,7 +67,7 @@ class _Interruptions:
 
     Each later Ctrl-C raises KeyboardInterrupt.
 
-    The context has no effect if SIGINT has another handler, or outside of the main thread.
+    The context has no effect outside of the main thread, or if SIGINT has another handler.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, task: asyncio.Task[Any]) -> None:

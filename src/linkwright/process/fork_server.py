@@ -1,8 +1,8 @@
-"""A process that has imported modules, and is forked for each requested program.
+"""A server process that imports modules in advance, and forks itself for each requested program.
 
 Run as ``python -m linkwright.process.fork_server FD NAME...``, where FD is a socket of `linkwright.process.forked` and
-each NAME is a module, or ``PACKAGE.*`` for all in a package. The process ends when the socket is closed. Programs that
-run continue.
+each NAME is a module, or ``PACKAGE.*`` for all in a package. The process ends when the socket is closed. Running
+programs continue.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 LARGEST_REQUEST = 1 << 17
-"""The greatest size of a request in bytes. A request is one datagram."""
+"""The maximum size of a request in bytes. A request is one datagram."""
 
 NUMBER = struct.Struct("q")
 """The format of reports: first the process ID, then the exit status. A status alone is that of a program that never
@@ -53,7 +53,7 @@ class _Server:
 
     control: socket.socket
     reports: dict[int, int] = field(default_factory=dict)
-    """The pipe for the reports of each program that runs, by its process ID."""
+    """The report pipe of each running program, by process ID."""
 
     def __post_init__(self) -> None:
         self._wake_reader, self._wake_writer = socket.socketpair()

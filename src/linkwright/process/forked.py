@@ -1,6 +1,6 @@
-"""Python programs that are forked off a process, and need no time for imports.
+"""Python programs that are forked from a server process, so that they start without import time.
 
-That process has already imported the modules that the programs need.
+The server process has already imported the modules that the programs need.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 _MODULE = "linkwright.process.fork_server"
 
 IS_POSSIBLE = sys.platform == "linux"
-"""Whether programs can be forked off. Windows cannot fork, and numpy does not survive a fork on macOS."""
+"""Whether programs can be forked. Windows cannot fork, and numpy does not survive a fork on macOS."""
 
 Streams = tuple[int, int, int]
 """The descriptors of a program's standard input, output and error."""
 
 
 class ForkedProcess:
-    """A program that a `ForkServer` has forked off.
+    """A program that a `ForkServer` has forked.
 
     It has the part of the interface of `subprocess.Popen` that does not depend on pipes.
 
@@ -50,7 +50,7 @@ class ForkedProcess:
         self.args = list(args)
         self._report = report
         self.pid = self._read_number()
-        if self.pid < 0:  # it was killed before it began
+        if self.pid < 0:  # the program was killed before it started
             self._end(self.pid)
 
     def __del__(self) -> None:
@@ -64,7 +64,7 @@ class ForkedProcess:
         return self.returncode
 
     def wait(self, timeout: float | None = None) -> int:
-        """Wait for the program's end, and return the exit status.
+        """Wait until the program ends, and return its exit status.
 
         Raises:
             subprocess.TimeoutExpired: the program did not end within `timeout` seconds.
@@ -107,13 +107,13 @@ def _is_readable(descriptor: int, timeout: float | None) -> bool:
 
 
 Program = Union[ForkedProcess, "subprocess.Popen[bytes]"]
-"""A program, forked off or started."""
+"""A program that was forked or started afresh."""
 
 
 def start_fresh(
     python: Sequence[str], module: str, words: Sequence[str], *, cwd: Path, env: Mapping[str, str], streams: Streams
 ) -> subprocess.Popen[bytes]:
-    """Start ``python -m MODULE WORDS`` in a process and a session of its own."""
+    """Start ``python -m MODULE WORDS`` in a new process and a new session."""
     stdin, stdout, stderr = streams
     return subprocess.Popen(  # noqa: S603 - our own command
         [*python, "-m", module, *words],
@@ -129,7 +129,7 @@ def start_fresh(
 class ForkServer:
     """A process from which programs are forked off, started with the first program.
 
-    A program has an environment, folder, standard streams, session, signals and exit status of its own. It has the
+    Each program has its own environment, folder, standard streams, session, signals and exit status. It shares the
     modules, the search path and the hash seed of the server.
 
     Args:
@@ -160,14 +160,14 @@ class ForkServer:
         self.close()
 
     def prepare(self) -> None:
-        """Start the server unless it is running, so that its imports are done early."""
+        """Start the server unless it is running, so that its imports finish early."""
         with self._lock:
             if IS_POSSIBLE:
                 self._running_control()
 
     @property
     def is_ready(self) -> bool:
-        """Whether the server has imported the modules, so that a program starts at once."""
+        """Whether the server has imported the modules, so that programs start immediately."""
         with self._lock:
             return self._control is not None and _is_readable(self._control.fileno(), 0.0)
 
@@ -176,7 +176,8 @@ class ForkServer:
     ) -> Program:
         """Start ``python -m MODULE WORDS``, from any thread.
 
-        The program is forked off where the system can do that. Otherwise, or if the server fails, it starts afresh.
+        The program is forked if the system supports that. Otherwise, or if the server fails, the program is started in
+        a new process.
         """
         if IS_POSSIBLE:
             with contextlib.suppress(OSError):
@@ -206,7 +207,7 @@ class ForkServer:
             socket.send_fds(self._running_control(), [data], list(descriptors))
 
     def _running_control(self) -> socket.socket:
-        """Return the socket of the server, which is started if it does not run."""
+        """Return the socket of the server, and start the server if it is not running."""
         if self._process is not None and self._process.poll() is not None:
             self._end()
         return self._control or self._begin()
@@ -216,7 +217,7 @@ class ForkServer:
         with far:
             self._process = subprocess.Popen(  # noqa: S603 - our own command
                 [*self._python, "-m", _MODULE, str(far.fileno()), *self._modules],
-                cwd="/",  # whose files hide no modules
+                cwd="/",  # a folder whose files hide no modules
                 env={**os.environ, **self._variables},
                 pass_fds=[far.fileno()],
                 stdin=subprocess.DEVNULL,
@@ -228,13 +229,13 @@ class ForkServer:
         return control
 
     def close(self) -> None:
-        """End the server; running programs continue, but their ends are not reported."""
+        """Stop the server. Running programs continue, but their exit statuses are no longer reported."""
         with self._lock:
             self._end()
 
     def _end(self) -> None:
         if self._control is not None and self._process is not None:
             self._control.close()
-            self._process.terminate()  # it may still import
+            self._process.terminate()  # The server may still be importing.
             self._process.wait()
             self._control = self._process = None

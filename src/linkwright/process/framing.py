@@ -13,7 +13,7 @@ _MAX_HEADER_LINES = 10
 
 
 def framed(content: bytes) -> bytes:
-    """Return a message with its header."""
+    """Return a message preceded by its header."""
     return b"Content-Length: %d\r\n\r\n%b" % (len(content), content)
 
 

@@ -1,4 +1,4 @@
-"""A clock for timeouts that does not count the time in which the machine was busy."""
+"""A clock for timeouts that excludes the time in which the machine was busy."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from collections.abc import Iterator
 
 _NANOSECOND = 1e-9
 _MOST_DELAY = 10.0
-"""The clock is at least this part as fast as one on the wall."""
+"""The clock is slower than real time by at most this factor."""
 
 
 class PatientClock:
     """A clock that stops while a process and its descendants wait for a processor.
 
-    On a busy machine it is slower than a clock on the wall. Where the system does not tell how long processes wait
-    (Linux does, in schedstat), it is the same. Call `read` every few milliseconds to seconds.
+    On a busy machine, the clock is slower than real time. If the system does not report waiting times (Linux reports
+    them in schedstat), the clock follows real time. Call `read` every few milliseconds to seconds.
     """
 
     def __init__(self) -> None:
@@ -25,7 +25,7 @@ class PatientClock:
         self._usages = dict(_usages_below(os.getpid()))
 
     def read(self) -> float:
-        """Return the seconds since the start."""
+        """Return the seconds on this clock since its creation."""
         now = time.monotonic()
         usages = dict(_usages_below(os.getpid()))
         running = waiting = 0.0
@@ -33,7 +33,7 @@ class PatientClock:
             run_before, wait_before = self._usages.get(thread, (0.0, 0.0))
             running += run - run_before
             waiting += wait - wait_before
-        if waiting > 0.0:  # of threads that run after each other, the sum; of those at the same time, the share
+        if waiting > 0.0:  # the sum for sequential threads, the share for parallel ones
             self._hindered += min(now - self._last, running + waiting) * waiting / (running + waiting)
         self._usages, self._last = usages, now
         elapsed = now - self._start
@@ -53,7 +53,7 @@ def _usages_below(root: int) -> Iterator[tuple[str, tuple[float, float]]]:
                 with contextlib.suppress(OSError, ValueError):
                     run, wait, _ = map(int, _read(f"{folder}/{thread}/schedstat").split())
                     yield thread, (run * _NANOSECOND, wait * _NANOSECOND)
-                with contextlib.suppress(OSError):  # not all kernels have this
+                with contextlib.suppress(OSError):  # not supported by all kernels
                     waiting += map(int, _read(f"{folder}/{thread}/children").split())
 
 

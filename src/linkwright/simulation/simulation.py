@@ -287,7 +287,7 @@ class Simulation:
     def reset(self) -> None:
         """Restore the initial state, and restart time at 0."""
         self.refresh()
-        self._solving.restart()  # first: MuJoCo places static bodies only if sleep is enabled
+        self._solving.restart()  # Enable sleep first: MuJoCo places static bodies only if sleep is enabled.
         self._mujoco.mj_resetData(self.model, self.data)
         self._stepper.expect_overlaps()
         self._pushes.clear()

@@ -1,4 +1,4 @@
-"""The paths of robots in the runs of a sweep: recorded ones, and those that a scenario returns."""
+"""The paths of robots in the runs of a sweep: recorded paths, and paths that a scenario returns."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from linkwright.testing.paths import MAX_POINTS, Point
 
 ROBOT = "robot"
-"""The name of a recorded path. The second one of a run is called ``robot 2``."""
+"""The name of a recorded path. The second path of a run is called ``robot 2``."""
 
 TimedPath = Sequence[Point]
 """The points of a path in the order of their times."""
@@ -35,7 +35,7 @@ def as_path(value: object) -> TimedPath | None:
 
 
 def recorded(points: Sequence[TimedPath]) -> dict[str, TimedPath]:
-    """Return the paths that were recorded in a run, by name."""
+    """Return the paths that were recorded during a run, by name."""
     moving = [path for path in points if path]
     return {ROBOT if number == 1 else f"{ROBOT} {number}": path for number, path in enumerate(moving, start=1)}
 

@@ -10,7 +10,7 @@ from linkwright.sweep.plan import Run
 from linkwright.sweep.running import Outcome
 
 _DIGITS = 6
-"""The digits after the decimal point of times in s and positions in m."""
+"""The number of decimal places of times in s and positions in m."""
 
 
 def paths_text(runs: Sequence[Run], outcomes: Mapping[int, Outcome]) -> str:

@@ -1,4 +1,4 @@
-"""The paths of robots: where they were in simulated worlds, recorded while a function runs."""
+"""The paths of robots in simulated worlds, recorded while a function runs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _PERIOD_NS = NANOSECONDS_PER_SECOND // 20
 MAX_POINTS = 2_000
-"""The number of points of a path. Of a longer one, every second point is dropped, and the period is doubled."""
+"""The maximum number of points. For a longer path, every second point is dropped and the period is doubled."""
 
 Point = tuple[float, float, float]
 """A point of a path: the time since its start in s, and the position x and y in m."""
@@ -72,7 +72,7 @@ def recorded_paths() -> Iterator[list[RobotPath]]:
 
 
 def new_path() -> RobotPath | None:
-    """Return a new path for a robot, or None if no paths are recorded."""
+    """Return a new path for a robot, or None if no paths are being recorded."""
     paths = _recorded_paths.get()
     if paths is None:
         return None

@@ -97,7 +97,7 @@ def _compare(bag: BagReader, path: Path, values: dict[str, str]) -> int:
 
 def _compare_hashes(recorded: str, present: str) -> int:
     if recorded == present:
-        print(localized(phrase("the description is that of the recording")))
+        print(localized(phrase("the description is the same as in the recording")))
         return SAME
     message = phrase(
         "the description differs from that of the recording, which contains only its hash: SHA-256 {recorded}... -> "

@@ -46,7 +46,9 @@ def configure_grade(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--ray", metavar="ADDRESS", help="run on a Ray cluster: auto, local, HOST:PORT or ray://HOST:PORT"
     )
-    parser.add_argument("--csv", metavar="FILE", type=Path, help="write a line for each student, as gradebooks import")
+    parser.add_argument(
+        "--csv", metavar="FILE", type=Path, help="write one line for each student, in a format that gradebooks import"
+    )
     parser.add_argument("--nbgrader", metavar="FILE", type=Path, help="write the columns of nbgrader's export as CSV")
     parser.add_argument("--json", metavar="FILE", type=Path, help="write all results as JSON, in all languages")
     parser.add_argument("--html", metavar="FILE", type=Path, help="write a page with all results, in all languages")

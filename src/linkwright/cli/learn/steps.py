@@ -120,7 +120,7 @@ def run_check(arguments: argparse.Namespace) -> int:
     if count := len(classroom.steps_to_catch_up(step)):
         command = f"linkwright learn catch-up {step.address}"
         message = phrase(
-            "steps before this one that are not done: {count}; `{command}` takes them over from the course",
+            "unfinished steps before this one: {count}; `{command}` takes them over from the course",
             count=count,
             command=command,
         )

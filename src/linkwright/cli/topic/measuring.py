@@ -35,7 +35,10 @@ def configure_hz(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``topic hz``."""
     add_session_arguments(parser)
     parser.add_argument(
-        "topic_name", metavar="TOPIC", nargs="+", help="the topics, such as /chatter; several topics give a table"
+        "topic_name",
+        metavar="TOPIC",
+        nargs="+",
+        help="the topics, such as /chatter; several topics are printed as a table",
     )
     _add_window_argument(parser, _RATE_WINDOW)
     parser.add_argument(

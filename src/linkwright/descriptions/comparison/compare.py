@@ -33,7 +33,7 @@ from linkwright.xmltree import Element
 _Pair = tuple[Element | None, Element | None]
 """The elements in the old and in the new description, each None if there is none."""
 _FAR = 1e-3
-"""The distance in m, or as a fraction of the distance from the parent, from which two origins certainly differ."""
+"""The distance above which two origins certainly differ, in m or as a fraction of the distance from the parent."""
 _MESH, _SCALE = "mesh ", " scale"
 """The words around the address of a mesh in the text of a geometry."""
 _Part = TypeVar("_Part", Link, Joint)
@@ -135,7 +135,7 @@ class _Comparer:
 
     @cached_property
     def _by_contents(self) -> _Comparer:
-        """The comparison in which a mesh under another name is equal, if its file has the same contents."""
+        """The comparison in which two meshes are equal if their files have the same contents, whatever their names."""
         return _Comparer(self.old.by_contents(), self.new.by_contents())
 
     def _is_same_link(self, old: Link, new: Link) -> bool:
@@ -147,7 +147,7 @@ class _Comparer:
 
     def _is_same_joint(self, old: Joint, new: Joint) -> bool:
         if old.type != new.type or dist(old.origin.xyz, new.origin.xyz) > _FAR * (1.0 + hypot(*old.origin.xyz)):
-            return False  # without the facts of both, of which a link with many joints has many pairs
+            return False  # Skip the facts of both joints, because a link with many joints has many pairs.
         return all(
             difference.property in ("parent", "child", "mimic joint")
             for difference in self._joint_property_differences(old, new)
@@ -197,7 +197,7 @@ class _Comparer:
         yield from comparison.child_differences(old, new)
 
     def _follows_a_name(self, difference: Difference) -> bool:
-        """Return whether a value differs only because the link or joint that it names was renamed."""
+        """Return whether a value differs only because it names a renamed link or joint."""
         if difference.property in ("parent", "child"):
             return self.matches.links.get(difference.old or "") == difference.new
         return difference.property == "mimic joint" and self.matches.joints.get(difference.old or "") == difference.new

@@ -90,7 +90,7 @@ class ElementComparison:
     def _renamed(
         self, old: Sequence[Element], new: Sequence[Element], old_rest: _Rest, new_rest: _Rest
     ) -> Iterator[tuple[str, Element, Element]]:
-        """Take the elements that were renamed from the rest, and yield them with their new keys."""
+        """Remove the renamed elements from the remaining ones, and yield them with their new keys."""
         old_lone, new_lone = (
             {id(items[0][1]): base for base, items in rest.items() if base not in others and len(items) == 1}
             for rest, others in ((old_rest, new_rest), (new_rest, old_rest))

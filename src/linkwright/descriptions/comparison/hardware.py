@@ -1,4 +1,4 @@
-"""The ``<ros2_control>`` elements of two descriptions: renamed ones, and the interfaces that they offer."""
+"""The ``<ros2_control>`` elements of two descriptions: their renames, and the interfaces that they offer."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from linkwright.xmltree import Element
 
 ROS2_CONTROL = "ros2_control"
 _MIN_COMMON = 0.5
-"""The share of equal interfaces from which hardware with another name is a renamed one."""
+"""The minimum share of equal interfaces for which hardware with another name counts as renamed."""
 
 
 def renamed_hardware(old: Sequence[Element], new: Sequence[Element]) -> Iterator[tuple[Element, Element]]:
-    """Yield the pairs of ``<ros2_control>`` elements that have other names and offer the same interfaces."""
+    """Yield the pairs of ``<ros2_control>`` elements with different names that offer the same interfaces."""
     old_names, new_names = ({_name(element) for element in _hardware(elements)} for elements in (old, new))
     free = [element for element in _hardware(new) if _name(element) not in old_names]
     for element in _hardware(old):
@@ -25,9 +25,9 @@ def renamed_hardware(old: Sequence[Element], new: Sequence[Element]) -> Iterator
 
 
 def interfaces_of(elements: Iterable[Element]) -> set[tuple[str, str]]:
-    """Return the interfaces that hardware offers: the name of the joint, sensor or GPIO, and that of the interface.
+    """Return the interfaces of hardware as pairs: the name of the joint, sensor or GPIO, and the interface name.
 
-    A state interface has the name ``state NAME``, because controllers claim commands and states apart.
+    A state interface has the name ``state NAME``, because controllers claim commands and states separately.
     """
     return {
         (part.attributes.get("name", ""), f"{'state ' * (each.tag == 'state_interface')}{each.attributes.get('name')}")
@@ -47,7 +47,7 @@ def _name(element: Element) -> str:
 
 
 def _similarity(old: Element, new: Element) -> float:
-    """Return the share of equal interfaces of two elements."""
+    """Return the share of interfaces that two elements have in common."""
     old_interfaces, new_interfaces = interfaces_of([old]), interfaces_of([new])
     total = len(old_interfaces | new_interfaces)
     return len(old_interfaces & new_interfaces) / total if total else 0.0

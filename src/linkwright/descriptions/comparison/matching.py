@@ -12,7 +12,7 @@ from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf import Joint, Link, Robot, children_of
 
 WORLD = "world"
-"""The link that Gazebo fixes to the world. A link of another name is another one."""
+"""The link that Gazebo fixes to the world. It matches only a link with the same name."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Texts in which equal numbers are written alike."""
+"""Normalization of texts in which equal numbers may be written differently."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _NUMBER = lazy_pattern(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
 def comparable_text(text: str) -> str:
-    """Return a text with single spaces and equal numbers written alike: ``1.0`` as ``1``, ``-0`` as ``0``."""
+    """Return a text with single spaces and normalized numbers: ``1.0`` becomes ``1``, and ``-0`` becomes ``0``."""
     return " ".join(map(_comparable_word, text.split()))
 
 

@@ -1,4 +1,4 @@
-"""The matching of elements whose names changed, by their contents."""
+"""The matching of renamed elements by their contents."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from linkwright.descriptions.comparison.numbers import comparable_text
 from linkwright.xmltree import Element
 
 _RENAMED = frozenset({"world", "model", "link", "joint", "sensor", "frame", "plugin"})
-"""The tags of elements whose names other programs use."""
+"""The tags of elements whose names are used by other programs."""
 _MIN_SIMILARITY = 0.5
 _MAX_PAIRS = 2500
-"""Descriptions in which more pairs are possible have other contents rather than other names."""
+"""The maximum number of possible pairs. Descriptions with more pairs differ in their contents rather than in names."""
 
 
 def renamed_elements(
     old: Sequence[Element], new: Sequence[Element], old_lone: Sequence[Element], new_lone: Sequence[Element]
 ) -> Iterator[tuple[Element, Element]]:
-    """Yield the pairs of elements that have other names but the same tag and similar contents.
+    """Yield the pairs of elements with different names, but the same tag and similar contents.
 
     A world, or a model outside of worlds, also matches if it is the only one in both descriptions.
 
@@ -46,7 +46,7 @@ def renamed_elements(
 
 
 def _similarity(old: Element, new: Element) -> float:
-    """Return how much of the contents is equal, from 0 to 1."""
+    """Return the fraction of the contents that is equal, from 0 to 1."""
     if old.tag == "plugin" and old.attributes.get("filename") != new.attributes.get("filename"):
         return 0.0
     first, second = Counter(_contents(old, "")), Counter(_contents(new, ""))
@@ -55,7 +55,7 @@ def _similarity(old: Element, new: Element) -> float:
 
 
 def _contents(element: Element, path: str) -> Iterator[str]:
-    """Yield the texts and attributes below an element, each with its place."""
+    """Yield the texts and attributes below an element, each with its position."""
     for child in element.elements():
         place = f"{path}/{child.tag}"
         yield f"{place}={comparable_text(child.text())}"

@@ -1,9 +1,9 @@
-"""Links and joints with new names that have changed in other ways as well.
+"""Links and joints that were renamed and have other changes, too.
 
-Several facts about an old and a new link speak for a rename: the same shapes, the same parent, the same children, the
-same joint, the same inertial, names of the same words. Each fact has a weight. A pair is accepted if its sum is high
-enough, and higher than that of any other pair with one of the two links. A missed rename costs two lines in a report;
-a false one hides that a part is gone.
+Several facts about an old and a new link indicate a rename: the same shapes, the same parent, the same children, the
+same joint, the same inertial, or names with the same words. Each fact has a weight. A pair is accepted if its sum is
+high enough, and higher than that of any other pair with one of the two links. A missed rename costs two lines in a
+report, but a false rename hides that a part was removed.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ Key = tuple[str, Hashable]
 _WEIGHTS = {"mesh": 2, "words": 3, "joint": 3, "children": 3}
 _SHAPES, _INERTIAL, _PARENT = 1, 1, 1
 _ENOUGH = 4
-"""The sum from which two links are the same one. No fact alone is enough."""
+"""The minimum sum of weights for a rename. No single fact is sufficient."""
 _MAX_CANDIDATES = 40
-"""The number of links with the same fact, such as the same mesh, from which it does not distinguish them."""
+"""The number of links with the same fact, such as the same mesh, above which the fact is ignored."""
 _MAX_PASSES = 20
 _WORD = lazy_pattern(r"[a-z]+|\d+")
 _CAMEL = lazy_pattern(r"(?<=[a-z0-9])(?=[A-Z])")
 _GENERAL_WORDS = frozenset({"frame", "joint", "link"})
 _SIDES = frozenset({"left", "right", "front", "rear", "back", "upper", "lower", "top", "bottom", "inner", "outer"})
 _CORNERS = frozenset({"fl", "fr", "rl", "rr", "bl", "br", "lf", "rf", "lr", "lh", "rh"})
-"""Words that tell apart equal parts. Numbers and single letters do, too."""
+"""Words that distinguish equal parts. Numbers and single letters also distinguish them."""
 
 
 @dataclass(slots=True)
 class _Side:
-    """The links of one of the robots that have no match yet, and what surrounds them.
+    """The unmatched links of one robot, with their neighbors and properties.
 
     Attributes:
         robot: the robot.
@@ -62,7 +62,7 @@ class _Side:
         return cls(robot, dict.fromkeys(names), parent_joints(robot), children_of(robot), shapes)
 
     def own_keys(self, name: str) -> Iterator[Key]:
-        """Yield the distinctive facts of a link itself: its meshes and the words of its name."""
+        """Yield the distinctive facts of a link: its meshes and the words of its name."""
         link = self.robot.links[name]
         shapes: tuple[Visual | Collision, ...] = (*link.visuals, *link.collisions)
         if any(isinstance(shape.geometry, Mesh) for shape in shapes):
@@ -73,7 +73,7 @@ class _Side:
 
 
 class RenameSearch:
-    """The search for links and joints with new names, which adds to the matches.
+    """The search for renamed links and joints, which adds its results to the matches.
 
     Args:
         old: the old robot.
@@ -101,7 +101,7 @@ class RenameSearch:
         self._same_inertial = same_inertial
 
     def run(self) -> None:
-        """Match links until no more are found, then the joints between matched links."""
+        """Match links until no more matches are found, and then the joints between matched links."""
         for _ in range(_MAX_PASSES):
             found = list(self._unambiguous_pairs()) if self._old.names and self._new.names else []
             for old_name, new_name in found:
@@ -112,7 +112,7 @@ class RenameSearch:
         self._match_joints()
 
     def _match_joints(self) -> None:
-        """Match the joints of the same type with new names that connect the same two links."""
+        """Match the renamed joints of the same type that connect the same two links."""
         matched = set(self._joints.values())
         for joint in self._old.robot.joints.values():
             if joint.name in self._joints or self._old.parents.get(joint.child) is not joint:
@@ -139,7 +139,7 @@ class RenameSearch:
                 yield old_name, new_name
 
     def _candidates(self) -> Mapping[tuple[str, str], None]:
-        """Return the pairs of links that have a fact of more weight in common."""
+        """Return the pairs of links that share a fact of high weight."""
         old_names = _by_key(self._old.names, self._old_keys)
         new_names = _by_key(self._new.names, self._new_keys)
         return {
@@ -169,7 +169,7 @@ class RenameSearch:
             yield "children", children
 
     def _sum(self, old_name: str, new_name: str) -> int:
-        """Return the sum of the weights of the facts for a rename; 0 if a fact speaks against it."""
+        """Return the sum of the weights of the facts for a rename, or 0 if a fact excludes it."""
         common = set(self._old_keys(old_name)) & set(self._new_keys(new_name))
         kinds = {kind for kind, _ in common}
         old_joint, new_joint = self._old.parents.get(old_name), self._new.parents.get(new_name)
@@ -202,7 +202,7 @@ def _by_key(names: Iterable[str], keys_of: Callable[[str], Iterator[Key]]) -> di
 
 
 def _shape_key(link: Link, normalize: Callable[[str], str]) -> Hashable:
-    """Return a key that is equal for links with the same shapes, wherever they are and whatever their color."""
+    """Return a key that is equal for links with the same shapes, regardless of their poses and colors."""
     blocks: list[Block] = [*visual_blocks(link), *collision_blocks(link)]
     facts = ((block.name, block.facts["geometry"]) for block in blocks)
     return tuple(
@@ -211,7 +211,7 @@ def _shape_key(link: Link, normalize: Callable[[str], str]) -> Hashable:
 
 
 def _are_different_sides(old_name: str, new_name: str) -> bool:
-    """Return whether the numbers or the words for sides in two names differ, so that they name two equal parts."""
+    """Return whether two names differ in their numbers or side words, so that they denote two similar parts."""
     old_sides, new_sides = (
         sorted(word for word in _words(name) if word in _SIDES | _CORNERS or word.isdigit() or len(word) == 1)
         for name in (old_name, new_name)
@@ -220,6 +220,6 @@ def _are_different_sides(old_name: str, new_name: str) -> bool:
 
 
 def _words(name: str) -> list[str]:
-    """Return the words and numbers of a name in lower case, in alphabetical order, without general ones."""
+    """Return the words and numbers of a name in lower case, sorted, without general words."""
     parts = (part for word in _CAMEL.sub("_", name).lower().split("_") for part in _WORD.findall(word))
     return sorted(part for part in parts if part not in _GENERAL_WORDS)

@@ -61,7 +61,7 @@ def refusal(text_range: TextRange, index: int | None, attempts: Sequence[Attempt
             "text for all of these parts"
         )
         if index is None:
-            message = phrase("an <{tag}> written here would also change {parts}", tag=tag, parts=names_text)
+            message = phrase("adding <{tag}> here would also change {parts}", tag=tag, parts=names_text)
         else:
             message = phrase(
                 "another number in '{expression}' would also change {parts}", expression=text, parts=names_text

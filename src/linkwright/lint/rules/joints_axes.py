@@ -68,7 +68,7 @@ class AxisZero(Rule):
                     phrase("the axis of {type} joint '{name}' is 0 0 0", type=joint.type, name=joint.name),
                     axis,
                     "xyz",
-                    hint=phrase("give the direction it moves in, such as 0 0 1"),
+                    hint=phrase("give the direction in which the joint moves, such as 0 0 1"),
                 )
 
 

@@ -162,7 +162,7 @@ class FootprintBelowBase(Rule):
             is_inverted = joint.child.endswith("base_footprint") and joint.parent.endswith("base_link")
             if is_inverted and joint.element is not None:
                 message = phrase(
-                    "'{child}' is a child of '{parent}'; in REP 120 it is the other way round",
+                    "'{child}' is a child of '{parent}'; in REP 120, '{parent}' is a child of '{child}'",
                     child=joint.child,
                     parent=joint.parent,
                 )

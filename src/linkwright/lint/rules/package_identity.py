@@ -95,7 +95,7 @@ class PackageNameDiffers(PackageRule):
 
 
 class PackageName(ManifestRule):
-    """The name of a package is one that colcon rejects, or does not follow REP 144.
+    """A package name that colcon rejects or that does not follow REP 144.
 
     ## Why
 
@@ -173,7 +173,7 @@ class FolderNameDiffers(PackageRule):
 
 
 class MaintainerEmail(ManifestRule):
-    """A maintainer's e-mail address is one that colcon rejects.
+    """A maintainer's e-mail address that colcon rejects.
 
     ## Why
 

@@ -219,7 +219,7 @@ class UnusedInclude(XacroRule):
                         phrase("nothing in the included file '{name}' is used", name=Path(path).name),
                         include.element,
                         "filename",
-                        hint=phrase("use what it defines, or remove the include"),
+                        hint=phrase("use a macro or property of the included file, or remove the include"),
                         fix=remove_element(include.element, safe=False),
                     )
 

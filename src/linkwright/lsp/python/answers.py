@@ -1,4 +1,4 @@
-"""Combines the answers of several language servers to one request."""
+"""Combines the responses of several language servers to one request."""
 
 from __future__ import annotations
 
@@ -27,21 +27,22 @@ CAPABILITIES: Mapping[str, str] = {
     "textDocument/formatting": "documentFormattingProvider",
     "textDocument/rangeFormatting": "documentRangeFormattingProvider",
 }
-"""The requests that several servers are asked, with the capability of the servers that answer."""
+"""The requests that are sent to several servers, each with the capability of the servers that respond to it."""
 
 _SERVER = "linkwrightServer"
 _DATA = "data"
 
 
 def is_enough(method: str, answer: Any) -> bool:
-    """Return whether the answer of Linkwright's own server makes the others' unnecessary."""
+    """Return whether the response of Linkwright's own server makes the other responses unnecessary."""
     return method not in (COMPLETION, CODE_ACTION) and not _is_empty(answer)
 
 
 def combined(method: str, answers: Sequence[tuple[str, Any]], text: OpenText, parameters: Mapping[str, Any]) -> Any:
-    """Return the answer to a request.
+    """Combine the responses of several servers to a request.
 
-    Completions and code actions are those of all servers. Other answers are those of the first server that has one.
+    Completions and code actions of all servers are combined. For other requests, the first response that is not empty
+    is used.
 
     Args:
         method: the method of the request.
@@ -58,7 +59,7 @@ def combined(method: str, answers: Sequence[tuple[str, Any]], text: OpenText, pa
 
 
 def server_of_action(action: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | None:
-    """Return the server of a code action with its own action, or None for Linkwright's server."""
+    """Return the server of a code action and the original action, or None for Linkwright's own server."""
     data = action.get(_DATA)
     if not isinstance(data, dict) or _SERVER not in data:
         return None
@@ -67,7 +68,7 @@ def server_of_action(action: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | 
 
 
 def marked_action(server: str, action: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a code action that names its server."""
+    """Return a code action with the name of its server."""
     return {**action, _DATA: {_SERVER: server, _DATA: action.get(_DATA)}}
 
 
@@ -82,11 +83,11 @@ def _actions(server: str, actions: Sequence[Mapping[str, Any]]) -> list[Mapping[
 
 
 def _completions(found: Sequence[Any], text: OpenText, parameters: Mapping[str, Any]) -> Any:
-    """Return the completions of all servers, or of the first with a range of its own.
+    """Combine the completions of all servers, unless the first server specifies a range.
 
-    Such a server replaces more or less than the word at the cursor.
+    Such a server replaces more or less than the word at the cursor, and its completions are returned alone.
 
-    Editors take the range of the first item for that of all items.
+    Editors apply the range of the first item to all items.
     """
     if len(found) < 2:
         return found[0] if found else None
@@ -114,7 +115,7 @@ def _edited_range(answer: Mapping[str, Any]) -> Mapping[str, Any] | None:
 
 
 def _with_defaults(answer: Mapping[str, Any]) -> Callable[[Mapping[str, Any]], dict[str, Any]]:
-    """Return a function that adds the defaults of a list to an item."""
+    """Return a function that adds the defaults of a completion list to an item."""
     defaults = dict(answer.get("itemDefaults", {}))
     edit_range = defaults.pop("editRange", None)
 

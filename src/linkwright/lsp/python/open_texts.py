@@ -1,4 +1,4 @@
-"""The Python files that an editor has open, with the findings of each server."""
+"""The Python files that are open in an editor, with the findings of each server."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Finding = dict[str, Any]
 
 
 class OpenText:
-    """A Python file that an editor has open.
+    """A Python file that is open in an editor.
 
     Servers publish their findings at different times, but an editor shows only those that were published last. So the
     findings of each server are kept, and they move with the text until the server has checked it again.
@@ -39,11 +39,11 @@ class OpenText:
 
     @property
     def text(self) -> str:
-        """The text, with the changes that are not saved."""
+        """The text, including unsaved changes."""
         return self._positions.text
 
     def change(self, version: int, changes: Iterable[Mapping[str, Any]]) -> None:
-        """Apply changes of the editor, and move the findings with the text.
+        """Apply changes from the editor, and move the findings with the text.
 
         Args:
             version: the version of the new text.
@@ -66,7 +66,7 @@ class OpenText:
             finding["range"] = as_range(self._positions, start, end)
 
     def set_findings(self, server: str, findings: Sequence[Finding]) -> None:
-        """Replace the findings of a server about the present text."""
+        """Replace the findings of a server about the current text."""
         self._findings[server] = [dict(finding) for finding in findings]
 
     def findings(self) -> list[Finding]:
@@ -78,7 +78,7 @@ class OpenText:
         return self._findings.get(server, [])
 
     def word_before(self, position: Mapping[str, int]) -> str:
-        """Return the part of a name that is written before a position."""
+        """Return the part of a name before a position."""
         offset = self._positions.offset(_position(position))
         start = offset
         while start > 0 and (self.text[start - 1].isalnum() or self.text[start - 1] == "_"):
@@ -92,7 +92,7 @@ class OpenText:
 
 
 class _Replacement:
-    """The smallest range of a text that another text replaces."""
+    """The smallest range of a text that was replaced, and the length of the replacement."""
 
     def __init__(self, before: str, after: str) -> None:
         shortest = min(len(before), len(after))
@@ -103,7 +103,7 @@ class _Replacement:
         self._growth = len(after) - len(before)
 
     def moved(self, start: int, end: int) -> tuple[int, int]:
-        """Return the position of a range in the new text.
+        """Return the range in the new text that corresponds to a range of the old text.
 
         Text that is inserted at one of its ends remains outside the range.
         """

@@ -1,4 +1,4 @@
-"""The language servers for Python files that are installed, and the modules that they find."""
+"""The installed language servers for Python files, and the environment in which they find modules."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def installed_programs() -> list[Program]:
 
     These are ``ty`` for types and completion, and ``ruff`` for rules and formatting.
 
-    Programs beside the interpreter precede those on the search path.
+    Programs in the interpreter's folder precede programs on the search path.
     """
     found = ((name, _path_of(name)) for name in ("ty", "ruff"))
     return [Program(name, (str(path), "server")) for name, path in found if path is not None]
@@ -66,7 +66,7 @@ def program_environment(folders: Sequence[Path], workspace_stubs: Path) -> dict[
     is_own = interpreter == sys.executable
     if not _has_ros(entries):
         entries += [str(_STUBS), str(workspace_stubs)]
-        if not is_own:  # the stubs refer to Linkwright's classes
+        if not is_own:  # The stubs refer to classes of Linkwright.
             entries += environment["LINKWRIGHT_SITE"].split(os.pathsep)
     environment[_PYTHON_PATH] = os.pathsep.join(entries)
     if is_own and sys.prefix != sys.base_prefix:

@@ -1,4 +1,4 @@
-"""One language server out of several: Linkwright's own, and those for Python files."""
+"""A router that presents several language servers as one: Linkwright's own, and the servers for Python files."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from linkwright.lsp.server import path_of
 
 _log = logging.getLogger(__name__)
 _PATIENCE_SECONDS = 5.0
-"""The time that other servers have for an answer after Linkwright's own server has answered."""
+"""The time in which other servers must respond after Linkwright's own server has responded."""
 _MAX_STARTS = 3
 _METHOD_NOT_FOUND = -32601
 _PUBLISH = "textDocument/publishDiagnostics"
@@ -60,7 +60,7 @@ _CLIENT_FEATURES = (
 
 @dataclass(slots=True)
 class _Question:
-    """A request of the editor that several servers answer."""
+    """A request of the editor that is sent to several servers."""
 
     method: str
     parameters: Message
@@ -71,7 +71,7 @@ class _Question:
 
 
 class Router:
-    """Forwards the messages of an editor to the language servers.
+    """A router that forwards the messages of an editor to the language servers.
 
     Linkwright's own server receives all of them, and the other servers those about Python files.
 
@@ -105,11 +105,11 @@ class Router:
         self._thread.start()
 
     def from_editor(self, message: Message | None) -> None:
-        """Receive a message of the editor; None if the editor has closed the connection."""
+        """Handle a message of the editor. None means that the editor has closed the connection."""
         self._events.put(self._own.close if message is None else partial(self._on_editor, message))
 
     def from_own(self, message: Message | None) -> None:
-        """Receive a message of Linkwright's own server; None when it has ended."""
+        """Handle a message of Linkwright's own server. None means that the server has ended."""
         if message is not None:
             self._events.put(partial(self._on_own, message))
 
@@ -191,7 +191,7 @@ class Router:
             self._editor.send(_publication({"uri": text.uri, "diagnostics": text.findings_of(OWN)}))
 
     def _ask(self, message: Message, text: OpenText) -> None:
-        """Send a request to all servers, and record that their answers must be combined."""
+        """Send a request to all servers, and record that their responses must be combined."""
         others = self._servers if self._held is None else self._programs
         question = _Question(message["method"], message["params"], text, awaited=[OWN, *others])
         self._questions[message["id"]] = question
@@ -256,7 +256,7 @@ class Router:
         self._editor.send(_publication(parameters))
 
     def _answered(self, name: str, message: Message) -> None:
-        """Store the answer of a server, and answer the editor once all have answered."""
+        """Store the response of a server, and respond to the editor once all servers have responded."""
         identifier = message.get("id")
         question = self._questions.get(identifier)
         if question is None or name not in question.awaited:
@@ -267,7 +267,7 @@ class Router:
             question.deadline = time.monotonic() + _PATIENCE_SECONDS
             if "error" not in message and is_enough(question.method, message.get("result")):
                 question.awaited.clear()
-            if "error" in message and question.method == RENAME:  # a rename that was refused is not tried otherwise
+            if "error" in message and question.method == RENAME:  # no other server tries a refused rename
                 question.awaited.clear()
         if not question.awaited:
             self._answer(identifier, question)
@@ -286,7 +286,7 @@ class Router:
             self._editor.send({"jsonrpc": "2.0", "id": identifier, "result": result})
 
     def _answer_late(self) -> None:
-        """Answer the requests that have timed out, without the answers of the late servers."""
+        """Respond to timed-out requests without the responses of the late servers."""
         now = time.monotonic()
         for identifier, question in list(self._questions.items()):
             if question.deadline is not None and question.deadline <= now:
@@ -316,7 +316,7 @@ class Router:
             self._send(name, message)
 
     def _start(self, program: Program) -> None:
-        """Start a server, and open the texts there, or notify the user after too many starts."""
+        """Start a server and open the texts in it, or notify the user after too many starts."""
         assert self._environment is not None, "it was prepared"
         self._starts[program.name] = starts = self._starts.get(program.name, 0) + 1
         if starts <= _MAX_STARTS:
@@ -342,7 +342,7 @@ class Router:
         self._events.put(partial(self._on_server, server, message))
 
     def _ended(self, server: PythonServer) -> None:
-        """Answer the open requests of a server that has ended, and start it again."""
+        """Respond to the open requests of a server that has ended, and restart the server."""
         del self._servers[server.name]
         server.close()
         for identifier, question in list(self._questions.items()):
@@ -375,7 +375,7 @@ class Router:
             server.send(message)
 
     def _send(self, name: str, message: Message) -> None:
-        """Send a message to a server; a request that it does not support counts as answered."""
+        """Send a message to a server. An unsupported request counts as answered."""
         if name == OWN:
             self._own.send(message)
             return
@@ -407,7 +407,7 @@ def _publication(parameters: Message) -> Message:
 
 
 def _for_server(message: Message, name: str) -> Message:
-    """Return a request for a server: a code action is requested with the server's own findings."""
+    """Return a request for a server. A request for code actions contains only the server's own findings."""
     if message["method"] != CODE_ACTION:
         return message
     context = message["params"]["context"]

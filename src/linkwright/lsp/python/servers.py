@@ -1,4 +1,4 @@
-"""The connections of the router: streams of messages, and processes of language servers."""
+"""The router's connections: message streams and processes of language servers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ENDING_SECONDS = 2.0
 
 
 class Peer(Protocol):
-    """A program that receives messages.
+    """A program that receives messages of the protocol.
 
     Attributes:
         name: its name.
@@ -31,7 +31,7 @@ class Peer(Protocol):
     name: str
 
     def send(self, message: Message) -> None:
-        """Send a message, without waiting for the program."""
+        """Send a message without waiting for the program."""
         ...
 
     def close(self) -> None:
@@ -40,7 +40,7 @@ class Peer(Protocol):
 
 
 class Stream:
-    """The editor, or Linkwright's own server: a peer behind a stream.
+    """A message stream to the editor or to Linkwright's own server.
 
     A thread writes, so that a program that reads slowly delays no other one.
 
@@ -65,14 +65,14 @@ class Stream:
         self._thread.join(_ENDING_SECONDS)
 
     def _write(self, output: IO[bytes]) -> None:
-        with suppress(OSError, ValueError), output:  # the peer has ended
+        with suppress(OSError, ValueError), output:  # The peer has ended.
             while (message := self._waiting.get()) is not None:
                 output.write(framed(json.dumps(message, ensure_ascii=False, separators=(",", ":")).encode()))
                 output.flush()
 
 
 def read_messages(stream: IO[bytes], receive: Callable[[Message | None], object]) -> threading.Thread:
-    """Read messages in a thread, and call a function with each, and with None at the end."""
+    """Read messages in a thread, and pass each to a function, followed by None at the end."""
 
     def read() -> None:
         with suppress(OSError, ValueError), stream:
@@ -88,7 +88,7 @@ def read_messages(stream: IO[bytes], receive: Callable[[Message | None], object]
 
 
 class PythonServer:
-    """A language server for Python files, in a process of its own.
+    """A language server for Python files in a separate process.
 
     Messages wait until the server has been initialized.
 
@@ -143,7 +143,7 @@ class PythonServer:
             self._stream.send(message)
 
     def initialized(self, capabilities: Message) -> None:
-        """Complete the initialization, and send the messages that wait."""
+        """Complete the initialization, and send the queued messages."""
         self.capabilities = capabilities
         self._stream.send({"jsonrpc": "2.0", "method": "initialized", "params": {}})
         waiting, self._waiting = self._waiting, []
@@ -151,7 +151,7 @@ class PythonServer:
             self.send(message)
 
     def close(self) -> None:
-        """End the process; it ends by itself when its input is closed."""
+        """Close the input of the process, so that the process ends, or end it after a timeout."""
         self._stream.close()
         try:
             self._process.wait(_ENDING_SECONDS)

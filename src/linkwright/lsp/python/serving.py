@@ -1,4 +1,4 @@
-"""Serves an editor with Linkwright's own language server and with those for Python files."""
+"""Serves an editor with Linkwright's own language server and the servers for Python files."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def serve(server: LanguageServer, programs: Sequence[Program]) -> None:
         programs: the servers for Python files; if there is none, the editor is connected to Linkwright's own server.
     """
     requests, responses = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
-    sys.stdout = sys.stderr  # standard output carries only the responses
+    sys.stdout = sys.stderr  # Standard output carries only the responses.
     if not programs:
         with requests, responses:
             server.start_io(requests, responses)
@@ -36,7 +36,7 @@ def serve(server: LanguageServer, programs: Sequence[Program]) -> None:
     try:
         with os.fdopen(own_requests, "rb") as reader, os.fdopen(own_responses, "wb") as writer:
             server.start_io(reader, writer)
-    finally:  # the thread that reads the requests ends with the process
+    finally:  # The thread that reads the requests ends with the process.
         ended.join()
         router.close()
         editor.close()

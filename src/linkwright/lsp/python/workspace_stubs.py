@@ -32,7 +32,7 @@ class WorkspaceStubs:
         self._written: dict[str, str] = {}
 
     def update(self) -> list[Path]:
-        """Write the stubs of the present interface files, and return the files that have changed."""
+        """Write the stubs of the current interface files, and return the changed files."""
         stubs = self._stubs()
         changed = [
             self.folder / path for path in {*stubs, *self._written} if stubs.get(path) != self._written.get(path)

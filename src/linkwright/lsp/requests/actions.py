@@ -90,7 +90,7 @@ async def _refactoring_edit(
 
 
 def _modified() -> JsonRpcException:
-    message = localized(phrase("a text has changed meanwhile"))
+    message = localized(phrase("a text has changed in the meantime"))
     return JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
 
 
@@ -113,7 +113,7 @@ async def _refactorings(
             continue
         try:
             edit = await _refactoring_edit(server, offer.action, path, *selection, server.texts())
-        except LinkwrightError:  # an unproved refactoring is not offered
+        except LinkwrightError:  # An unproved refactoring is not offered.
             continue
         actions.append(types.CodeAction(title, kind, edit=edit))
     return actions
@@ -161,7 +161,7 @@ def add_requests(server: LinkwrightServer) -> None:
             names = await server.defined_names(path)
             server.check_unchanged(path, positions)
             if end == start + 1 and selected_value(positions.text, start, end) is None:
-                end = start  # ALE and Helix send the character under their block cursor
+                end = start  # ALE and Helix send the character under their block cursor.
             offers = [
                 offer
                 for offer in offers_at(positions.text, path, start, end, names)

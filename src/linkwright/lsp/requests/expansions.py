@@ -94,7 +94,7 @@ def source_locations(server: LinkwrightServer, uri: str, position: types.Positio
         return None
     try:
         expansion = expanded_text(server.project, server.texts(), *description)
-    except LinkwrightError:  # the document shows its text from before the error
+    except LinkwrightError:  # The document still shows the text from before the error.
         return []
     encoding = server.workspace.position_encoding or UTF_16
     element = expansion.element_at(TextPositions(expansion.text, encoding).offset(position))

@@ -200,7 +200,7 @@ def add_requests(server: LinkwrightServer) -> None:
         server: LinkwrightServer, params: types.DocumentHighlightParams
     ) -> list[types.DocumentHighlight] | None:
         path_at_cursor = path_of(params.text_document.uri)
-        if path_at_cursor is not None:  # editors ask when the cursor has moved
+        if path_at_cursor is not None:  # Editors send this request when the cursor has moved.
             server.robot_views.cursor_moved(real_path(path_at_cursor), params.position.line + 1)
         context = server.format_context(params.text_document)
         if context is not None:

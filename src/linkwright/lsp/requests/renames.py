@@ -114,8 +114,8 @@ def add_requests(server: LinkwrightServer) -> None:
         except LinkwrightError as error:
             message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
-        if server.texts() != texts:  # the offsets of the edits belong to the former texts
-            message = localized(phrase("a text has changed meanwhile; rename again"))
+        if server.texts() != texts:  # The offsets of the edits refer to the former texts.
+            message = localized(phrase("a text has changed in the meantime; rename again"))
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
         shown = [localized(note) for note in renaming.notes]
         if renaming.unchanged:
@@ -133,7 +133,7 @@ def add_requests(server: LinkwrightServer) -> None:
         await server.when_indexed()
         texts = server.texts()
         edits, unchanged = await server.run_in_check_thread(lambda: file_edits(server, params.files))
-        if server.texts() != texts:  # the editor renames the file without edits
+        if server.texts() != texts:  # The editor renames the file without edits.
             return None
         if unchanged:
             server.window_show_message(

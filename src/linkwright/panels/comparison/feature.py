@@ -92,7 +92,7 @@ class ComparisonFeature(PageFeature):
             self._publish(manager)
 
     def on_edit(self, manager: VisualizationManager) -> None:
-        """Send the differences again if they changed.
+        """Send the differences again if they have changed, because displays may have been added or removed.
 
         Displays may have been added or removed.
         """
@@ -211,7 +211,7 @@ def _element_of(difference: Difference, old: Robot, new: Robot) -> tuple[Literal
     """
     name = difference.name
     if difference.subject == "extension":
-        name = name.partition(" ")[2]  # for example the link of a <gazebo> element
+        name = name.partition(" ")[2]  # for example, the link of a <gazebo> element
     for robot in (new, old):
         elements: Mapping[str, Mapping[str, object]] = {"link": robot.links, "joint": robot.joints}
         if difference.subject != "joint" and name in elements["link"]:

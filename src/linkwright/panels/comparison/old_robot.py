@@ -91,7 +91,7 @@ class OldRobot:
 
 
 def followed_joints(old: Robot, new: Robot, same_names: Mapping[str, str]) -> dict[str, str]:
-    """Return the joints of the new robot whose positions the joints of the old robot take, by old names.
+    """Return, by old names, the joints of the new robot that determine the positions of the old robot's joints.
 
     Both joints are revolute or continuous, or both are prismatic.
     """

@@ -1,4 +1,4 @@
-"""Exports the robot in one of several file formats, as a file for one download."""
+"""Exports the robot to one of several file formats, as one download."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class ExportFeature(PageFeature):
         except Exception as error:  # noqa: BLE001  # an internal error must not leave the page waiting
             self.context.node.get_logger().error(
                 f"The export failed:\n{traceback.format_exc()}"
-            )  # the logger is rclpy's, which has no `exception` method
+            )  # The logger is rclpy's, which has no method `exception`.
             page.send(ExportFailed(f"{type(error).__name__}: {error}"))
             return
         name = re.sub(r"[^\w.-]+", "_", snapshot.name).strip("._") or "robot"

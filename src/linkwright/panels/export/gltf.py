@@ -260,7 +260,7 @@ class _RobotWriter:
         try:
             return _as_png(self._files.path(shape.texture))
         except (FileRefusedError, OSError, ValueError):
-            return None  # the page also draws the shape without a texture
+            return None  # The page also draws the shape without a texture.
 
     def _add_material(self, appearance: _Appearance) -> int:
         if appearance not in self._materials:

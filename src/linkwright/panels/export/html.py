@@ -53,7 +53,7 @@ def html_of(snapshot: Snapshot) -> bytes:
 
 
 def page_around(title: str) -> tuple[str, str]:
-    """Return the page before and after the place for the recorded messages, for several snapshots with one program.
+    """Return the parts of the page before and after the recorded messages, for several snapshots with one program.
 
     Args:
         title: the title of the page.
@@ -82,7 +82,7 @@ def page_around(title: str) -> tuple[str, str]:
 
 
 def _script(folder: Path) -> str:
-    compressed_script = folder / "export.js.gz"  # `npm run build` alone does not create it
+    compressed_script = folder / "export.js.gz"  # `npm run build` alone does not create this file.
     if compressed_script.is_file():
         return gzip.decompress(compressed_script.read_bytes()).decode()
     return (folder / "export.js").read_text(encoding="utf-8")

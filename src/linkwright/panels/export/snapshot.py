@@ -247,7 +247,7 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
 
 
 def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) -> list[Path]:
-    """Return the files of a description that may not be meant for recipients of an export.
+    """Return the files of a description that recipients of an export may not be allowed to see.
 
     As in ROS, includes, ``load_yaml`` and ``file://`` can read any file of the machine.
 
@@ -260,7 +260,7 @@ def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) 
         The files that are neither in a package nor below the folder of the main file.
     """
     files = FileSet(meshes)
-    file_paths = dict.fromkeys(Path(normpath(path.absolute())) for path in read)  # paths may contain `..`
+    file_paths = dict.fromkeys(Path(normpath(path.absolute())) for path in read)  # Paths may contain `..`.
     for address in mesh_addresses([scene]):
         with suppress(FileRefusedError):
             file_paths[files.path(address)] = None
@@ -384,7 +384,7 @@ def _joint_controls(robot: Robot) -> list[JointControl]:
         if joint.lower == joint.upper:
             continue
         mimic_rule = layout.dependent.get(joint.name)
-        kind = cast("Any", joint.kind)  # movable joints are of these three kinds
+        kind = cast("Any", joint.kind)  # Movable joints have one of these three kinds.
         control = JointControl(joint.name, kind, joint.lower, joint.upper, joint.zero)
         if mimic_rule is not None:
             control = replace(control, mimic=mimic_rule.parent, multiplier=mimic_rule.factor, offset=mimic_rule.offset)

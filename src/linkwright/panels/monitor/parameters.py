@@ -329,7 +329,7 @@ class ParametersFeature(PageFeature):
                     reappeared_node.refresh()
 
     def _reappeared_node(self, request: _Request, node_list: ParameterNodes) -> RemoteNode | None:
-        """Return the node that a page watches if it is listed again after it was missing, or None."""
+        """Return the node that a page watches if the node has reappeared after it was missing, or None."""
         if (
             request.sent is None
             or request.node is None

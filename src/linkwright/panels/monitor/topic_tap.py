@@ -21,7 +21,7 @@ from linkwright.rviz.context import ViewerContext
 
 
 class Paced:
-    """Limits the rate of calls to a function.
+    """A limiter of the rate at which a function is called.
 
     Args:
         work: the function to call.
@@ -113,7 +113,7 @@ class TopicTap:
         ]
         types = sorted({publisher.type_name for publisher in publishers})
         if not types:
-            return  # the last known type remains valid until another publisher appears
+            return  # The last known type remains valid until another publisher appears.
         if len(types) > 1:
             self.error = f"the topic carries more than one type: {', '.join(types)}"
             self._unsubscribe()

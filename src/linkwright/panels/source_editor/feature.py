@@ -77,7 +77,7 @@ class SourceEditorFeature(PageFeature):
         self._workspace = folder
 
     def receive(self, page: Page, message: Any) -> None:
-        """Forward a message to the language server, or queue a request about files."""
+        """Forward a message to the language server, or queue a request for files."""
         if isinstance(message, messages.AskLanguageServer):
             if (editor := self._editors.get(page)) is not None:
                 editor.process.send(message.content)
@@ -102,7 +102,7 @@ class SourceEditorFeature(PageFeature):
             task.cancel()
 
     def _start(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run work in a separate task, so that requests need not wait for an expansion."""
+        """Run work in a separate task, so that other requests do not wait for an expansion."""
         task = asyncio.get_running_loop().create_task(work)
         self._shown.add(task)
         task.add_done_callback(self._shown.discard)

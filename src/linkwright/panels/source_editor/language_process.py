@@ -58,7 +58,7 @@ class LanguageProcess:
             thread.join()
 
     def _write(self, server_input: IO[bytes]) -> None:
-        with suppress(OSError), server_input:  # the reading thread notices the end of the process too
+        with suppress(OSError), server_input:  # The reading thread also notices the end of the process.
             while (message := self._outgoing.get()) is not None:
                 server_input.write(framed(message.encode()))
                 server_input.flush()
@@ -73,5 +73,5 @@ class LanguageProcess:
 
     def _call(self, callback: Callable[..., object], *arguments: object) -> None:
         """Call a function on the event loop, unless the server was closed."""
-        with suppress(RuntimeError):  # the loop has ended
+        with suppress(RuntimeError):  # The event loop has ended.
             self._loop.call_soon_threadsafe(lambda: self._is_closed or callback(*arguments))

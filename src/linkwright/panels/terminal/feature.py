@@ -1,4 +1,4 @@
-"""The page feature of terminals, which is off unless the program was started with it."""
+"""The page feature for terminals, which is disabled unless the program was started with terminals."""
 
 from __future__ import annotations
 
@@ -85,11 +85,11 @@ class TerminalFeature(PageFeature):
 
     @property
     def programs(self) -> ProgramPages:
-        """The pages of programs in terminals; there are none before `enable`."""
+        """The pages of programs in terminals. There are none before `enable` is called."""
         return self._programs or ProgramPages()
 
     def opening_messages(self) -> list[ServerMessage]:
-        """Return the terminals, if pages may run shells."""
+        """Return the list of terminals, if pages may run shells."""
         return [] if self._folder is None else [self._state(None)]
 
     def receive(self, page: Page, message: Any) -> None:
@@ -175,7 +175,7 @@ class TerminalFeature(PageFeature):
         self._report()
 
     def _own(self, page: Page, message: Any) -> Terminal:
-        """Return the terminal of a message from the page that shows it.
+        """Return the terminal to which a message refers, if the sending page shows this terminal.
 
         Raises:
             _NotShownError: there is no such terminal, or the page does not show it.
@@ -214,6 +214,6 @@ class TerminalFeature(PageFeature):
 
 
 def _size(message: _Sized) -> TerminalSize:
-    """Return the size in a message, within sensible limits."""
+    """Return the terminal size in a message, clipped to sensible limits."""
     columns, rows = (min(max(side, 2), _MAX_SIDE) for side in (message.columns, message.rows))
     return TerminalSize(columns, rows)

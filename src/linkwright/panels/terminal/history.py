@@ -1,21 +1,21 @@
-"""The last output of a terminal, with which a page can show the terminal again."""
+"""The recent output of a terminal, from which a page can restore the terminal."""
 
 from __future__ import annotations
 
 import re
 
 LINES = 2000
-"""The number of lines that a page receives of the output before it."""
+"""The maximum number of earlier output lines that a page receives."""
 
 _MAX_SIZE = 512 * 1024
-"""The number of characters that are kept when old output is discarded. Up to twice as many are stored."""
+"""The number of characters that remain when old output is discarded. Up to twice as many are stored."""
 
 _MODE = re.compile(r"\x1b(?:\[\?([0-9;]+)([hl])|(c))")
 """A change of private modes (DECSET, DECRST), or a full reset (RIS)."""
 
 
 class TerminalHistory:
-    """The last lines of output, and the modes that earlier output has set.
+    """The last lines of a terminal's output, and the modes that earlier output has set.
 
     Modes, such as the alternate screen, bracketed paste and mouse reports, are set once, and may be older than the
     stored lines.
@@ -34,7 +34,7 @@ class TerminalHistory:
             self._discard_to(_MAX_SIZE)
 
     def text(self) -> str:
-        """Return the text with which an empty terminal shows the same as the original one."""
+        """Return the text that brings an empty terminal to the state of the original one."""
         self._discard_to(_MAX_SIZE)
         text = "".join(self._parts)
         start = len(text)
@@ -47,7 +47,7 @@ class TerminalHistory:
         return self._mode_text(modes) + text[start + 1 :]
 
     def _discard_to(self, size: int) -> None:
-        """Discard old output up to the end of a line, so that no escape sequence is divided."""
+        """Discard old output up to the end of a line, so that no escape sequence is split."""
         if self._size <= size:
             return
         text = "".join(self._parts)

@@ -24,17 +24,16 @@ _BLOCK_SIZE = 64 * 1024
 """The largest size of a block of output in bytes."""
 
 _GRACE_SECONDS = 0.5
-"""Seconds for which the children of a shell may continue after its end."""
+"""The seconds for which the children of a shell may continue after the shell has ended."""
 
 _UTF8_INPUT = 0x4000
-"""The flag with which Backspace erases a character in UTF-8, not a byte. IUTF8 has this value on Linux and macOS."""
+"""The terminal flag with which Backspace erases one UTF-8 character, not one byte. This is IUTF8 on Linux and macOS."""
 
 
 class PosixPty:
     """A program in a pseudoterminal; see `linkwright.panels.terminal.pty.Pty`.
 
-    A thread waits for the end of the program. When the program has ended, the processes that it left behind are ended,
-    too.
+    A thread waits for the end of the program. When the program has ended, its remaining child processes are also ended.
 
     Raises:
         OSError: the program cannot be started.
@@ -72,7 +71,7 @@ class PosixPty:
 
     @property
     def unwritten_size(self) -> int:
-        """The size of the input that the program has not taken yet, in bytes."""
+        """The size in bytes of the input that the program has not read yet."""
         return len(self._unwritten)
 
     def request_output(self) -> None:
@@ -85,7 +84,7 @@ class PosixPty:
             self._loop.call_soon(self._read)
 
     def write(self, data: bytes) -> None:
-        """Write input for the program, which may take it later."""
+        """Write input for the program, which may read the input later."""
         if self._is_open:
             self._unwritten += data
             self._write_unwritten()
@@ -123,16 +122,16 @@ class PosixPty:
                     break
         except BlockingIOError:
             is_over = self._status is not None
-        except OSError:  # Linux reports the end of output as EIO
+        except OSError:  # Linux reports the end of output as EIO.
             is_over = True
         if not block and not is_over:
             return
         self._is_requested = False
         self._loop.remove_reader(self._terminal)
         if block:
-            self._receive(bytes(block))  # the end, if any, is noticed again by the next read
+            self._receive(bytes(block))  # The next read detects the end of output, if there is one.
         elif self._status is None:
-            self._is_requested = True  # `_finish` reports the end
+            self._is_requested = True  # `_finish` reports the end.
         else:
             self.hang_up()
             self._ended(self._status)
@@ -142,7 +141,7 @@ class PosixPty:
             del self._unwritten[: os.write(self._terminal, self._unwritten)]
         except BlockingIOError:
             pass
-        except OSError:  # the program has ended
+        except OSError:  # The program has ended.
             self._unwritten.clear()
         if self._unwritten:
             self._loop.add_writer(self._terminal, self._write_unwritten)
@@ -151,11 +150,11 @@ class PosixPty:
 
     def _wait(self) -> None:
         """Wait for the program, end the rest of its session, and report the exit status."""
-        if hasattr(os, "waitid"):  # the program is not reaped yet, so that no other process can get its ID
+        if hasattr(os, "waitid"):  # The program is not reaped yet, so no other process can get its ID.
             os.waitid(os.P_PID, self._process.pid, os.WEXITED | os.WNOWAIT)
             end_session(self._process.pid, _GRACE_SECONDS)
         status = self._process.wait()
-        with suppress(RuntimeError):  # the loop has ended
+        with suppress(RuntimeError):  # The event loop has ended.
             self._loop.call_soon_threadsafe(self._finish, status)
 
     def _finish(self, status: int) -> None:

@@ -1,7 +1,7 @@
-"""The processes of a POSIX session, and their end.
+"""The processes of a POSIX session, and how they are ended.
 
 A session contains a shell and everything that was started in it, including jobs in the background. A process that
-starts a session of its own, such as a daemon, has left it.
+starts its own session, such as a daemon, no longer belongs to it.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from contextlib import suppress
 _HAS_PROC = os.path.exists("/proc/self/stat")  # noqa: PTH110 - on Linux; elsewhere, ps is asked
 _PAUSE_SECONDS = 0.02
 _KILLING_SECONDS = 1.0
-"""The longest time for which new processes of a session are killed."""
+"""The maximum number of seconds for which new processes of a session are killed."""
 
 
 def end_session(leader: int, grace: float) -> None:
-    """End all processes of a session, and wait for their end.
+    """End all processes of a session, and wait until they have ended.
 
     They receive SIGHUP, and those that remain after the grace period receive SIGKILL. Zombies do not count.
 
@@ -31,7 +31,7 @@ def end_session(leader: int, grace: float) -> None:
     """
     for process in session_processes(leader):
         _send(process, signal.SIGHUP)
-        _send(process, signal.SIGCONT)  # a stopped process handles SIGHUP only after it continues
+        _send(process, signal.SIGCONT)  # A stopped process handles SIGHUP only after it has been continued.
     now = time.monotonic()
     killing, deadline = now + grace, now + grace + _KILLING_SECONDS
     while (remaining := list(session_processes(leader))) and (now := time.monotonic()) < deadline:
@@ -58,7 +58,7 @@ def _processes() -> list[int]:
 def _is_zombie(process: int) -> bool:
     if _HAS_PROC:
         with open(f"/proc/{process}/stat", "rb") as file:  # noqa: PTH123 - faster, and hundreds are read
-            return file.read().rpartition(b") ")[2].startswith(b"Z")  # the name before it may contain anything
+            return file.read().rpartition(b") ")[2].startswith(b"Z")  # the preceding name may contain anything
     return _ps("-o", "stat=", "-p", str(process)).strip().startswith("Z")
 
 
@@ -67,5 +67,5 @@ def _ps(*options: str) -> str:
 
 
 def _send(process: int, number: int) -> None:
-    with suppress(OSError):  # the process has ended
+    with suppress(OSError):  # The process has ended.
         os.kill(process, number)

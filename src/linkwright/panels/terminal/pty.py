@@ -1,4 +1,4 @@
-"""Programs in pseudoterminals: the interface for all systems."""
+"""The common interface of pseudoterminals on all systems."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ class Pty(Protocol):
 
     @property
     def unwritten_size(self) -> int:
-        """The size of the input that the program has not taken yet, in bytes."""
+        """The size in bytes of the input that the program has not read yet."""
 
     def request_output(self) -> None:
-        """Request the next block of output, which is passed to `receive` as soon as there is any."""
+        """Request the next block of output. It is passed to `receive` when it is available."""
 
     def write(self, data: bytes) -> None:
-        """Write input for the program, which may take it later."""
+        """Write input for the program, which may read the input later."""
 
     def resize(self, size: TerminalSize) -> None:
         """Set the size of the terminal, and notify the program."""
@@ -63,7 +63,7 @@ class Pty(Protocol):
 
 
 Receive = Callable[[bytes], object]
-"""Handles a block of output, on the event loop."""
+"""A callback on the event loop for a block of output."""
 
 Ended = Callable[[int], object]
 """Handles the end of the program, after all its output, on the event loop.

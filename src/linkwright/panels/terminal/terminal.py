@@ -1,4 +1,4 @@
-"""A terminal of the program: its shell, its last output, and the page that shows it."""
+"""A terminal of the page: its shell, its recent output, and the page that shows it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ It joins the output of programs that write a few bytes at a time, and leaves tim
 """
 
 _MAX_UNWRITTEN_SIZE = 1024 * 1024
-"""The largest size of input, in bytes, that waits for a program to read it."""
+"""The maximum size in bytes of input that the program has not read yet."""
 
 StartShell = Callable[[TerminalSize, Receive, Ended], Pty]
 
@@ -69,13 +69,13 @@ class Terminal:
         return pty
 
     def item_for(self, page: Page | None) -> TerminalItem:
-        """Return the terminal as it is described to a page; None for a page that opens."""
+        """Return the description of the terminal for a page. Pass None for a page that opens."""
         if self.page is None:
             return TerminalItem(self.number, "nowhere", self.status)
         return TerminalItem(self.number, "here" if self.page is page else "elsewhere", self.status)
 
     def show(self, page: Page, size: TerminalSize) -> None:
-        """Show the terminal in a page, from its last output on."""
+        """Show the terminal in a page, beginning with its recent output."""
         self.page = page
         self.resize(size)
         self._acknowledged = self._sent
@@ -83,7 +83,7 @@ class Terminal:
         self._continue()
 
     def leave(self) -> None:
-        """Show the terminal in no page."""
+        """Detach the terminal from its page."""
         self.page = None
         self._continue()
 

@@ -1,4 +1,4 @@
-"""A program in a pseudoconsole of Windows, by pywinpty."""
+"""A program in a pseudoconsole of Windows, which pywinpty provides."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ _DRAIN_SECONDS = 0.3
 class WindowsPty:
     """A program in a pseudoconsole; see `linkwright.panels.terminal.pty.Pty`.
 
-    The calls of pywinpty may block, so that threads read output, write input, and wait for the end. Closing a
-    pseudoconsole ends the console programs in it.
+    Calls of pywinpty may block, so separate threads read output, write input, and wait for the end of the program.
+    Closing a pseudoconsole ends the console programs in it.
 
     Raises:
         ModuleNotFoundError: pywinpty, of the extra `learn`, is not installed.
@@ -68,7 +68,7 @@ class WindowsPty:
             self._is_open = False
             self._input.put(None)
             self._requests.release()
-            with suppress(Exception):  # pywinpty raises various errors if the program has ended
+            with suppress(Exception):  # If the program has ended, pywinpty raises various errors.
                 self._pty.cancel_io()
 
     def wait_ended(self, grace: float) -> None:
@@ -97,7 +97,7 @@ class WindowsPty:
 
     def _write(self) -> None:
         while (text := self._input.get()) is not None:
-            with suppress(Exception):  # the program has ended
+            with suppress(Exception):  # The program has ended.
                 self._pty.write(text)
             self._call(self._written, len(text.encode()))
 
@@ -118,5 +118,5 @@ class WindowsPty:
 
     def _call(self, callback: Any, *arguments: object) -> None:
         """Call a function on the event loop, unless the terminal was closed."""
-        with suppress(RuntimeError):  # the loop has ended
+        with suppress(RuntimeError):  # The event loop has ended.
             self._loop.call_soon_threadsafe(lambda: self._is_open and callback(*arguments))

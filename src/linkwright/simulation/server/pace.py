@@ -15,7 +15,7 @@ _PATIENCE_S = 10.0
 
 
 class PaceWatch:
-    """Watches the real-time factor of a simulation.
+    """A monitor of the real-time factor of a simulation.
 
     Args:
         report: called with the finding when the world has become slow, and with None when it has recovered.
@@ -31,7 +31,7 @@ class PaceWatch:
 
         Args:
             factor: the real-time factor.
-            requested: the requested one; infinite for as fast as possible.
+            requested: the requested real-time factor; infinite for as fast as possible.
             elapsed_s: the real time since the last measurement.
         """
         limit = _FAST if self._is_slow else _SLOW

@@ -1,4 +1,4 @@
-"""The view that a program has of the graph of a test."""
+"""The graph of a test as a program sees it."""
 
 from __future__ import annotations
 

@@ -150,7 +150,7 @@ class Program:
         except BaseException as error:  # noqa: BLE001  # the test raises it
             is_interruption = self.is_interrupted and isinstance(error, (KeyboardInterrupt, ExternalShutdownException))
             self.exit_code = -signal.SIGINT if is_interruption else 1
-            if self.is_interrupted and isinstance(error, RclError):  # rclpy was used after Ctrl-C, by which a test ends
+            if self.is_interrupted and isinstance(error, RclError):  # rclpy was used after the final Ctrl-C
                 traceback.print_exception(error)
             elif not is_interruption:
                 self.error = error
@@ -168,9 +168,9 @@ class Program:
 def _seed_random_numbers(seed: int) -> None:
     random.seed(seed)
     with suppress(ImportError):
-        import numpy as np  # now, because the program may import it later
+        import numpy as np  # Seed these modules now, because the program may import them later.
 
-        np.random.seed(seed)  # the numbers that programs without a generator of their own draw
+        np.random.seed(seed)  # These generators serve programs that do not create their own.
 
 
 def _is_path(main: Main) -> bool:

@@ -12,7 +12,7 @@ from linkwright.testing.programs.program import Main, Program
 from linkwright.testing.programs.threads import BudgetExceededError, Turns
 
 _INTERRUPTED_S = 5.0
-"""The simulated time that a program has to end after Ctrl-C, as under ``ros2 launch``."""
+"""The simulated seconds in which a program must end after Ctrl-C, as under ``ros2 launch``."""
 
 _ENDING_STEP_S = 0.1
 

@@ -25,15 +25,15 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.process.patience import PatientClock
 
 _MIN_WAIT_NS = 100_000
-"""The shortest wait. Without it, a loop that waits until now would stop the time."""
+"""The minimum duration of a wait. Without a minimum, a wait until now would never let time advance."""
 
 _MAX_POLLS = 200
-"""The number of questions for the time without a wait after which a thread waits, because it probably polls."""
+"""The number of times that a thread may read the time without waiting. Then it must wait, because it probably polls."""
 
 _POLL_WAIT_NS = 1_000_000
 _KILL_TIMEOUT_S = 2.0
 _PERIOD_S = 0.2
-"""The time between two looks at how long a thread has computed."""
+"""The interval between two checks of a thread's computing time."""
 
 _OWN_FOLDERS = (str(Path(__file__).parents[2]), str(Path(threading.__file__).parent))
 
@@ -209,7 +209,7 @@ class Turns:
             thread.wake()
 
     def run(self, budget_s: float) -> bool:
-        """Run the ready threads, and the threads that they make ready, until all threads wait.
+        """Run the ready threads, and the threads that they wake, until all threads wait.
 
         Args:
             budget_s: the longest duration of a turn, in seconds, not counting the time in which this process waits for
