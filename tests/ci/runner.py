@@ -64,9 +64,11 @@ class Runner:
         commands.mkdir(parents=True)
         self.installed = self.temporary / "installed.txt"
         self.installed.touch()
+        self.without_page = self.temporary / "without_page.txt"
         environment = f'mkdir -p "$4/bin"; ln -s {sys.executable} "$4/bin/real"'
         linkwright = f'printf \'#!/bin/bash\\nexec {sys.executable} -I -m linkwright "$@"\\n\' > "$4/bin/linkwright"'
-        pip = f'printf \'#!/bin/bash\\nprintf "%%s\\\\n" "$@" >> {self.installed}\\n\' > "$4/bin/python"'
+        note = f'echo "${{LINKWRIGHT_WITHOUT_PAGE:-}}" > {self.without_page}\\n'
+        pip = f'printf \'#!/bin/bash\\nprintf "%%s\\\\n" "$@" >> {self.installed}\\n{note}\' > "$4/bin/python"'
         script = (
             '#!/bin/bash\nif [ "$1 $2 $3" = "-I -m venv" ]; then\n'
             f'{environment}\n{linkwright}\n{pip}\nchmod +x "$4/bin/linkwright" "$4/bin/python"\n'

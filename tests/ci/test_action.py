@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
+from linkwright.page.server import PAGE_FOLDER
 from linkwright.review.reports.markdown import MARKER
 from tests.ci.conftest import HOSTILE_BRANCH, Example
 from tests.ci.runner import TEMPLATES, Runner
@@ -16,6 +17,7 @@ from tests.ci.service import TOKEN, Service
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the scripts are for Linux and macOS")
 
+needs_page = pytest.mark.skipif(not (PAGE_FOLDER / "export").is_dir(), reason="the page was not built")
 FILES = ["comment.md", "pull-request.txt", "report.html", "report.json", "report.sarif"]
 LINK = "\n[report.html](https://example.org/artifacts/8)\n"
 
@@ -49,6 +51,17 @@ def test_checkout_of_action_is_installed(example: Example, runner: Runner) -> No
     assert options == ["-I", "-m", "pip", "install", "--quiet", "--editable"]
     assert Path(folder).resolve() == TEMPLATES.parent.parent
     assert run.used[0] == ("actions/setup-python@v5", {"python-version": "3.13"})
+    assert runner.without_page.read_text(encoding="utf-8") == "1\n"
+
+
+@needs_page
+@pytest.mark.parametrize("scenes", ["false", "true"])
+def test_scenes_are_in_the_page_if_the_input_says_so(example: Example, runner: Runner, scenes: str) -> None:
+    run = runner.run("review", example.event(), scenes=scenes)
+    assert run.failed == ""
+    page = (Path(run.outputs["folder"]) / "report.html").read_text(encoding="utf-8")
+    assert ("<details class='scene'>" in page) == (scenes == "true")
+    assert (runner.without_page.read_text(encoding="utf-8") == "\n") == (scenes == "true")
 
 
 def test_second_run_edits_comment(example: Example, service: Service, runner: Runner) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from linkwright.page.server import PAGE_FOLDER
 from linkwright.review.reports.markdown import MARKER
 from tests.ci.conftest import HOSTILE_BRANCH, Example
 from tests.ci.runner import TEMPLATES, Runner
@@ -116,6 +117,15 @@ def test_linkwright_is_cloned_from_url(service: Service, runner: Runner, gitlab:
     *_, option, folder = runner.installed.read_text(encoding="utf-8").splitlines()
     assert (option, Path(folder).name) == ("--editable", "linkwright")
     assert Path(folder).is_relative_to(runner.temporary)
+
+
+@pytest.mark.skipif(not (PAGE_FOLDER / "export").is_dir(), reason="the page was not built")
+@pytest.mark.parametrize("scenes", ["false", "true"])
+def test_scenes_are_in_the_page_if_the_variable_says_so(runner: Runner, gitlab: GitLab, scenes: str) -> None:
+    assert gitlab.run(LINKWRIGHT_SCENES=scenes).returncode == 0
+    page = (gitlab.folder / "report.html").read_text(encoding="utf-8")
+    assert ("<details class='scene'>" in page) == (scenes == "true")
+    assert (runner.without_page.read_text(encoding="utf-8") == "\n") == (scenes == "true")
 
 
 def test_findings_are_reported_as_code_quality(example: Example, gitlab: GitLab) -> None:

@@ -83,8 +83,8 @@ def changes_of(repository, compare):
     ("old", "new", "expected", "is_breaking"),
     [
         ('"front")), actions', '"back")), actions',
-         ("remapping of 'scan' for all nodes, parameter 'use_sim_time' of all nodes, node 'lidar/driver' and 1 more: "
-          "condition if $(var front) -> if $(var back)"), False),
+         ("remapping of 'scan' for all nodes, parameter 'use_sim_time' of all nodes, node 'lidar/driver', "
+          "node 'lidar/filter': condition if $(var front) -> if $(var back)"), False),
         ('PushRosNamespace("front")', 'PushRosNamespace("back")',
          "node 'lidar/driver', node 'lidar/filter': namespace front -> back", True),
         ('"scan_front"', '"scan_back"', "remapping of 'scan' for all nodes: to scan_front -> scan_back", True),
@@ -104,7 +104,7 @@ def changes_of(repository, compare):
         ('"--child-frame-id", "lidar"', '"--child-frame-id", "laser"',
          ("node 'tf2_ros/static_transform_publisher' of 'laser': "
           "arguments [--frame-id, base, --child-frame-id, lidar] -> [--frame-id, base, --child-frame-id, laser]"),
-         False),
+         True),
     ],
 )  # fmt: skip
 def test_actions_in_python_are_compared(changes_of, old, new, expected, is_breaking):
@@ -163,7 +163,7 @@ def test_launch_file_with_name_of_a_test_is_compared(changes_of):
     ("old", "new", "expected", "is_breaking"),
     [
         ('if="$(arg real)"', 'unless="$(arg real)"',
-         "node 'arm/driver.py', include of 'other.launch': condition if $(arg real) -> unless $(arg real)", False),
+         "node 'arm/driver.py', include of 'other.launch': condition if $(arg real) -> unless $(arg real)", True),
         ('ns="left"', 'ns="right"', "node 'arm/driver.py': namespace left -> right", True),
         ('to="front/scan"', 'to="back/scan"', "remapping of 'scan' for all nodes: to front/scan -> back/scan", True),
         ('  <rosparam command="load" file="drive.yaml"/>\n', "", "parameters of 'drive.yaml' removed", False),
@@ -184,7 +184,7 @@ def test_actions_in_xml_are_compared(changes_of, old, new, expected, is_breaking
     ("old", "new", "expected", "is_breaking"),
     [
         ("if: $(var real)", "unless: $(var real)",
-         "node 'arm/driver': condition if $(var real) -> unless $(var real)", False),
+         "node 'arm/driver': condition if $(var real) -> unless $(var real)", True),
         ('"10"', '"20"', "node 'arm/driver': parameter rate 10 -> 20", False),
         ("to: arm/cmd", "to: cmd_vel", "node 'arm/driver': remapping cmd arm/cmd -> cmd_vel", True),
         ("namespace: left", "namespace: right",
@@ -353,3 +353,71 @@ def test_program_of_the_same_package_is_not_a_replacement(changes_of):
     changes, found_breaking = changes_of("arm.launch.py", PYTHON, 'executable="teleop"', 'executable="keyboard"')
     assert changes == ["node 'arm/keyboard' added", "node 'arm/teleop' removed"]
     assert found_breaking == changes[1:]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "reason"),
+    [
+        # The actions that used the old name use the new one.
+        ('<arg name="ur" default="ur5"/>', '<arg name="model" default="ur5"/>', "argument 'ur' renamed to 'model'",
+         "a value that a caller passes for 'ur' has no effect"),
+        ('<arg name="real" default="true"/>', '<arg name="real" default="false"/>',
+         "argument 'real': default true -> false", "by default, node 'arm/driver.py' does not start any more"),
+        ('<arg name="side" default="left"/>', '<arg name="side" default="right"/>',
+         "argument 'side': default left -> right",
+         "programs that use the names of the node, its topics or its services do not find them"),
+        ('<arg name="urdf" default="arm.urdf"/>', '<arg name="urdf" default="$(dirname)/arm.urdf"/>',
+         "argument 'urdf': default arm.urdf -> $(dirname)/arm.urdf",
+         "callers that pass the name of a file instead of its path fail"),
+        ('<arg name="odom_topic" default="odom"/>', '<arg name="odom_topic" default="wheel_odom"/>',
+         "argument 'odom_topic': default odom -> wheel_odom", "programs that use the name 'odom' do not find it"),
+        ('<arg name="speed" default="1"/>', '<arg name="speed" default="2"/>',
+         "argument 'speed': default 1 -> 2", None),
+        ('args="arm_controller"', 'args="hand_controller"',
+         "node 'controller_manager/spawner' of 'hand_controller': arguments arm_controller -> hand_controller",
+         "the topics and services of arm_controller are missing"),
+        ('name="frame_prefix" value=""', 'name="frame_prefix" value="arm/"',
+         "node 'robot_state_publisher/robot_state_publisher': parameter frame_prefix '' -> arm/",
+         "programs that look up the frames by their old names do not find them"),
+        ('name="frame_id" value="laser"', 'name="frame_id" value="lidar"',
+         "node 'lidar/driver': parameter frame_id laser -> lidar", "programs that use the name 'laser' do not find it"),
+        ('<remap from="scan" to="/lidar/scan"/>', '<remap from="scan" to="/scan"/>',
+         "node 'slam_toolbox/slam_node': remapping scan /lidar/scan -> /scan", None),
+        ('exec="slam_node"', 'exec="sync_slam_node"',
+         "node 'slam_toolbox/slam_node' replaced by node 'slam_toolbox/sync_slam_node'", None),
+    ],
+)  # fmt: skip
+def test_reasons_of_changes_of_names_and_defaults(repository, compare, old, new, expected, reason):
+    assert old in DEFAULTS
+    new_text = DEFAULTS.replace(old, new)
+    if "ur" in old and "model" in new:
+        new_text = new_text.replace("$(var ur)", "$(var model)")
+    repository.commit({"arm/launch/arm.launch.xml": DEFAULTS})
+    repository.write({"arm/launch/arm.launch.xml": new_text})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch.xml").changes
+    assert str(change.sentence) == expected
+    assert (None if change.reason is None else str(change.reason)) == reason
+
+
+DEFAULTS = """<launch>
+  <arg name="real" default="true"/>
+  <arg name="ur" default="ur5"/>
+  <arg name="side" default="left"/>
+  <arg name="urdf" default="arm.urdf"/>
+  <arg name="odom_topic" default="odom"/>
+  <arg name="speed" default="1"/>
+  <node pkg="arm" exec="driver.py" namespace="$(var side)" if="$(var real)"/>
+  <node pkg="arm" exec="model" args="--type $(var ur) --speed $(var speed)"/>
+  <node pkg="controller_manager" exec="spawner" args="arm_controller"/>
+  <node pkg="robot_state_publisher" exec="robot_state_publisher"><param name="frame_prefix" value=""/></node>
+  <node pkg="lidar" exec="driver"><param name="frame_id" value="laser"/></node>
+  <node pkg="slam_toolbox" exec="slam_node" name="slam"><remap from="scan" to="/lidar/scan"/></node>
+</launch>
+"""
+
+
+def test_same_change_of_several_nodes_is_one(changes_of):
+    text = DEFAULTS.replace("<node ", '<node respawn="true" ')
+    (sentence,), _ = changes_of("arm.launch.xml", text, 'respawn="true"', 'respawn="false"')
+    assert sentence.startswith("node 'arm/driver.py', node 'arm/model', node 'controller_manager/spawner' of")
+    assert sentence.endswith(" and 2 more: respawn true -> false")

@@ -51,7 +51,7 @@ class NameRules:
         if controller is not None:
             return phrase("the controller '{name}' offers other topics and actions", name=controller["controller"])
         gone = _items(old) - _items(new)
-        is_offered = _FRAMES.search(parameter) is not None and not _USED_FRAMES.search(parameter)
+        is_offered = offers_frame(parameter)
         if self._is_controllers(parameter):
             is_offered = _FRAMES.search(parameter) is not None or _JOINTS.search(parameter) is not None
         if gone and is_offered:
@@ -81,6 +81,11 @@ class NameRules:
         """Return whether the new version has other parameters of the same node."""
         node = _NODE.match(parameter)
         return node is not None and any(name.startswith(node[0]) for name in self._new)
+
+
+def offers_frame(parameter: str) -> bool:
+    """Return whether a parameter names a frame that any node offers to other programs."""
+    return _FRAMES.search(parameter) is not None and not _USED_FRAMES.search(parameter)
 
 
 def _controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:

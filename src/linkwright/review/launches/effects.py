@@ -3,11 +3,23 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.breaking import name_reason
-from linkwright.review.launches.outlines import NAMESPACE, NAMESPACE_OF_INCLUDED, REMAPPING, Entry, LaunchOutline
-from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, served_names
+from linkwright.review.breaking import frame_reason, name_reason
+from linkwright.review.files.parameter_names import offers_frame
+from linkwright.review.launches.conditions import condition_holds
+from linkwright.review.launches.outlines import (
+    CONDITION,
+    NAMESPACE,
+    NAMESPACE_OF_INCLUDED,
+    PARAMETER,
+    REMAPPING,
+    Entry,
+    LaunchOutline,
+)
+from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, served_names, title
 from linkwright.review.list_changes import list_items
 
 _USER_INTERFACE = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
@@ -18,31 +30,49 @@ _SPAWNING = re.compile(
 """Programs that tell another program once to create a robot, and offer nothing themselves."""
 _NAME = re.compile(r"[~/\w]+")
 _NAMES_OF_NODES = ("name", "exec_name", NAMESPACE, NAMESPACE_OF_INCLUDED, "remappings")
+_NAME_ARGUMENT = re.compile(
+    r"(^|_)(namespace|ns|robot_name|tf_prefix|frame_prefix|prefix|frame|frame_id|topic|controller|controller_name)$"
+)
+"""The arguments whose values are, by their names, names that other programs use."""
+_FRAME_PREFIX = f"{PARAMETER}frame_prefix"
 _NEVER = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
+_SUBSCRIBERS = re.compile(
+    r"slam_toolbox/|nav2_\w+/|robot_localization/|cartographer_ros/|rtabmap_\w+/|octomap_server2?/|"
+    r"robot_state_publisher/|depthimage_to_laserscan/|pointcloud_to_laserscan/|laser_filters/|twist_mux/"
+)
+_INPUTS = re.compile(
+    r"(.*/)?(scan|scan_in|cloud|cloud_in|points|odom|odometry/\w+|imu(/\w+)?|gps/fix|joint_states|depth|"
+    r"depth_camera_info|(rgb|depth|image)(/\w+)*|camera_info)"
+)
+"""The topics to which those programs subscribe. They publish others."""
 
 
-def removal_reason(entry: Entry, outline: LaunchOutline) -> Phrase | None:
+def removal_reason(entry: Entry, outline: LaunchOutline, new: LaunchOutline) -> Phrase | None:
     """Return why it is breaking that an action is removed, or None if it is not.
 
     Args:
         entry: the action.
-        outline: the file that contains it.
+        outline: the old file, which contains it.
+        new: the new file.
     """
     if entry.kind == "argument" and "value" not in entry.settings:
-        return phrase("a value that a caller passes for '{name}' has no effect", name=entry.name)
+        return value_reason(entry.name)
     if entry.kind == "remapping":
         return _remapping_reason(entry.name, entry.settings.get("to"), None, outline, outline)
-    if entry.kind != "node" or offers_nothing(entry):
+    if entry.kind != "node" or offers_nothing(entry) or condition_holds(_condition(entry, outline)) is False:
         return None
-    names = served_names(entry)
-    if entry.name.startswith(TRANSFORM_PUBLISHERS):
-        if not names:
+    names = _served_names(entry, outline)
+    if not names:
+        if entry.name.startswith(TRANSFORM_PUBLISHERS):
             return phrase("programs that look up the frame of the node do not find it")
-        return phrase("programs that look up the frame '{name}' do not find it", name=names[0])
-    if names:
-        return phrase("the topics and services of {controllers} are missing", controllers=", ".join(names))
-    return phrase("the topics and services of the node are missing")
+        return phrase("the topics and services of the node are missing")
+    return _served_reason(entry, names, new)
+
+
+def value_reason(name: str) -> Phrase:
+    """Return why it is breaking that an argument is gone."""
+    return phrase("a value that a caller passes for '{name}' has no effect", name=name)
 
 
 def offers_nothing(entry: Entry) -> bool:
@@ -64,30 +94,131 @@ def setting_reason(
         new_outline: the new file.
     """
     if entry.kind == "argument":
-        return _argument_reason(entry, setting, old, new)
+        return _argument_reason(entry, setting, old, new, old_outline, new_outline)
     if entry.kind == "remapping" and setting == "to":
         return _remapping_reason(entry.name, old, new, old_outline, new_outline)
-    if entry.kind not in ("node", "include") or offers_nothing(entry):
+    if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
+        return _renaming_reason(old, new, old_outline, new_outline)
+    if entry.kind in ("node", "include") and setting == CONDITION and not offers_nothing(entry):
+        held = condition_holds(old_outline.resolved(old or ""))
+        does_not_hold = condition_holds(new_outline.resolved(new or "")) is False
+        return phrase("by default, it does not start any more") if held and does_not_hold else None
+    if entry.kind != "node" or offers_nothing(entry):
         return None
-    if entry.kind == "node" and setting.startswith(REMAPPING):
+    if setting.startswith(REMAPPING):
         source = setting.removeprefix(REMAPPING)
-        if _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
+        is_input = _SUBSCRIBERS.match(entry.name) and _INPUTS.fullmatch(source.lstrip("/~"))
+        if is_input or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
             return None
         return _remapping_reason(source, old, new, old_outline, new_outline)
-    names = (NAMESPACE_OF_INCLUDED,) if entry.kind == "include" else _NAMES_OF_NODES
-    if setting not in names or _resolved_name(old, old_outline) == _resolved_name(new, new_outline):
+    if setting in _NAMES_OF_NODES:
+        return _renaming_reason(old, new, old_outline, new_outline)
+    if setting == "arguments":
+        old_names = _names_in(entry, old, old_outline)
+        gone = [name for name in old_names if name not in _names_in(entry, new, new_outline)]
+        return _served_reason(entry, gone, new_outline) if gone else None
+    return _parameter_reason(setting, old, new, old_outline, new_outline)
+
+
+def _parameter_reason(
+    setting: str, old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
+) -> Phrase | None:
+    """Return why a changed parameter is breaking: other programs use the frame that it names."""
+    if setting == _FRAME_PREFIX:
+        if old_outline.resolved(old or "") == new_outline.resolved(new or ""):
+            return None
+        return phrase("programs that look up the frames by their old names do not find them")
+    if old is None or new is None or not setting.startswith(PARAMETER):
         return None
-    return phrase("programs that use the names of the node, its topics or its services do not find them")
+    old_name, new_name = old_outline.resolved(old), new_outline.resolved(new)
+    is_frame = offers_frame(setting.removeprefix(PARAMETER)) and "$(" not in old_name
+    return name_reason(old_name) if is_frame and old_name != new_name else None
 
 
-def _argument_reason(entry: Entry, setting: str, old: str | None, new: str | None) -> Phrase | None:
+def _argument_reason(
+    entry: Entry,
+    setting: str,
+    old: str | None,
+    new: str | None,
+    old_outline: LaunchOutline,
+    new_outline: LaunchOutline,
+) -> Phrase | None:
     if setting == "default" and new is None and "value" not in entry.settings:
         return phrase("callers must pass '{name}'", name=entry.name)
+    if setting == "default" and old is not None and new is not None:
+        return _default_reason(entry, old, new, old_outline, new_outline)
     if setting == "choices" and old is not None and new is not None:
         gone = [item for item in list_items(old) if item not in list_items(new)]
         if gone:
             return phrase("callers that pass '{value}' fail", value=", ".join(gone))
     return None
+
+
+def _default_reason(
+    argument: Entry, old: str, new: str, old_outline: LaunchOutline, new_outline: LaunchOutline
+) -> Phrase | None:
+    """Return why another default is breaking: a node does not start, or a name that others use is another one."""
+    old_value, new_value = old_outline.resolved(old), new_outline.resolved(new)
+    if old_value == new_value:
+        return None
+    for short, long in ((old, new), (new, old)):
+        if "/" not in short and "." in short and "/" in long and PurePosixPath(long).name == short:
+            if short is old:
+                return phrase("callers that pass the name of a file instead of its path fail")
+            return phrase("callers that pass the path of a file instead of its name fail")
+    reasons = _reasons_of_uses(argument.name, old_outline, new_outline)
+    reason = next((reason for reason in reasons if reason is not None), None)
+    if reason is None and old_value and _NAME_ARGUMENT.search(argument.name) and "/" not in f"{old_value}{new_value}":
+        return name_reason(old_value)
+    return reason
+
+
+def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchOutline) -> Iterator[Phrase | None]:
+    """Yield why the new default of an argument is breaking for the actions that use it."""
+    variable = re.compile(rf"\$\((?:var|arg) {re.escape(name)}[ )]")
+    for entry in new_outline.entries:
+        if entry.kind == "argument":
+            continue
+        for setting, value in entry.settings.items():
+            if variable.search(value):
+                reason = setting_reason(entry, setting, value, value, old_outline, new_outline)
+                if reason is not None and setting == CONDITION:
+                    reason = phrase("by default, {entry} does not start any more", entry=title(entry))
+                yield reason
+
+
+def _condition(entry: Entry, outline: LaunchOutline) -> str:
+    return outline.resolved(entry.settings.get(CONDITION, ""))
+
+
+def _served_names(entry: Entry, outline: LaunchOutline) -> list[str]:
+    return _names_in(entry, entry.settings.get("arguments"), outline)
+
+
+def _names_in(entry: Entry, arguments: str | None, outline: LaunchOutline) -> list[str]:
+    """Return the controllers or the frame in the arguments of a node, with the defaults of arguments."""
+    return served_names(Entry(entry.kind, entry.name, {"arguments": outline.resolved(arguments or "")}, entry.span))
+
+
+def _served_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase | None:
+    """Return why it is breaking that a node does not serve names any more, or None if another one does."""
+    is_transform = entry.name.startswith(TRANSFORM_PUBLISHERS)
+    others = [other for other in new.entries if other.name.startswith(TRANSFORM_PUBLISHERS) == is_transform]
+    served = {name for other in others for name in _served_names(other, new)}
+    names = [name for name in names if name not in served]
+    if not names:
+        return None
+    if is_transform:
+        return frame_reason(names[0])
+    return phrase("the topics and services of {controllers} are missing", controllers=", ".join(names))
+
+
+def _renaming_reason(
+    old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
+) -> Phrase | None:
+    if _resolved_name(old, old_outline) == _resolved_name(new, new_outline):
+        return None
+    return phrase("programs that use the names of the node, its topics or its services do not find them")
 
 
 def _resolved_name(text: str | None, outline: LaunchOutline) -> str:

@@ -3,39 +3,30 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
-from functools import partial
 from pathlib import Path
 
 from linkwright.diagnostics import Phrase, SourceText, foreign, phrase
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.launches.effects import removal_reason, setting_reason
+from linkwright.review.launches.effects import removal_reason, setting_reason, value_reason
 from linkwright.review.launches.helpers import HelperFunctions
 from linkwright.review.launches.markup import read_markup_outline, xml_tags, yaml_tags
+from linkwright.review.launches.matching import MIN_SIMILARITY, matched_entries, replacements
 from linkwright.review.launches.names import LaunchPythonFile
-from linkwright.review.launches.outlines import (
-    CONDITION,
-    NAMESPACE,
-    NAMESPACE_OF_INCLUDED,
-    CodePart,
-    Entry,
-    LaunchOutline,
-)
+from linkwright.review.launches.outlines import CONDITION, CodePart, Entry, LaunchOutline
 from linkwright.review.launches.python import ACTIONS, read_python_outline
+from linkwright.review.launches.renames import renamed_names, with_new_names
 from linkwright.review.launches.titles import added_entry, joined_titles, title
 from linkwright.review.list_changes import change_text, excerpts
 from linkwright.xacro.cache import read_document
 
-_SETTINGS_OF_GROUPS = (CONDITION, NAMESPACE, NAMESPACE_OF_INCLUDED)
-"""The settings that a group gives to all its actions."""
 _MAX_STATEMENTS = 3
 """The number of changed statements up to which each is shown."""
-_MIN_SIMILARITY = 0.5
-_Group = tuple[str, "str | None", "str | None", bool]
-"""A setting, its old and its new value, and whether the change is breaking."""
+_Group = tuple[str, "str | None", "str | None", str]
+"""A setting, its old and its new value, and why the change is breaking. A group may give a condition to all actions."""
 
 
 def compare_launch_files(pair: FilePair) -> None:
@@ -45,51 +36,38 @@ def compare_launch_files(pair: FilePair) -> None:
     if outlines is None:
         return
     old, new = outlines
-    old_groups, new_groups = _by_name(old.entries), _by_name(new.entries)
+    renamed = renamed_names(old, new)
+    old = with_new_names(old, renamed)
     settings = _SettingChanges(pair, old, new)
+    settings.add_renamed(renamed)
     gone: list[Entry] = []
     come: list[Entry] = []
-    for key in dict.fromkeys([*new_groups, *old_groups]):
-        for old_entry, new_entry in _matched(old_groups.get(key, []), new_groups.get(key, [])):
-            if old_entry is not None and new_entry is not None:
-                settings.compare(old_entry, new_entry)
-            elif old_entry is not None:
-                gone.append(old_entry)
-            elif new_entry is not None:
-                come.append(new_entry)
-    settings.add_those_of_groups()
-    _add_lone_entries(pair, gone, come, old)
-    _compare_code(pair, old.code, new.code)
-
-
-def _add_lone_entries(pair: FilePair, gone: Sequence[Entry], come: Sequence[Entry], old: LaunchOutline) -> None:
-    """Add the actions that only one version has. An action with another name and the same settings is replaced."""
-    gone, come = ([each for each in entries if not _keeps_name(each)] for entries in (gone, come))
-    replaced: set[int] = set()
+    for old_entry, new_entry in matched_entries(old.entries, new.entries):
+        if old_entry is not None and new_entry is not None:
+            settings.compare(old_entry, new_entry)
+        elif old_entry is not None:
+            gone.append(old_entry)
+        elif new_entry is not None:
+            come.append(new_entry)
+    gone, come = ([entry for entry in entries if not _keeps_name(entry)] for entries in (gone, come))
+    replaced = replacements(gone, come)
+    for old_entry, new_entry in replaced:
+        text = phrase("{old} replaced by {new}", old=title(old_entry), new=title(new_entry))
+        pair.add(text, pair.location(new_entry.span))
+        settings.compare(old_entry, new_entry)
+    settings.add_groups()
     for entry in come:
-        former = next((each for each in gone if id(each) not in replaced and _is_replaced(each, entry)), None)
-        if former is None:
+        if all(entry is not new_entry for _, new_entry in replaced):
             pair.add(added_entry(entry), pair.location(entry.span))
-        else:
-            replaced.add(id(former))
-            text = phrase("{old} replaced by {new}", old=title(former), new=title(entry))
-            pair.add(text, pair.location(entry.span))
     for entry in gone:
-        if id(entry) not in replaced:
+        if all(entry is not old_entry for old_entry, _ in replaced):
             text = phrase("{entry} removed", entry=title(entry))
-            pair.add(text, pair.location(entry.span, is_old=True), removal_reason(entry, old))
+            pair.add(text, pair.location(entry.span, is_old=True), removal_reason(entry, old, new))
+    _compare_code(pair, old.code, new.code)
 
 
 def _keeps_name(entry: Entry) -> bool:
     return entry.is_same_name("to", None, entry.settings.get("to"))
-
-
-def _is_replaced(old: Entry, new: Entry) -> bool:
-    """Return whether an action is another one under a new name: a variable, or a program or file of a new package."""
-    if old.kind != new.kind or old.settings != new.settings or not (old.settings or old.kind == "include"):
-        return False
-    has_same_end = old.name.rpartition("/")[2] == new.name.rpartition("/")[2]
-    return old.kind == "environment" or (old.kind in ("node", "include") and has_same_end)
 
 
 def read_outline(path: Path, root: Path) -> LaunchOutline:
@@ -138,7 +116,7 @@ def _are_versions(old: CodePart, new: CodePart) -> bool:
     """Return whether two statements are probably versions of the same one, and differ as they are written."""
     return (
         old.source != new.source
-        and SequenceMatcher(None, old.source, new.source, autojunk=False).ratio() >= _MIN_SIMILARITY
+        and SequenceMatcher(None, old.source, new.source, autojunk=False).ratio() >= MIN_SIMILARITY
     )
 
 
@@ -153,102 +131,51 @@ def _without_common(parts: Sequence[CodePart], others: Sequence[CodePart]) -> li
     return lone
 
 
-def _by_name(entries: list[Entry]) -> dict[tuple[str, str], list[Entry]]:
-    groups: dict[tuple[str, str], list[Entry]] = {}
-    for entry in entries:
-        groups.setdefault((entry.kind, "" if entry.kind == "process" else entry.name), []).append(entry)
-    return groups
-
-
-def _matched(old: list[Entry], new: list[Entry]) -> Iterator[tuple[Entry | None, Entry | None]]:
-    """Yield the pairs of entries with one name: equal ones, those with one node name, and the most similar ones."""
-    old_rest, new_rest = list(old), list(new)
-    pairs: list[tuple[Entry, Entry]] = []
-    for is_match in (_are_equal, _have_same_node_name):
-        for entry in tuple(new_rest):
-            match = next((other for other in old_rest if is_match(other, entry)), None)
-            if match is not None:
-                old_rest.remove(match)
-                new_rest.remove(entry)
-                pairs.append((match, entry))
-    candidates = sorted(
-        ((_similarity(other, entry), i, k) for i, other in enumerate(old_rest) for k, entry in enumerate(new_rest)),
-        key=lambda item: (-item[0], item[1], item[2]),
-    )
-    old_left, new_left = set(range(len(old_rest))), set(range(len(new_rest)))
-    for similarity, i, k in candidates:
-        if new_rest[k].kind == "process" and similarity < _MIN_SIMILARITY:
-            continue
-        if i in old_left and k in new_left:
-            old_left.remove(i)
-            new_left.remove(k)
-            pairs.append((old_rest[i], new_rest[k]))
-    yield from sorted(pairs, key=lambda item: new.index(item[1]))
-    yield from ((None, new_rest[k]) for k in sorted(new_left))
-    yield from ((old_rest[i], None) for i in sorted(old_left))
-
-
-def _are_equal(old: Entry, new: Entry) -> bool:
-    return old.settings == new.settings and _command(old) == _command(new)
-
-
-def _command(entry: Entry) -> list[str]:
-    return [entry.name] if entry.kind == "process" else []
-
-
-def _have_same_node_name(old: Entry, new: Entry) -> bool:
-    return "name" in new.settings and old.settings.get("name") == new.settings["name"]
-
-
-def _similarity(old: Entry, new: Entry) -> float:
-    """Return how much of the settings, and of the commands of processes, is equal, from 0 to 1."""
-    old_words, new_words = (
-        " ".join([*(f"{name}={value}" for name, value in entry.settings.items()), *_command(entry)]).split()
-        for entry in (old, new)
-    )
-    return SequenceMatcher(None, old_words, new_words, autojunk=False).ratio()
-
-
 class _SettingChanges:
-    """The changed settings of entries. Those that a group gives to its actions are one change."""
+    """The changed settings of actions. The same change of several actions is one.
+
+    Args:
+        pair: the file.
+        old: the old outline, with the new names of arguments.
+        new: the new outline.
+    """
 
     def __init__(self, pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
         self._pair = pair
-        self._reason = partial(setting_reason, old_outline=old, new_outline=new)
-        self._of_groups: dict[_Group, list[tuple[Entry, Location | None, Phrase | None]]] = {}
+        self._old = old
+        self._new = new
+        self._groups: dict[_Group, list[tuple[Entry, Location | None, Phrase | None]]] = {}
+
+    def add_renamed(self, renamed: Mapping[str, str]) -> None:
+        """Add the arguments and variables with new names, by old name."""
+        for old_name, new_name in renamed.items():
+            entry = next(entry for entry in self._new.entries if entry.name == new_name and entry.has_value)
+            is_argument = entry.kind == "argument" and "value" not in entry.settings
+            text = phrase("{entry} renamed to '{name}'", entry=title(replace(entry, name=old_name)), name=new_name)
+            self._pair.add(text, self._pair.location(entry.span), value_reason(old_name) if is_argument else None)
 
     def compare(self, old: Entry, new: Entry) -> None:
-        """Add the changed settings of an entry."""
-        location = self._pair.location(new.span)
-        if old.name != new.name:
+        """Add the changed settings of an action."""
+        if old.kind == "process" and old.name != new.name:
             program = replace(new, name=new.name.lstrip("[").partition(",")[0].partition(" ")[0])
-            self._add([program], "command", old.name, new.name, location, None)
+            self._add(program, "command", old.name, new.name, None)
         for name in dict.fromkeys([*new.settings, *old.settings]):
             old_value, new_value = old.settings.get(name), new.settings.get(name)
-            if old_value == new_value or new.is_same_name(name, old_value, new_value):
-                continue
-            reason = self._reason(new, name, old_value, new_value)
-            if name in _SETTINGS_OF_GROUPS:
-                group = (name, old_value, new_value, reason is None)
-                self._of_groups.setdefault(group, []).append((new, location, reason))
-            else:
-                self._add([new], name, old_value, new_value, location, reason)
+            if old_value != new_value and not new.is_same_name(name, old_value, new_value):
+                reason = setting_reason(new, name, old_value, new_value, self._old, self._new)
+                self._add(new, name, old_value, new_value, reason)
 
-    def add_those_of_groups(self) -> None:
-        """Add the changed settings that groups give to their actions."""
-        for (name, old, new, _), places in self._of_groups.items():
-            _, location, reason = places[0]
-            self._add([entry for entry, _, _ in places], name, old, new, location, reason)
+    def _add(self, entry: Entry, name: str, old: str | None, new: str | None, reason: Phrase | None) -> None:
+        place = entry, self._pair.location(entry.span), reason
+        key = name, old, new, "" if name == CONDITION else str(reason)
+        self._groups.setdefault(key, []).append(place)
 
-    def _add(
-        self,
-        entries: list[Entry],
-        name: str,
-        old: str | None,
-        new: str | None,
-        location: Location | None,
-        reason: Phrase | None,
-    ) -> None:
-        values = ("-" if value is None else value or "''" for value in (old, new))
-        text = phrase("{entry}: {change}", entry=joined_titles(entries), change=change_text(name, *values))
-        self._pair.add(text, location, reason)
+    def add_groups(self) -> None:
+        """Add the changes to the file."""
+        for (name, old, new, _), places in self._groups.items():
+            location = places[0][1]
+            reason = next((reason for _, _, reason in places if reason is not None), None)
+            values = ("-" if value is None else value or "''" for value in (old, new))
+            titles = joined_titles([entry for entry, _, _ in places])
+            text = phrase("{entry}: {change}", entry=titles, change=change_text(name, *values))
+            self._pair.add(text, location, reason)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from linkwright.diagnostics import Span
 
@@ -14,7 +15,10 @@ NAMESPACE_OF_INCLUDED = "namespace of its nodes"
 """The setting of an include that is not one of the arguments that it passes."""
 REMAPPING = "remapping "
 PARAMETER = "parameter "
-_VARIABLE = re.compile(r"\$\((?:var|arg) ([^() ]+)[^()]*\)")
+_VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*))?\)")
+_MAX_DEPTH = 5
+"""The number of variables whose values may contain variables."""
+_MAX_LENGTH = 10_000
 
 
 @dataclass(frozen=True)
@@ -34,6 +38,11 @@ class Entry:
     name: str
     settings: dict[str, str]
     span: Span
+
+    @property
+    def has_value(self) -> bool:
+        """Whether it declares an argument or sets a variable."""
+        return self.kind in ("argument", "variable")
 
     def is_same_name(self, setting: str, old: str | None, new: str | None) -> bool:
         """Return whether a changed setting is a remapping of a name to itself, which is the same as none."""
@@ -75,12 +84,26 @@ class LaunchOutline:
 
     def resolved(self, text: str) -> str:
         """Return a text with the defaults of arguments in place of ``$(var NAME)``."""
-        defaults = {
-            entry.name: entry.settings["default"]
-            for entry in self.entries
-            if entry.kind == "argument" and "default" in entry.settings
-        }
-        return _VARIABLE.sub(lambda variable: defaults.get(variable[1], variable[0]), text)
+        for _ in range(_MAX_DEPTH):
+            resolved = _VARIABLE.sub(self._value, text)
+            if resolved == text or len(resolved) > _MAX_LENGTH:
+                break
+            text = resolved
+        return text
+
+    def _value(self, variable: re.Match[str]) -> str:
+        value = self._values.get(variable["name"], variable["default"])
+        return variable[0] if value is None else value
+
+    @cached_property
+    def _values(self) -> dict[str, str]:
+        """The defaults and values of arguments, and those of variables, if there is only one, by name."""
+        values: dict[str, set[str]] = {}
+        for entry in self.entries:
+            value = entry.settings.get("value", entry.settings.get("default"))
+            if entry.has_value and value is not None:
+                values.setdefault(entry.name, set()).add(value)
+        return {name: next(iter(found)) for name, found in values.items() if len(found) == 1}
 
 
 @dataclass(frozen=True)

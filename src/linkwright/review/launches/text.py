@@ -176,8 +176,16 @@ class ExpressionTexts:
             return f"$(var {part(first)})" if default is None else f"$(var {part(first)} {part(default)})"
         if function in ("FindPackageShare", "get_package_share_directory", "get_package_share_path"):
             return f"$(find-pkg-share {part(first)})"
+        if function == "ThisLaunchFileDir":
+            return "$(dirname)"
+        if function == "find" and isinstance(node.func, ast.Attribute):
+            owner = self._python.resolved(node.func.value)
+            is_share = isinstance(owner, ast.Call) and called_name(owner).rpartition(".")[2] == "FindPackageShare"
+            return part(owner) if is_share else None
         if first is None:
             return None
+        if function == "FindExecutable":
+            return f"$(find-exec {part(first)})"
         if function in ("PathJoinSubstitution", "join"):
             return "/".join(map(part, self._pieces(first) if function != "join" else arguments))
         if function in ("TextSubstitution", "str", "ParameterValue", "ParameterFile", "Path"):

@@ -9,7 +9,7 @@ from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
 from linkwright.review.launches.outlines import Entry
 from linkwright.review.list_changes import list_items
 
-_MAX_TITLES = 3
+_MAX_TITLES = 4
 _MAX_NAME = 160
 TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
 _CHILD = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")

@@ -1,0 +1,135 @@
+"""Which actions of two versions of a launch file are the same."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from difflib import SequenceMatcher
+from pathlib import PurePosixPath
+
+from linkwright.review.launches.outlines import Entry
+from linkwright.review.launches.titles import served_names
+
+MIN_SIMILARITY = 0.5
+_MIN_SIMILARITY_OF_PROGRAMS = 0.75
+_SEPARATORS = re.compile(r"[\W_]+|node")
+Match = tuple["Entry | None", "Entry | None"]
+"""The old and the new action; None for the version that does not have it."""
+
+
+def matched_entries(old: Sequence[Entry], new: Sequence[Entry]) -> Iterator[Match]:
+    """Yield the pairs of actions of the same kind and name, then the actions that only one version has."""
+    old_groups, new_groups = _by_name(old), _by_name(new)
+    for key in dict.fromkeys([*new_groups, *old_groups]):
+        yield from _matched(old_groups.get(key, []), new_groups.get(key, []))
+
+
+def replacements(gone: Sequence[Entry], come: Sequence[Entry]) -> list[tuple[Entry, Entry]]:
+    """Return the pairs of a removed action and an added one that replaces it."""
+    scores = [(_replacement_score(a, b), i, k) for i, a in enumerate(gone) for k, b in enumerate(come)]
+    pairs: dict[int, int] = {}
+    for score, i, k in sorted(scores, key=lambda item: (-item[0], item[1], item[2])):
+        if score and i not in pairs and k not in pairs.values():
+            pairs[i] = k
+    return [(gone[i], come[k]) for i, k in sorted(pairs.items(), key=lambda pair: pair[1])]
+
+
+def _replacement_score(old: Entry, new: Entry) -> float:
+    """Return how certain it is that an action is another one under a new name; 0 if it is not."""
+    if old.kind != new.kind:
+        return 0.0
+    if old.kind == "environment":
+        return float(old.settings == new.settings)
+    similarity = _similarity(old, new)
+    if old.kind == "include":
+        is_same = _file_key(old.name) == _file_key(new.name)
+        return 1.0 + similarity if is_same else 0.0
+    if old.kind != "node":
+        return 0.0
+    (old_package, old_program), (new_package, new_program) = _program(old), _program(new)
+    name = old.settings.get("name")
+    if name and name == new.settings.get("name") and old.settings.get("namespace") == new.settings.get("namespace"):
+        return 3.0 + similarity
+    if old_program == new_program:
+        return 2.0 + similarity if similarity >= MIN_SIMILARITY or not (old.settings and new.settings) else 0.0
+    if old_package != new_package or name != new.settings.get("name"):
+        return 0.0
+    old_word, new_word = (
+        _SEPARATORS.sub("", program.rpartition("::")[2].lower()) for program in (old_program, new_program)
+    )
+    likeness = SequenceMatcher(None, old_word, new_word, autojunk=False).ratio()
+    is_like = likeness >= _MIN_SIMILARITY_OF_PROGRAMS and (similarity >= MIN_SIMILARITY or likeness == 1.0)
+    return likeness + similarity if is_like else 0.0
+
+
+def _program(entry: Entry) -> tuple[str, str]:
+    package, _, program = entry.name.partition("/")
+    return package, program.removesuffix(".py")
+
+
+def _file_key(path: str) -> str:
+    """Return the name of a launch file without the ends of such names."""
+    name = PurePosixPath(path).name
+    return re.sub(r"[._]launch(\.(py|xml|ya?ml))?$|\.(py|xml|ya?ml)$", "", name)
+
+
+def _by_name(entries: Sequence[Entry]) -> dict[tuple[str, str], list[Entry]]:
+    groups: dict[tuple[str, str], list[Entry]] = {}
+    for entry in entries:
+        groups.setdefault((entry.kind, "" if entry.kind == "process" else entry.name), []).append(entry)
+    return groups
+
+
+def _matched(old: list[Entry], new: list[Entry]) -> Iterator[Match]:
+    """Yield the pairs of entries with one name: equal ones, those with one node name, and the most similar ones."""
+    old_rest, new_rest = list(old), list(new)
+    pairs: list[tuple[Entry, Entry]] = []
+    criteria: tuple[Callable[[Entry, Entry], bool], ...] = (_are_equal, _have_same_node_name, _serve_same_names)
+    for is_match in criteria:
+        for entry in tuple(new_rest):
+            match = next((other for other in old_rest if is_match(other, entry)), None)
+            if match is not None:
+                old_rest.remove(match)
+                new_rest.remove(entry)
+                pairs.append((match, entry))
+    candidates = sorted(
+        ((_similarity(other, entry), i, k) for i, other in enumerate(old_rest) for k, entry in enumerate(new_rest)),
+        key=lambda item: (-item[0], item[1], item[2]),
+    )
+    old_left, new_left = set(range(len(old_rest))), set(range(len(new_rest)))
+    for similarity, i, k in candidates:
+        if new_rest[k].kind == "process" and similarity < MIN_SIMILARITY:
+            continue
+        if i in old_left and k in new_left:
+            old_left.remove(i)
+            new_left.remove(k)
+            pairs.append((old_rest[i], new_rest[k]))
+    yield from sorted(pairs, key=lambda item: new.index(item[1]))
+    yield from ((None, new_rest[k]) for k in sorted(new_left))
+    yield from ((old_rest[i], None) for i in sorted(old_left))
+
+
+def _are_equal(old: Entry, new: Entry) -> bool:
+    return old.settings == new.settings and _command(old) == _command(new)
+
+
+def _command(entry: Entry) -> list[str]:
+    return [entry.name] if entry.kind == "process" else []
+
+
+def _have_same_node_name(old: Entry, new: Entry) -> bool:
+    return "name" in new.settings and old.settings.get("name") == new.settings["name"]
+
+
+def _serve_same_names(old: Entry, new: Entry) -> bool:
+    names = served_names(new)
+    return bool(names) and served_names(old) == names
+
+
+def _similarity(old: Entry, new: Entry) -> float:
+    """Return how much of the settings, and of the commands of processes, is equal, from 0 to 1."""
+    old_words, new_words = (
+        " ".join([*(f"{name}={value}" for name, value in entry.settings.items()), *_command(entry)]).split()
+        for entry in (old, new)
+    )
+    return SequenceMatcher(None, old_words, new_words, autojunk=False).ratio()

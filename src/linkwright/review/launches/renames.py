@@ -1,0 +1,80 @@
+"""Arguments and variables of launch files that have another name in the new version."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from difflib import SequenceMatcher
+
+from linkwright.review.launches.outlines import Entry, LaunchOutline
+
+_KINDS = ("argument", "variable")
+_MIN_USES = 0.5
+"""The share of the uses of a name that must be uses of the new name."""
+_MIN_SIMILARITY = 0.6
+_Use = tuple[str, str]
+"""The kind of an action, and a value that contains a variable."""
+
+
+def renamed_names(old: LaunchOutline, new: LaunchOutline) -> dict[str, str]:
+    """Return the new names of renamed arguments and variables, by old name.
+
+    A name is the old one if the actions that used the old one use it, or, if no action does, if it is similar and has
+    the same settings.
+    """
+    renamed: dict[str, str] = {}
+    for kind in _KINDS:
+        old_entries, new_entries = (_by_name(outline, kind) for outline in (old, new))
+        gone = [entry for name, entry in old_entries.items() if name not in new_entries]
+        come = [entry for name, entry in new_entries.items() if name not in old_entries]
+        scores = [(_likelihood(a, b, old, new), i, k) for i, a in enumerate(gone) for k, b in enumerate(come)]
+        for score, i, k in sorted(scores, key=lambda item: (-item[0], item[1], item[2])):
+            if score and gone[i].name not in renamed and come[k].name not in renamed.values():
+                renamed[gone[i].name] = come[k].name
+    return renamed
+
+
+def with_new_names(outline: LaunchOutline, renamed: Mapping[str, str]) -> LaunchOutline:
+    """Return an outline with the new names of arguments and variables."""
+    if not renamed:
+        return outline
+    entries = [
+        replace(
+            entry,
+            name=renamed.get(entry.name, entry.name) if entry.has_value else _translated(entry.name, renamed),
+            settings={name: _translated(value, renamed) for name, value in entry.settings.items()},
+        )
+        for entry in outline.entries
+    ]
+    return replace(outline, entries=entries)
+
+
+def _by_name(outline: LaunchOutline, kind: str) -> dict[str, Entry]:
+    return {entry.name: entry for entry in reversed(outline.entries) if entry.kind == kind}
+
+
+def _likelihood(old_entry: Entry, new_entry: Entry, old: LaunchOutline, new: LaunchOutline) -> float:
+    """Return how likely it is that an argument is another one under a new name; 0 if it is not."""
+    names = {old_entry.name: new_entry.name}
+    old_uses = Counter((kind, _translated(value, names)) for kind, value in _uses(old, old_entry.name))
+    new_uses = Counter(_uses(new, new_entry.name))
+    similarity = SequenceMatcher(None, old_entry.name, new_entry.name, autojunk=False).ratio()
+    is_same = old_entry.settings == new_entry.settings
+    if not old_uses:
+        return similarity if is_same and similarity >= _MIN_SIMILARITY and not new_uses else 0.0
+    share = (old_uses & new_uses).total() / old_uses.total()
+    return share + similarity + is_same if share >= _MIN_USES else 0.0
+
+
+def _uses(outline: LaunchOutline, name: str) -> Iterator[_Use]:
+    pattern = re.compile(rf"\$\((?:var|arg) {re.escape(name)}[ )]")
+    for entry in outline.entries:
+        for text in (entry.name, *entry.settings.values()):
+            if pattern.search(text):
+                yield entry.kind, text
+
+
+def _translated(text: str, renamed: Mapping[str, str]) -> str:
+    return re.sub(r"(\$\((?:var|arg) )([^() ]+)", lambda match: f"{match[1]}{renamed.get(match[2], match[2])}", text)
