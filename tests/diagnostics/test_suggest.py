@@ -58,6 +58,10 @@ def test_missing_file_hint_depends_on_folder_contents(tmp_path, monkeypatch):
     assert missing_file_hint(tmp_path / "robto.udrf") == "did you mean 'robot.urdf'?"
     assert missing_file_hint(tmp_path / "notes.urdf") == "choose from robot.urdf"
     assert missing_file_hint(tmp_path / "x", lambda name: name.endswith(".txt")) == "choose from notes.txt"
+    (tmp_path / "urdf").mkdir()
+    (tmp_path / "urdf" / "wheel.urdf").touch()
+    assert missing_file_hint(tmp_path / "wheel.urdf").replace("\\", "/") == "did you mean 'urdf/wheel.urdf'?"
+    assert missing_file_hint(tmp_path / "urdf" / "robot.urdf") == "did you mean 'robot.urdf'?"
 
 
 def test_missing_file_hint_suggests_longer_suffix(tmp_path):

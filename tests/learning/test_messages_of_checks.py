@@ -65,6 +65,100 @@ def test_a_package_that_cannot_be_built_is_refused(package, file, text, message)
         Work(package.workspace, lesson=package.workspace).package("p")
 
 
+@pytest.mark.parametrize(
+    ("manifest", "message"),
+    [
+        ("<package format='3'><name>q</name></package>", r"has the name 'q'; write <name>p</name>"),
+        ("<package format='3'></package>", r"has no <name>; write <name>p</name>"),
+        ("<package format='3'>＜name>p</name></package>", r"package\.xml, line 1, .*English keyboard"),
+    ],
+)
+def test_package_with_another_name_than_its_folder_is_explained(package, manifest, message):
+    (package.folder / "package.xml").write_text(manifest, encoding="utf-8")
+    with pytest.raises(NotYet, match=message):
+        Work(package.workspace, lesson=package.workspace).package("p")
+
+
+def test_package_beside_src_is_explained(package):
+    package.folder.rename(package.workspace / "p")
+    with pytest.raises(NotYet, match="beside the folder 'src'; move it into 'src'"):
+        Work(package.workspace, lesson=package.workspace).package("p")
+    (package.workspace / "p").rename(package.workspace / "q")
+    package.folder.mkdir()
+    with pytest.raises(NotYet, match=r"'src/p' has no file package\.xml"):
+        Work(package.workspace, lesson=package.workspace).package("p")
+
+
+def test_missing_file_message_names_file_beside_it(package):
+    (package.folder / "rviz").mkdir()
+    (package.folder / "rviz" / "mbot.rviz").write_text("x")
+    with pytest.raises(NotYet, match=r"has no file 'rviz/urdf\.rviz'; it has 'rviz/mbot\.rviz'"):
+        package.file("rviz/urdf.rviz")
+
+
+JOINT = '<joint name="{name}" type="continuous"><parent link="a"/><child link="{child}"/>{axis}</joint>'
+
+
+@pytest.mark.parametrize(
+    ("links", "joints", "message"),
+    [
+        (
+            "ab",
+            [("j", "b", '<axis rpy="0 1 0"/>')],
+            r"axis of the joint 'j' has no direction; write <axis xyz=\"0 1 0\"/>",
+        ),
+        ("abc", [("j", "b", ""), ("k", "b", "")], r"link 'b' is the child of two joints, 'j' and 'k'"),
+        ("abb", [("j", "b", ""), ("k", "c", "")], r"link 'b' is defined twice"),
+    ],
+)
+def test_copied_or_incomplete_joint_is_explained(package, links, joints, message):
+    elements = [f'<link name="{name}"/>' for name in links]
+    elements += [JOINT.format(name=name, child=child, axis=axis) for name, child, axis in joints]
+    (package.folder / "r.urdf").write_text(f'<robot name="r">{"".join(elements)}</robot>')
+    with pytest.raises(NotYet, match=message):
+        package.robot("r.urdf").joint("j").expect_axis((0, 1, 0))
+
+
+def test_other_place_of_installed_file_is_named(package):
+    (package.folder / "launch").mkdir()
+    (package.folder / "launch" / "d.launch.py").write_text("x")
+    marker = "('share/ament_index/resource_index/packages', ['resource/p'])"
+    files = f"{marker}, ('share/p', ['package.xml', 'launch/d.launch.py'])"
+    (package.folder / "setup.py").write_text(f"from setuptools import setup\nsetup(name='p', data_files=[{files}])\n")
+    with pytest.raises(NotYet, match=r"does not install 'launch/d\.launch\.py' in 'share/p/launch', but in 'share/p'"):
+        package.expect_installed("launch/d.launch.py")
+
+
+def test_called_function_is_not_taken_for_a_defined_one(package):
+    write_program(package, "pass")
+    text = (package.folder / "p" / "move.py").read_text()
+    (package.folder / "p" / "move.py").write_text(
+        text.replace("def main", "def man") + "if __name__ == 'x':\n    main()\n"
+    )
+    with pytest.raises(NotYet, match=r"move\.py has no function 'main'; it has 'man'"):
+        package.program("move")
+
+
+def test_module_beside_its_folder_is_named(package):
+    write_program(package, "pass")
+    (package.folder / "p" / "move.py").rename(package.folder / "move.py")
+    with pytest.raises(NotYet, match=r"move 'move\.py' into the folder 'p'"):
+        package.program("move")
+
+
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        ("('share/p', glob('launch/*'))", "write 'from glob import glob' at the top of the file"),
+        ("('share/p', []) ('share/q', [])", "a comma is missing at the end of an entry of data_files"),
+    ],
+)
+def test_mistake_in_data_files_is_explained(package, entries, message):
+    (package.folder / "setup.py").write_text(f"from setuptools import setup\nsetup(name='p', data_files=[{entries}])\n")
+    with pytest.raises(NotYet, match=message):
+        package.expect_installed()
+
+
 def test_misplaced_link_is_reported(package):
     (package.folder / "r.urdf").write_text('<robot name="r"><link name="a"><link name="b"/></link></robot>')
     with pytest.raises(NotYet, match=r"no link is called 'b'; r\.urdf, line 1: it is inside <link>"):
@@ -82,6 +176,7 @@ def test_build_depend_alone_is_not_enough(package):
         ("'move = p.move.py:main'", "write 'move = p.move:main'"),
         ("'move = move:main'", "write 'move = p.move:main'"),
         ("'move = p.move'", "the entry names no function; write 'move = p.move:main'"),
+        ("'move = p.move.main'", "the entry names no function; write 'move = p.move:main'"),
         ("'move = p.move:start'", r"move\.py has no function 'start'; it has 'main'"),
         ("'other = p.move:main'\n'move = p.move:main'", "line 2: a comma is missing at the end of the line"),
         ("‘move = p.move:main’", "English keyboard"),

@@ -19,10 +19,13 @@ def finding_of(text: str | bytes) -> tuple[str, str, int, int, str | None]:
     return diagnostic.code, diagnostic.message, diagnostic.span.line, diagnostic.span.column, diagnostic.hint
 
 
+DOUBLE = "write '</b>' in place of the second '<b>' in line 2"
 AMPERSAND = "write '&amp;' for the character '&'"
 CASES = [
     ("<a>\n  <b></c>\n</a>", "XML201", "'</c>' does not close '<b>'", 2, 6, "write '</b>', or remove it"),
     ("<a>\n  <b>\n</a>", "XML201", "'</a>' does not close '<b>'", 3, 1, "write '</b>' before it"),
+    ("<a>\n  <b>x<b>\n</a>", "XML201", "'</a>' does not close '<b>'", 3, 1, DOUBLE),
+    ("<xarco:a/>", "XML205", "the prefix 'xarco' of 'xarco:a' is not declared", 1, 2, "did you mean 'xacro:a'?"),
     ("<a>\n  <b>", "XML202", "'<b>' is never closed", 2, 3, "write '</b>' where it ends"),
     ("<a>é<b/>", "XML202", "'<a>' is never closed", 1, 1, "write '</a>' where it ends"),
     ("<a><!-- x", "XML203", "this comment is never closed", 1, 4, "close it with '-->'"),

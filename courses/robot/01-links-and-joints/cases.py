@@ -7,6 +7,7 @@ RIGHT_ORIGIN = '<origin xyz="0 -0.19 -0.05" rpy="0 0 0"/>'
 XACRO_PREFIX = '<robot name="mbot" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:property name="r" value="0.2"/>'
 
 LEFT_JOINT = '<joint name="left_wheel_joint" type="continuous">'
+BESIDE = '<box size="0.03 0.04 0.04"/>\n      </geometry>\n      <origin xyz="0 0 0.5"/>'
 BODY_END = """      <material name="orange"/>
     </visual>
   </link>
@@ -192,6 +193,40 @@ CASES = [
         says="there is 'rigth_wheel_joint'",
     ),
     wrong("casters", "both at the front", Edit(URDF, "-0.18 0", "0.18 0"), says="should be at -0.18 0 -0.095"),
+    wrong(
+        "right-wheel",
+        "the link of the left wheel",
+        Edit(URDF, '<child link="right_wheel_link"/>', '<child link="left_wheel_link"/>'),
+        says="is the child of two joints",
+    ),
+    wrong(
+        "casters",
+        "a fixed caster",
+        Edit(URDF, 'name="front_caster_joint" type="continuous"', 'name="front_caster_joint" type="fixed"'),
+        says="should be 'continuous'",
+    ),
+    wrong(
+        "camera",
+        "a visual beside its frame",
+        Edit(URDF, '<box size="0.03 0.04 0.04"/>\n      </geometry>', BESIDE),
+        says="its center is at 0 0 0.5",
+    ),
+    wrong(
+        "program",
+        "the loop below spin",
+        Edit(PROGRAM, "for _ in", "rclpy.spin(node)\nfor _ in"),
+        says="The lines below rclpy.spin() do not run",
+    ),
+    wrong(
+        "program",
+        "shutdown before the stop",
+        Edit(PROGRAM, STOP + "rclpy.shutdown()", "rclpy.shutdown()\n" + STOP),
+        says="was called before this line",
+    ),
+    wrong("program", "init without parentheses", Edit(PROGRAM, "rclpy.init()", "rclpy.init"), says="with parentheses"),
+    wrong(
+        "program", "no queue", Edit(PROGRAM, "'/cmd_vel', 10", "'/cmd_vel'"), says="as the last argument, such as 10"
+    ),
     wrong(
         "camera",
         "a sphere",

@@ -77,8 +77,11 @@ def right_wheel_lies(work):
 
 
 def expect_caster(work, side, x):
+    joint = robot(work).joint(f"{side}_caster_joint")
+    joint.expect_links("base_link", f"{side}_caster_link")
+    joint.expect_type("continuous")
     robot(work).expect_position(f"{side}_caster_link", (x, 0, -0.095), frame="base_link")
-    robot(work).link(f"{side}_caster_link").expect_shape(ShapeSpec(Sphere(0.015)))
+    robot(work).link(f"{side}_caster_link").expect_shape(ShapeSpec(Sphere(0.015), at=(0, 0, 0)))
 
 
 @check("casters", en="A sphere at the front is the first caster.", zh="前部的小球是第一个万向轮。")
@@ -110,7 +113,7 @@ def camera_is_in_front(work):
 
 @check("camera", en="The camera is a box of 0.03 m × 0.04 m × 0.04 m.", zh="相机是 0.03 m × 0.04 m × 0.04 m 的长方体。")
 def camera_is_box(work):
-    robot(work).link("camera_link").expect_shape(ShapeSpec(Box((0.03, 0.04, 0.04))))
+    robot(work).link("camera_link").expect_shape(ShapeSpec(Box((0.03, 0.04, 0.04)), at=(0, 0, 0)))
 
 
 @check("teleop", en="mbot drives ahead and turns to the left.", zh="mbot 能前进，也能左转。")

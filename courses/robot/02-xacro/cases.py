@@ -5,6 +5,7 @@ XACRO, PARTS = URDF_FOLDER + "mbot_base.xacro", URDF_FOLDER + "parts.xacro"
 NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 CASTER_HEIGHT = "${-(base_length/2 + caster_radius)}"
 TWO_PARAMETERS, LEFT = 'params="prefix reflect"', '<xacro:wheel prefix="left" reflect="1"/>'
+INCLUDE = '  <xacro:include filename="$(find my_robot_description)/urdf/parts.xacro"/>\n'
 FOOTPRINT = "${wheel_radius + 0.05}"
 
 CASES = [
@@ -14,6 +15,20 @@ CASES = [
         Edit(XACRO, 'radius="${base_radius}"', 'radius="base_radius"'),
         says="write ${base_radius}",
     ),
+    wrong(
+        "macro",
+        "a link with the same name in both calls",
+        Edit(XACRO, '<link name="${prefix}_wheel_link">', '<link name="wheel_link">'),
+        says="link 'wheel_link' is defined twice",
+    ),
+    wrong(
+        "include",
+        "below the calls",
+        Edit(XACRO, INCLUDE, ""),
+        Edit(XACRO, "</robot>", INCLUDE + "</robot>"),
+        says="stand above the call",
+    ),
+    wrong("include", "no folder", Edit(XACRO, "/urdf/parts.xacro", "/parts.xacro"), says="urdf/parts.xacro'?"),
     wrong(
         "macro", "a call without the prefix", Edit(XACRO, LEFT, LEFT.replace("xacro:", "")), says="write <xacro:wheel"
     ),

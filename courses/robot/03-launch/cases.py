@@ -135,6 +135,24 @@ CASES = [
     right("rviz", "another view", Edit(RVIZ, "Distance: 1.7", "Distance: 3")),
     wrong(
         "rviz",
+        "the robot of a file",
+        Edit(RVIZ, "Description Source: Topic", "Description Source: File"),
+        says="is File, but should be Topic",
+    ),
+    wrong(
+        "rviz",
+        "a topic without its line",
+        Edit(RVIZ, "      Description Topic:\n        Value: /robot_description\n", ""),
+        says="has no Description Topic",
+    ),
+    wrong(
+        "rviz",
+        "a topic in the line above",
+        Edit(RVIZ, "Description Topic:\n        Value: /robot", "Description Topic: /robot"),
+        says="write 'Value: /robot_description' below it",
+    ),
+    wrong(
+        "rviz",
         "another fixed frame",
         Edit(RVIZ, "Fixed Frame: base_footprint", "Fixed Frame: map"),
         says="fixed frame is 'map'",

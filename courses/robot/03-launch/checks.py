@@ -44,6 +44,11 @@ def knows_wheel(work):
         running.expect_transform("base_link", "left_wheel_link", (0, 0.19, -0.05))
 
 
+def topic_of(display):
+    topic = display.get("Description Topic")
+    return topic.get("Value") if isinstance(topic, dict) else None
+
+
 def expect_robot_model(displays):
     """Require one of the RobotModel displays to be on, with the topic /robot_description."""
     shown = [display for display in displays if display.get("Value", display.get("Enabled")) is not False]
@@ -52,7 +57,18 @@ def expect_robot_model(displays):
             en="The RobotModel display is switched off; write 'Value: true'.",
             zh="RobotModel 显示项被关闭了；请写“Value: true”。",
         )
-    topics = [(display.get("Description Topic") or {}).get("Value", "-") for display in shown]
+    sources = {display.get("Description Source", "Topic") for display in shown}
+    if "Topic" not in sources:
+        raise NotYet(
+            en=f"The Description Source of the RobotModel display is {min(sources)}, but should be Topic.",
+            zh=f"RobotModel 显示项的 Description Source 是 {min(sources)}，应当是 Topic。",
+        )
+    topics = [topic_of(display) for display in shown]
+    if not any(topics):
+        raise NotYet(
+            en="The RobotModel display has no Description Topic; write 'Value: /robot_description' below it, indented.",
+            zh="RobotModel 显示项没有 Description Topic；请在它下面缩进写“Value: /robot_description”。",
+        )
     if not any(str(topic).lstrip("/") == "robot_description" for topic in topics):
         raise NotYet(
             en=f"The Description Topic of the RobotModel display is {topics[0]}, but should be /robot_description.",

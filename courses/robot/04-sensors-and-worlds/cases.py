@@ -25,6 +25,9 @@ GZ_DRIVE = """    <plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-di
       <wheel_separation>0.38</wheel_separation>
       <wheel_radius>0.06</wheel_radius>
 """
+WALL_POSE = "<pose>3 0 0.25 0 0 0</pose>"
+COLLISION_OF_WALL = """<collision name="collision">
+          <geometry><box><size>0.2 4 0.5</size></box></geometry>"""
 
 CASES = [
     wrong(
@@ -133,6 +136,51 @@ CASES = [
         Edit(WORLDS + "package.xml", "  <exec_depend>gazebo_ros</exec_depend>\n", ""),
         says="package.xml does not list 'gazebo_ros' as a dependency at run time",
     ),
+    wrong("drive", "a decimal comma", Edit(SIM, ">0.38<", ">0,38<"), says="write a point as decimal separator"),
+    wrong("drive", "centimeters", Edit(SIM, ">0.38<", ">38<"), says="lengths are in meters"),
+    wrong(
+        "drive",
+        "one wheel twice",
+        Edit(SIM, "<right_joint>right_", "<right_joint>left_"),
+        says="name the same joint",
+    ),
+    wrong("drive", "no transform", Edit(SIM, "odom_tf>true", "odom_tf>false"), says="<publish_odom_tf>true"),
+    wrong(
+        "laser",
+        "the left half alone",
+        Edit(SIM, "<min_angle>-3.14", "<min_angle>0"),
+        says="needs to see both sides",
+    ),
+    wrong(
+        "laser",
+        "upside down",
+        Edit(SIM, 'xyz="0 0 0.105" rpy="0 0 0"', 'xyz="0 0 0.105" rpy="3.1416 0 0"'),
+        says="'laser_link' has the wrong orientation",
+    ),
+    wrong("laser", "one ray", Edit(SIM, "<samples>360", "<samples>1"), says="has a single value"),
+    wrong("laser", "no rate", Edit(SIM, "<update_rate>10</update_rate>", ""), says="<update_rate>10</update_rate>"),
+    wrong("laser", "an unknown type", Edit(SIM, 'type="ray"', 'type="laser"'), says='write type="ray"'),
+    wrong(
+        "laser",
+        "a sensor that ends before its plugin",
+        Edit(SIM, '      <plugin name="laser"', '    </sensor>\n    <plugin name="laser"'),
+        Edit(SIM, "    </sensor>\n  </gazebo>", "  </gazebo>"),
+        says="close </sensor> after </plugin>",
+    ),
+    wrong("world", "a pose of URDF", Edit(WORLD, WALL_POSE, '<origin xyz="3 0 0.25"/>'), says="'wall' is at x = 0"),
+    wrong("world", "degrees", Edit(WORLD, WALL_POSE, "<pose>3 0 0.25 0 0 90</pose>"), says="angles are in radians"),
+    wrong(
+        "world",
+        "the sizes of URDF",
+        Edit(
+            WORLD,
+            COLLISION_OF_WALL,
+            '<collision name="collision">\n          <geometry><box size="0.2 4 0.5"/></geometry>',
+        ),
+        says="<box><size>0.2 4 0.5</size></box>",
+    ),
+    wrong("load", "no items", Edit(LAUNCH, "}.items()", "}"), says="write .items() after the dict"),
+    wrong("load", "a small true", Edit(LAUNCH, "_time': True", "_time': true"), says="did you mean 'True'?"),
     wrong("wall", "the middle", says="middle of the wall", answer="3"),
     right("wall", "with noise", answer="2.91"),
 ]

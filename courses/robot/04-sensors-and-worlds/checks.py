@@ -92,38 +92,61 @@ def text_of(element, tag):
     return next((child.text().strip() for child in element.walk() if child.tag == tag), "")
 
 
-def explain_standstill(work):
-    """Return why the robot does not drive."""
+def expect_drive(work):
+    """Require a drive plugin that can be loaded and names the wheels."""
     found = plugins(work)
     drives = {name: pair for name, pair in found.items() if "diff" in name.lower()}
     known = {"gazebo_ros_diff_drive", "gz-sim-diff-drive-system", "ignition-gazebo-diff-drive-system"}
     if not drives:
-        return NotYet(
+        raise NotYet(
             en=f'The robot has no drive: a <plugin> inside <gazebo> with filename="{DRIVE}".',
             zh=f'机器人没有驱动：在 <gazebo> 里写一个 filename="{DRIVE}" 的 <plugin>。',
         )
     name, (element, plugin) = next(iter(drives.items()))
     if name not in known:
-        return NotYet(
+        raise NotYet(
             en=f"There is no plugin '{plugin.attributes.get('filename')}'; write filename=\"{DRIVE}\".",
             zh=f'没有插件“{plugin.attributes.get("filename")}”；请写 filename="{DRIVE}"。',
         )
     if element.tag != "gazebo":
-        return NotYet(en="Put the <plugin> into <gazebo>.", zh="请把 <plugin> 写在 <gazebo> 里。")
+        raise NotYet(en="Put the <plugin> into <gazebo>.", zh="请把 <plugin> 写在 <gazebo> 里。")
     for tag in ("left_joint", "right_joint"):
         joint = text_of(plugin, tag)
         if joint not in package(work).robot(SIM).robot.joints:
-            return NotYet(
+            raise NotYet(
                 en=f"<{tag}> names '{joint}', but the robot has no such joint; write {tag[:-6]}_wheel_joint.",
                 zh=f"<{tag}> 写的是“{joint}”，但机器人没有这个关节；请写 {tag[:-6]}_wheel_joint。",
             )
     remapping = text_of(plugin, "remapping")
     if remapping:
-        return NotYet(
+        raise NotYet(
             en=f"The plugin's topic is remapped: {remapping}; it must read /cmd_vel.",
             zh=f"插件的话题被改名了：{remapping}；它应当读取 /cmd_vel。",
         )
-    return NotYet(en="The robot does not move on /cmd_vel.", zh="机器人对 /cmd_vel 没有反应。")
+    if text_of(plugin, "left_joint") == text_of(plugin, "right_joint"):
+        raise NotYet(
+            en="<left_joint> and <right_joint> name the same joint.",
+            zh="<left_joint> 和 <right_joint> 写的是同一个关节。",
+        )
+    for tag in ("wheel_separation", "wheel_diameter"):
+        expect_length(plugin, tag)
+
+
+def expect_length(plugin, tag):
+    """Require a parameter of a plugin to be a length of a small robot, in m, if it is given."""
+    text = text_of(plugin, tag)
+    try:
+        is_length = not text or 0 < float(text) < 2
+    except ValueError:
+        raise NotYet(
+            en=f"<{tag}> is '{text}', which is not a number; write a point as decimal separator, and no unit.",
+            zh=f"<{tag}> 是“{text}”，不是数字；小数点请用“.”，不要写单位。",
+        ) from None
+    if not is_length:
+        raise NotYet(
+            en=f"<{tag}> is {text}: lengths are in meters; 38 cm are 0.38.",
+            zh=f"<{tag}> 是 {text}：长度的单位是米；38 厘米是 0.38。",
+        )
 
 
 def expect_known_parameters(work):
@@ -162,8 +185,9 @@ def robot_drives(work):
         test.drive(0.3)
         test.advance(2.0)
         x, y, *_ = pose(test)
+    expect_drive(work)
     if math.hypot(x, y) < 0.05:
-        raise explain_standstill(work)
+        raise NotYet(en="The robot does not move on /cmd_vel.", zh="机器人对 /cmd_vel 没有反应。")
     expect_known_parameters(work)
     if not 0.5 < x < 0.66 or abs(y) > 0.05:
         raise NotYet(
@@ -183,6 +207,7 @@ def robot_turns(work):
         test.drive(0.0, 1.0)
         test.advance(1.0)
         yaw = pose(test)[3]
+    expect_drive(work)
     if not 0.8 < yaw < 1.1:
         raise NotYet(
             en=f"The robot turned by {yaw:.2f} rad; check the wheel separation, and which joint is the left one.",
@@ -211,10 +236,12 @@ def casters_slide(work):
 def odometry_is_right(work):
     with simulate(work) as test:
         odometry = test.record("/odom", "nav_msgs/msg/Odometry")
+        transforms = test.record("/tf", "tf2_msgs/msg/TFMessage")
         test.advance(0.5)
         test.drive(0.3)
         test.advance(2.0)
         x, *_ = pose(test)
+    expect_drive(work)
     if not len(odometry):
         raise NotYet(
             en="Nothing is published on /odom; the plugin needs <publish_odom>true</publish_odom>.",
@@ -234,6 +261,13 @@ def odometry_is_right(work):
             en=f"/odom says x = {last.pose.pose.position.x:.2f} m, but the robot is at x = {x:.2f} m.",
             zh=f"/odom 是 x = {last.pose.pose.position.x:.2f} m，而机器人在 x = {x:.2f} m。",
         )
+    frames = {(one.header.frame_id, one.child_frame_id) for message in transforms for one in message.transforms}
+    if ("odom", "base_footprint") not in frames:
+        raise NotYet(
+            en="The transform from odom to base_footprint is not published; the plugin needs "
+            "<publish_odom_tf>true</publish_odom_tf>.",
+            zh="没有发布从 odom 到 base_footprint 的变换；插件需要 <publish_odom_tf>true</publish_odom_tf>。",
+        )
 
 
 def explain_silent_laser(work):
@@ -248,6 +282,11 @@ def explain_silent_laser(work):
         return NotYet(
             en=f'<gazebo reference="{reference}"> names no link; write laser_link.',
             zh=f'<gazebo reference="{reference}"> 中没有这个连杆；请写 laser_link。',
+        )
+    if not any(child.tag == "plugin" for child in sensor.walk()):
+        return NotYet(
+            en="The <sensor> contains no <plugin>; close </sensor> after </plugin>.",
+            zh="<sensor> 里没有 <plugin>；请把 </sensor> 写在 </plugin> 之后。",
         )
     output = text_of(sensor, "output_type")
     if output != "sensor_msgs/LaserScan":
@@ -269,6 +308,17 @@ def explain_silent_laser(work):
     return NotYet(en="Nothing is published on /scan.", zh="/scan 上没有消息。")
 
 
+def expect_laser_of_gazebo(work):
+    """Require a type of sensor that Gazebo has."""
+    for element in package(work).robot(SIM).robot.extensions:
+        for sensor in element.walk():
+            if sensor.tag == "sensor" and (kind := sensor.attributes.get("type", "")) == "laser":
+                raise NotYet(
+                    en=f"Gazebo has no sensor of the type '{kind}'; write type=\"ray\".",
+                    zh=f'Gazebo 没有类型为“{kind}”的传感器；请写 type="ray"。',
+                )
+
+
 @check("laser", en="The laser is on top of the body.", zh="激光雷达在机身上方。")
 def laser_is_on_top(work):
     z = package(work).robot(SIM).pose("laser_link", "base_link")[2, 3]
@@ -277,6 +327,7 @@ def laser_is_on_top(work):
             en=f"laser_link is {z:.3f} m above the middle of the body, inside it or below it; write 0.105.",
             zh=f"laser_link 在机身中心上方 {z:.3f} m，位于机身内部或下方；请写 0.105。",
         )
+    package(work).robot(SIM).expect_direction("laser_link", (0, 0, 1), (0, 0, 1))
 
 
 @check(
@@ -288,6 +339,12 @@ def laser_publishes(work):
         test.advance(1.0)
     if not len(scans):
         raise explain_silent_laser(work)
+    expect_laser_of_gazebo(work)
+    if len(scans) > 50:
+        raise NotYet(
+            en=f"The laser measures {len(scans)} times a second; write <update_rate>10</update_rate>.",
+            zh=f"激光雷达每秒测量 {len(scans)} 次；请写 <update_rate>10</update_rate>。",
+        )
     if (frame := scans.last.header.frame_id) != "laser_link":
         raise NotYet(
             en=f"The frame of /scan is '{frame}', but should be 'laser_link'.",
@@ -308,24 +365,33 @@ def laser_measures(work):
             en=f"The scan ends at {scan.angle_max:g}: angles are in radians, and half a turn is 3.14.",
             zh=f"扫描的终点是 {scan.angle_max:g}：角度的单位是弧度，半圈是 3.14。",
         )
-    if not scan.angle_min <= 0 <= scan.angle_max:
+    if len(scan.ranges) < 2:
         raise NotYet(
-            en=f"The scan goes from {scan.angle_min:g} to {scan.angle_max:g} rad, without straight ahead, 0.",
-            zh=f"扫描从 {scan.angle_min:g} 到 {scan.angle_max:g} rad，不包含正前方 0。",
+            en="The scan has a single value; write <samples>360</samples>.",
+            zh="扫描只有一个值；请写 <samples>360</samples>。",
+        )
+    if not (scan.angle_min <= -1 and scan.angle_max >= 1):
+        raise NotYet(
+            en=f"The scan goes from {scan.angle_min:g} to {scan.angle_max:g} rad, but mbot needs to see both sides: "
+            "straight ahead is 0, the right is negative, the left positive.",
+            zh=f"扫描从 {scan.angle_min:g} 到 {scan.angle_max:g} rad，但 mbot 需要看到两侧："
+            "正前方是 0，右侧为负，左侧为正。",
         )
     ahead = scan.ranges[min(round(-scan.angle_min / scan.angle_increment), len(scan.ranges) - 1)]
     expected = 2.0 - package(work).robot(SIM).pose("laser_link")[0, 3]
-    if abs(ahead - expected) > 0.1:
-        behind = scan.ranges[0]
-        turned = abs(behind - expected) < 0.2
-        raise NotYet(
-            en=f"The laser measures {ahead:.2f} m straight ahead, but the wall is at {expected:.2f} m"
-            + (
-                "; the laser looks back: compare the rpy of laser_joint." if turned else "; compare <range> and <scan>."
-            ),
-            zh=f"激光雷达在正前方测得 {ahead:.2f} m，而墙在 {expected:.2f} m 处"
-            + ("；激光雷达朝后：请检查 laser_joint 的 rpy。" if turned else "；请检查 <range> 和 <scan>。"),
-        )
+    if abs(ahead - expected) <= 0.1:
+        return
+    en, zh = "compare <range> and <scan>.", "请检查 <range> 和 <scan>。"
+    if abs(scan.ranges[0] - expected) < 0.2:
+        en, zh = "the laser looks back: compare the rpy of laser_joint.", "激光雷达朝后：请检查 laser_joint 的 rpy。"
+    elif ahead == math.inf:
+        en, zh = "that is farther than the <max> of <range>.", "这超过了 <range> 的 <max>。"
+    elif ahead == -math.inf:
+        en, zh = "that is nearer than the <min> of <range>.", "这小于 <range> 的 <min>。"
+    raise NotYet(
+        en=f"The laser measures {ahead:.2f} m straight ahead, but the wall is at {expected:.2f} m; {en}",
+        zh=f"激光雷达在正前方测得 {ahead:.2f} m，而墙在 {expected:.2f} m 处；{zh}",
+    )
 
 
 def yard(work):
@@ -349,6 +415,52 @@ def world_has_models(work):
                 en=f"The model '{name}' must {'' if is_static else 'not '}be static.",
                 zh=f"模型“{name}”{'应当' if is_static else '不应当'}是静态的。",
             )
+
+
+@check("world", en="The wall and the ball have their places and sizes.", zh="墙和球的位置和大小正确。")
+def models_are_in_place(work):
+    models = {model.name: model for model in read_world(str(yard(work))).world.models}
+    for name, expected in (("wall", (3, 0)), ("ball", (1.5, 0.6))):
+        if name not in models:
+            raise NotYet(en=f"The world has no model '{name}'.", zh=f"世界中没有模型“{name}”。")
+        at = models[name].pose.pose
+        if max(map(abs, at.rpy)) > 2 * math.pi:
+            raise NotYet(
+                en=f"The <pose> of '{name}' has the angle {max(at.rpy, key=abs):g}: angles are in radians.",
+                zh=f"“{name}”的 <pose> 中有角度 {max(at.rpy, key=abs):g}：角度的单位是弧度。",
+            )
+        if math.dist(at.xyz[:2], expected) > 0.1:
+            x, y = expected
+            raise NotYet(
+                en=f"The model '{name}' is at x = {at.xyz[0]:g}, y = {at.xyz[1]:g}, but should be at x = {x:g}, "
+                f"y = {y:g}; look at its <pose>.",
+                zh=f"模型“{name}”在 x = {at.xyz[0]:g}、y = {at.xyz[1]:g}，应当在 x = {x:g}、y = {y:g}；"
+                "请检查它的 <pose>。",
+            )
+    expect_sizes(models)
+
+
+def expect_sizes(models):
+    """Require the sizes of the text. A box without an element <size> is a cube of 1 m."""
+    for shape in shapes_of(models["wall"], Box):
+        if abs(max(shape.size[:2]) - 4) > 0.1:
+            size = " ".join(f"{length:g}" for length in shape.size)
+            raise NotYet(
+                en=f"The wall has the size {size}, but should have 0.2 4 0.5: <box><size>0.2 4 0.5</size></box>.",
+                zh=f"墙的大小是 {size}，应当是 0.2 4 0.5：<box><size>0.2 4 0.5</size></box>。",
+            )
+    for shape in shapes_of(models["ball"], Sphere):
+        if abs(shape.radius - 0.15) > 0.02:
+            raise NotYet(
+                en=f"The radius of the ball is {shape.radius:g} m, but should be 0.15 m: "
+                "<sphere><radius>0.15</radius></sphere>.",
+                zh=f"球的半径是 {shape.radius:g} m，应当是 0.15 m：<sphere><radius>0.15</radius></sphere>。",
+            )
+
+
+def shapes_of(model, kind):
+    parts = [part for link in model.links for part in (*link.collisions, *link.visuals)]
+    return [part.geometry for part in parts if isinstance(part.geometry, kind)]
 
 
 @check("world", en="mbot pushes the ball, and the wall stops mbot.", zh="mbot 能推动球，墙能挡住 mbot。")

@@ -40,7 +40,99 @@ OFFER = "        self.create_service(Trigger, 'reset_distance', self.on_reset)\n
 TICK = "        self.create_timer(0.1, self.move)\n"
 SPEED, SPEED_ONCE = "self.get_parameter('speed').value", "self.declare_parameter('speed', 0.2)"
 
+MAIN = """def main():
+    rclpy.init()
+    rclpy.spin(FirstMove())
+"""
+IN_CLASS = "    def main():\n        rclpy.init()\n        rclpy.spin(FirstMove())\n"
+CLIENT = "        self.create_client(Trigger, 'reset_distance')\n"
+START = "self.start = self.get_clock().now()"
+VALUE = "self.get_parameter('speed').value"
+SUBSCRIPTION = "Odometry, 'odom', self.on_odometry"
+FIRST_CALL = """        if self.start is None:
+            self.start = now
+"""
+
 CASES = [
+    wrong("publish", "main in the class", Edit(MOVE, MAIN, IN_CLASS), says="is inside the class 'FirstMove'"),
+    wrong(
+        "publish", "another attribute", Edit(MOVE, "self.velocity = ", "self.publisher = "), says="set self.velocity in"
+    ),
+    wrong(
+        "stop", "self in main", Edit(MOVE, "        node.stop()", "        self.stop()"), says="'self' exists only in"
+    ),
+    wrong("parameter", "no value", Edit(MOVE, VALUE, VALUE.removesuffix(".value")), says="write .value after"),
+    wrong("parameter", "a default without a point", Edit(MOVE, "'speed', 0.2", "'speed', 1"), says="such as 0.2"),
+    wrong(
+        "parameter",
+        "declared at each call",
+        Edit(MOVE, "        self.declare_parameter('speed', 0.2)\n", ""),
+        Edit(
+            MOVE, "        message.linear.x", "        self.declare_parameter('speed', 0.2)\n        message.linear.x"
+        ),
+        says="once, in __init__",
+    ),
+    wrong(
+        "parameter",
+        "another name",
+        Edit(MOVE, "declare_parameter('speed'", "declare_parameter('velocity'"),
+        Edit(MOVE, "get_parameter('speed'", "get_parameter('velocity'"),
+        says="a parameter with the name speed",
+    ),
+    wrong(
+        "subscribe",
+        "a callback without a message",
+        Edit(ODOMETER, "on_odometry(self, message)", "on_odometry(self)"),
+        says="a parameter for the message",
+    ),
+    wrong(
+        "subscribe",
+        "the function before the name",
+        Edit(ODOMETER, SUBSCRIPTION, "Odometry, self.on_odometry, 'odom'"),
+        says="pass the type, the name, the function and the queue",
+    ),
+    wrong(
+        "subscribe",
+        "the type of another topic",
+        Edit(ODOMETER, SUBSCRIPTION, SUBSCRIPTION.replace("Odometry", "Float64")),
+        says="its messages have the type nav_msgs/msg/Odometry",
+    ),
+    wrong(
+        "subscribe",
+        "a number in place of a message",
+        Edit(ODOMETER, "Float64(data=self.distance)", "self.distance"),
+        says="Float64(data=...)",
+    ),
+    wrong("subscribe", "no field", Edit(ODOMETER, "data=self", "self"), says="name the field of the message"),
+    wrong("subscribe", "no self", Edit(ODOMETER, "if self.last", "if last"), says="write self.last"),
+    wrong("subscribe", "no value at first", Edit(ODOMETER, "        self.last = None\n", ""), says="set self.last in"),
+    wrong(
+        "service",
+        "no response",
+        Edit(ODOMETER, "(self, request, response)", "(self, request)"),
+        says="is called with 2 arguments besides self",
+    ),
+    wrong(
+        "service", "a message in place of a service", Edit(ODOMETER, "std_srvs.srv", "std_srvs.msg"), says="has 'srv'"
+    ),
+    wrong("service", "a client", Edit(ODOMETER, OFFER, CLIENT), says="does the program call create_service"),
+    wrong("time", "seconds", Edit(MOVE, ".nanoseconds * 1e-9", ".seconds"), says="has nanoseconds"),
+    wrong(
+        "time",
+        "no first call",
+        Edit(MOVE, "(now - self.start).nanoseconds", "now.nanoseconds"),
+        says="subtract it",
+    ),
+    wrong(
+        "time", "the time of the start", Edit(MOVE, "self.start = None", START), says="is called first, and subtract it"
+    ),
+    wrong("time", "the time of each call", Edit(MOVE, FIRST_CALL, "        self.start = now\n"), says="only once"),
+    wrong("package", "another name of the function", Edit(MOVE, "def main", "def man"), says="it has 'man'"),
+    wrong(
+        "publish", "no name of the node", Edit(MOVE, "__init__('first_move')", "__init__()"), says="super().__init__('N"
+    ),
+    wrong("publish", "single underscores", Edit(MOVE, "def __init__", "def _init_"), says="with two underscores"),
+    wrong("publish", "the period last", Edit(MOVE, "(0.1, self.move)", "(self.move, 0.1)"), says="before the function"),
     wrong("package", "no function", Edit(SETUP, "first_move:main", "first_move"), says="the entry names no function"),
     wrong(
         "package",

@@ -109,8 +109,10 @@ def expect_speed(work, speed, *arguments):
     if abs(actual - speed) > 0.001:
         what = " ".join(arguments) or "no arguments"
         raise NotYet(
-            en=f"With {what}, the speed is {actual:g} m/s, but should be {speed:g}.",
-            zh=f"参数为“{' '.join(arguments) or '无'}”时，速度是 {actual:g} m/s，应当是 {speed:g}。",
+            en=f"With {what}, the speed is {actual:g} m/s, but should be {speed:g}; it must come from a parameter with "
+            "the name speed.",
+            zh=f"参数为“{' '.join(arguments) or '无'}”时，速度是 {actual:g} m/s，应当是 {speed:g}；"
+            "速度应当来自名为 speed 的参数。",
         )
 
 
@@ -202,14 +204,17 @@ def service_resets(work):
         )
 
 
-def no_reset_service(test):
-    offered = sorted(
+def offered_services(test):
+    return sorted(
         service
         for node, namespace in test.program_nodes
         for service, types in test.graph.get_service_names_and_types_by_node(node, namespace)
         if not types[0].startswith(("rcl_interfaces/", "type_description_interfaces/"))
     )
-    if offered:
+
+
+def no_reset_service(test):
+    if offered := offered_services(test):
         return NotYet(
             en=f"There is no service /reset_distance; the program offers {offered[0]}.",
             zh=f"没有服务 /reset_distance；程序提供的是 {offered[0]}。",
@@ -232,6 +237,8 @@ def call_reset(test):
     except LookupError:
         raise no_reset_service(test) from None
     except TimeoutError:
+        if "/reset_distance" not in offered_services(test):
+            raise no_reset_service(test) from None
         raise NotYet(
             en="The service /reset_distance does not answer; does the callback return the response?",
             zh="服务 /reset_distance 没有回答；回调函数返回 response 了吗？",
@@ -242,19 +249,27 @@ def call_reset(test):
 def drives_during_time(work):
     commands, _, _ = run_first_move(work, 3.0)
     if not commands[-1].linear.x:
-        raise NotYet(en="After 3 s the robot has stopped already.", zh="3 s 之后机器人已经停下了。")
+        raise NotYet(
+            en="After 3 s the robot has stopped already; (now - self.start).nanoseconds * 1e-9 are the seconds since "
+            "the first call.",
+            zh="3 s 之后机器人已经停下了；(now - self.start).nanoseconds * 1e-9 是从第一次调用起的秒数。",
+        )
 
 
 @check("time", en="It stands still after them.", zh="四秒之后静止。")
 def stands_after_time(work):
     commands, _, _ = run_first_move(work, 6.0)
     if commands[-1].linear.x or commands[-1].angular.z:
-        raise NotYet(en="After 6 s the robot still drives.", zh="6 s 之后机器人仍在行驶。")
+        raise NotYet(
+            en="After 6 s the robot still drives: set the time of the first call only once, and let move() return "
+            "after the zero velocity.",
+            zh="6 s 之后机器人仍在行驶：第一次调用的时间只记录一次，发布零速度之后让 move() 返回。",
+        )
 
 
 @check("time", en="The four seconds are those of the node's clock.", zh="四秒由节点的时钟计量。")
 def uses_clock(work):
-    """Run the node with simulated time at half rate."""
+    """Run the node with simulated time at half rate, in a simulation that has run for a minute."""
     with SteppedGraph() as test:
         commands = test.record("/cmd_vel", TWIST)
         test.start_program(program(work, "first_move"), ["--ros-args", "-p", "use_sim_time:=true"], budget=BUDGET)
@@ -263,10 +278,16 @@ def uses_clock(work):
             if step == 110:
                 early = list(commands)
             now = clock()
-            now.clock.sec, now.clock.nanosec = step // 40, step % 40 * 25_000_000
+            now.clock.sec, now.clock.nanosec = 60 + step // 40, step % 40 * 25_000_000
             test.publish("/clock", now)
             test.advance(0.05)
         expect_published(test, "/cmd_vel", TWIST, commands)
+    if early and not any(command.linear.x for command in early):
+        raise NotYet(
+            en="In a simulation that has run for a minute, the robot does not drive: remember the time at which move() "
+            "is called first, and subtract it.",
+            zh="仿真已运行一分钟时，机器人不行驶：请记下第一次调用 move() 的时间，并减去它。",
+        )
     if early and not early[-1].linear.x:
         raise NotYet(
             en="With a simulation at half speed, the robot stops too early: use self.get_clock().now(), and the "

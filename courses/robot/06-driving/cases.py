@@ -47,6 +47,15 @@ CASES = [
         ),
         says="does not move",
     ),
+    wrong(
+        "meter",
+        "by the time",
+        Edit(METER, "import math\n", "import math\nimport time\n"),
+        Edit(METER, "driven < 1.0", "time.time() - self.begin < 5"),
+        Edit(METER, "self.start = None", "self.start, self.begin = None, time.time()"),
+        says="not the time",
+    ),
+    wrong("brake", "no limit", Edit(METER, "min(0.3, remaining)", "remaining"), says="limits the speed"),
     wrong("meter", "no stop", Edit(METER, "        else:\n            self.drive(0.0)\n", ""), says="still drives"),
     wrong(
         "meter",

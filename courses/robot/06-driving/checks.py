@@ -4,6 +4,8 @@ from itertools import pairwise
 
 from linkwright import SteppedSimulation
 from linkwright.learning import NotYet, check, expect_published
+from linkwright.messages import get_message
+from linkwright.testing import SteppedGraph
 
 STARTS = ((0.0, 0.0, 0.0), (1.0, -2.0, 2.0))
 WANDER_STARTS = ((0.0, 0.0, 0.0), (0.0, 1.0, -2.0))
@@ -55,8 +57,9 @@ def expect_meter(work, tolerance):
             still = math.dist(positions[-10], positions[-1]) < 0.005
         if driven < 0.05:
             raise NotYet(
-                en="The robot does not move: all velocities on /cmd_vel are zero.",
-                zh="机器人没有动：/cmd_vel 上的速度都是零。",
+                en=f"From x = {start[0]:g}, y = {start[1]:g}, the robot does not move: all velocities on /cmd_vel are "
+                "zero.",
+                zh=f"从 x = {start[0]:g}，y = {start[1]:g} 出发，机器人没有动：/cmd_vel 上的速度都是零。",
             )
         if not still:
             raise NotYet(
@@ -79,9 +82,50 @@ def drives_meter(work):
     expect_meter(work, 0.08)
 
 
+@check("meter", en="It stops by /odom, not by the time.", zh="它依据 /odom 停下，而不是依据时间。")
+def stops_by_odometry(work):
+    """Publish the odometry of a robot that moves slower than it is told to."""
+    odometry, early = get_message("nav_msgs/msg/Odometry"), 0.0
+    with SteppedGraph() as test:
+        commands = test.record("/cmd_vel", TWIST)
+        test.start_program(work.package("my_control").program("drive_meter"), budget=BUDGET)
+        for x in [0.005 * step for step in range(100)] + [1.2] * 10:
+            message = odometry()
+            message.pose.pose.position.x, message.pose.pose.orientation.w = x, 1.0
+            test.publish("/odom", message)
+            test.advance(0.1)
+            if x < 0.49 and len(commands):
+                early = commands.last.linear.x
+        expect_published(test, "/cmd_vel", TWIST, commands)
+        late = commands.last.linear.x
+    if not early:
+        raise NotYet(
+            en="A robot with slipping wheels has driven 0.5 m by /odom, and the program stops it: compare the "
+            "distance, not the time.",
+            zh="轮子打滑的机器人按 /odom 只走了 0.5 m，程序就让它停下：请比较距离，而不是时间。",
+        )
+    if late > 0:
+        raise NotYet(
+            en="/odom says that the robot has driven 1.2 m, but the program drives on.",
+            zh="/odom 表示机器人已经走了 1.2 m，但程序仍让它行驶。",
+        )
+
+
 @check("brake", en="It stops within 5 mm of one meter.", zh="它停在与一米处相差 5 mm 以内。")
 def brakes(work):
     expect_meter(work, 0.005)
+
+
+@check("brake", en="It drives at most at 0.3 m/s.", zh="速度不超过 0.3 m/s。")
+def limits_speed(work):
+    with Run(work, "drive_meter") as run:
+        run.drive(2.0)
+        fastest = max(command.linear.x for command in run.commands)
+    if fastest > 0.31:
+        raise NotYet(
+            en=f"The program commands {fastest:.2f} m/s; min(0.3, remaining) limits the speed.",
+            zh=f"程序发出的速度是 {fastest:.2f} m/s；用 min(0.3, remaining) 限制速度。",
+        )
 
 
 @cache

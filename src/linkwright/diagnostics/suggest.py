@@ -145,6 +145,16 @@ def _did_you_mean(names: Sequence[str]) -> Phrase | None:
     return phrase("did you mean {names}?", names=quoted_names(names, " or ")) if names else None
 
 
+def _in_neighboring_folder(path: Path) -> Path | None:
+    """Return the file of the same name one folder below or above a missing file, or None."""
+    folder = path.parent
+    try:
+        folders = [*sorted(folder.iterdir())[:_MAX_COMPARED], folder.parent]
+    except OSError:
+        return None
+    return next((other / path.name for other in folders if os.path.isfile(other / path.name)), None)  # noqa: PTH113
+
+
 def _similar_files(name: str, names: Iterable[str]) -> list[str]:
     """Return at most three file names that are similar to a name, compared without extensions.
 
@@ -216,6 +226,8 @@ def missing_file_hint(path: Path, is_candidate: Callable[[str], bool] | None = N
     suggestion = _did_you_mean(_similar_files(path.name, names))
     if suggestion:
         return suggestion
+    if elsewhere := _in_neighboring_folder(path):
+        return phrase("did you mean '{name}'?", name=display_path(elsewhere))
     listed_names = [name for name in names if is_candidate(name)][:_MAX_LISTED]
     if listed_names:
         return phrase("choose from {names}", names=joined(listed_names))

@@ -70,6 +70,7 @@ def find_root(links: Mapping[str, Link], joints: Sequence[Joint], findings: Find
         _report_loop(_loop_from(joints[0].child, joints), joints, phrase("no link is the root"), findings)
         return ""
     if len(roots) > 1:
+        _check_parents(joints, findings)
         _report_roots(roots, links, findings)
         return ""
     if not _is_tree(roots[0], links, joints, child_links):

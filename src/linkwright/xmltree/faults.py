@@ -6,7 +6,7 @@ import re
 from xml.parsers.expat import ExpatError
 from xml.parsers.expat import errors as expat_errors
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, SourceText, foreign, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, SourceText, foreign, nearest, phrase
 from linkwright.diagnostics.lookalikes import lookalike_hint
 from linkwright.loading.deferred import lazy_pattern
 
@@ -72,13 +72,16 @@ def syntax_error(
 
 def undeclared_prefix(source: SourceText, offset: int, name: str) -> LinkwrightError:
     """Return the error for a name whose namespace prefix is not declared."""
-    prefix = name.partition(":")[0]
+    prefix, _, local_name = name.partition(":")
+    similar = [] if prefix in _NAMESPACES else nearest(prefix, _NAMESPACES, 1)
     return LinkwrightError(
         Diagnostic(
             "XML205",
             phrase("the prefix '{prefix}' of '{name}' is not declared", prefix=prefix, name=name),
             span=source.span(offset, offset + len(name)),
-            hint=phrase(
+            hint=phrase("did you mean '{name}'?", name=f"{similar[0]}:{local_name}")
+            if similar
+            else phrase(
                 'declare it on the root element: xmlns:{prefix}="{addresses}"',
                 prefix=prefix,
                 addresses=_NAMESPACES.get(prefix, "..."),
@@ -215,6 +218,12 @@ class _Fault:
             if closes_ancestor
             else phrase("write '</{inner}>', or remove it", inner=inner)
         )
+        outer, outer_at = self._open[-2] if len(self._open) > 1 else ("", 0)
+        line = self._source.position(opened_at)[0]
+        if outer == inner and line == self._source.position(outer_at)[0]:
+            hint = phrase(
+                "write '</{inner}>' in place of the second '<{inner}>' in line {line}", inner=inner, line=line
+            )
         if name.casefold() == inner.casefold():
             hint = phrase("write both alike: '<{name}>' and '</{name}>'", name=name.casefold())
         before = self._text[opened_at:start]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from traceback import walk_tb
 from types import FrameType, ModuleType, TracebackType
 from typing import Any
@@ -42,7 +42,10 @@ _NO_SELF = re.compile(r"\w+\.\w+\(\) takes 0 positional arguments but 1 was give
 _JOINED_SUBSTITUTION = re.compile(r'(concatenate str \(not "|operand type\(s\).*)(LaunchConfiguration|Command|Find\w+)')
 _ACTION_FOR_LIST = re.compile(r"^'(Node|ExecuteProcess|IncludeLaunchDescription|\w+Action)' object is not iterable")
 _MODULES = {"Path": ("pathlib",), "glob": ("glob",)}
+_CONSTANTS = {"true": "True", "false": "False", "null": "None", "none": "None"}
 _MOST_MODULES = 3
+_CALL_LINES = 5
+"""The number of lines of a call that are searched for an argument."""
 _ROS_1_MODULES = ("rospy", "roslib")
 _MISSING_ARGUMENT = re.compile(r"\(\) missing \d+ required .*arguments?: (.*)$")
 _UNEXPECTED_ARGUMENT = re.compile(r"([\w.]+)\(\) got an unexpected keyword argument '([^']+)'")
@@ -122,17 +125,45 @@ def hint_about(error: BaseException, source: SourceText | None = None, span: Spa
         frame = _innermost_frame(error)
         visible_names = {**frame.f_globals, **frame.f_locals} if frame else {}
         name = getattr(error, "name", None)
+        if name in _CONSTANTS:
+            return phrase("did you mean '{name}'?", name=_CONSTANTS[name])
+        if name and (hint := _scope_hint(name, frame, visible_names)):
+            return hint
         return (did_you_mean(name, visible_names) or import_hint(name)) if name else None
     if isinstance(error, AttributeError):
         if hint := _class_hint(error):
             return hint
         name, owner = getattr(error, "name", None), getattr(error, "obj", None)
-        return did_you_mean(name, _public_names(owner)) if name else None
+        return (did_you_mean(name, _public_names(owner)) or _unset_hint(name, owner, error)) if name else None
     if isinstance(error, TypeError):
         if _NO_SELF.search(str(error)):
             return phrase("the first parameter of a method is self: def NAME(self, ...)")
         return _keyword_hint(error) or _missing_hint(error, source, span) or _substitution_hint(error)
+    if isinstance(error, ValueError) and "(expected 2)" in str(error) and "launch_arguments" in _text_at(source, span):
+        return phrase("write .items() after the dict: launch_arguments={...}.items()")
     return None
+
+
+def _scope_hint(name: str, frame: FrameType | None, visible_names: Mapping[str, object]) -> Phrase | None:
+    """Return a hint about 'self' outside of a method, an attribute without 'self', or a variable without a value.
+
+    The result is None if the name has another cause.
+    """
+    if name == "self":
+        return phrase("'self' exists only in methods with the parameter self; use the variable that holds the object")
+    owner = frame.f_locals.get("self") if frame else None
+    if owner is not None and hasattr(owner, name):
+        return phrase("write self.{name}", name=name)
+    if any(name == other.lower() and isinstance(value, type) for other, value in visible_names.items()):
+        return phrase("no line before this one sets '{name}'; write '{name} = ...'", name=name)
+    return None
+
+
+def _text_at(source: SourceText | None, span: Span | None) -> str:
+    """Return the lines of a call that failed, or an empty text if they are not known."""
+    if source is None or span is None:
+        return ""
+    return "\n".join(source.text.splitlines()[span.line - 1 : span.line + _CALL_LINES])
 
 
 def _class_hint(error: AttributeError) -> Phrase | None:
@@ -153,6 +184,14 @@ def _class_hint(error: AttributeError) -> Phrase | None:
     if frame is not None and callable(frame.f_globals.get(name)) and "self" in frame.f_locals:
         return phrase("'{name}' is a function outside the class; indent it like the other methods", name=name)
     return None
+
+
+def _unset_hint(name: str, owner: object, error: AttributeError) -> Phrase | None:
+    """Return a hint about an attribute that a method reads before it is set, or None."""
+    frame = _innermost_frame(error)
+    if frame is None or frame.f_locals.get("self") is not owner or owner is None:
+        return None
+    return phrase("set self.{name} in __init__, before it is used", name=name)
 
 
 def import_hint(name: str) -> Phrase | None:
@@ -213,7 +252,10 @@ def _import_hint(error: ImportError) -> Phrase | None:
         siblings = [
             iter_module.name for iter_module in pkgutil.iter_modules(getattr(sys.modules[parent], "__path__", ()))
         ]
-        return did_you_mean(name, siblings)
+        suggestion = did_you_mean(name, siblings)
+        if suggestion is None and 0 < len(siblings) <= _MOST_MODULES:
+            return phrase("'{package}' has {names}", package=parent, names=quoted_names(siblings))
+        return suggestion
     if missing_module in _ROS_1_MODULES:
         return phrase("'{module}' is part of ROS 1; in ROS 2 it is 'rclpy'", module=missing_module)
     packages = {full.split("/")[0] for full in interface_names("msg")}

@@ -145,6 +145,11 @@ def _describe_failure(lines: Sequence[str]) -> Phrase:
     hint = lookalike_hint(lines[-1]) if "invalid character" in lines[-1] else None
     if "can't multiply sequence" in lines[-1]:
         hint = phrase("a comma is missing before the star")
+    elif "'tuple' object is not callable" in lines[-1]:
+        hint = phrase("a comma is missing at the end of an entry of data_files")
+    elif "name 'glob' is not defined" in lines[-1] or "'module' object is not callable" in lines[-1]:
+        error = foreign(lines[-1].partition(" Did you forget")[0])
+        hint = phrase("write 'from glob import glob' at the top of the file")
     if not numbers:
         return phrase("setup.py fails: {error}", error=error)
     return add_hint(phrase("{file}, line {line}: {error}", file="setup.py", line=int(numbers[-1]), error=error), hint)

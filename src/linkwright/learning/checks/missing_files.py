@@ -60,7 +60,8 @@ def _similar_files(folder: Path, name: str) -> list[str]:
     related = [other for other in names if _stem(other) == stem]
     suffix = Path(name).suffix
     typos = nearest(name, [other for other in names if Path(other).suffix == suffix], _MOST_FILES)
-    return list(dict.fromkeys([*related, *typos]))[:_MOST_FILES]
+    beside = [other for other in names if Path(other).parent == Path(name).parent and Path(other).suffix == suffix]
+    return list(dict.fromkeys([*related, *typos, *beside]))[:_MOST_FILES]
 
 
 def _key(name: str) -> str:

@@ -129,7 +129,7 @@ class FileFolder:
             raise NotYet(describe_error(error)) from None
         errors = [finding for finding in description.diagnostics if _is_mistake(finding)]
         if errors or description.robot is None:
-            raise NotYet(describe_finding(errors[0]))
+            raise NotYet(describe_finding(min(errors, key=lambda finding: finding.code not in _CAUSES)))
         if arguments:
             argument_text = " ".join(f"{key}:={value}" for key, value in arguments.items())
             circumstance = phrase("with {arguments}", arguments=argument_text)
@@ -201,6 +201,8 @@ Other findings of this level are advice, which a right solution may ignore.
 
 _RUN_TIME_TAGS = {"depend", "exec_depend"}
 _UNDEFINED_MATERIAL = "URDF160"
+_CAUSES = {"URDF110", "URDF151"}
+"""Findings to report first: a name or a child that is written twice is also missing where it belongs."""
 
 
 def _is_mistake(finding: Diagnostic) -> bool:
@@ -309,10 +311,13 @@ class PackageCheck(FileFolder):
         for name in ("package.xml", *names):
             share_path = PurePosixPath("share", self.name, name)
             source = installed.get(share_path)
-            if source is None or not source.is_file():
-                raise NotYet(
-                    phrase("setup.py does not install '{name}' in '{folder}'", name=name, folder=share_path.parent)
-                )
+            if source is not None and source.is_file():
+                continue
+            message = phrase("setup.py does not install '{name}' in '{folder}'", name=name, folder=share_path.parent)
+            other = next((path for path, file in installed.items() if file == self.folder / name), None)
+            if other is None:
+                raise NotYet(message)
+            raise NotYet(phrase("{message}, but in '{other}'", message=message, other=other.parent))
 
     def program(self, name: str) -> Callable[[], object]:
         """Return an executable of the package, to be started with `SteppedGraph.start_program`.

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, nearest, phrase, quoted_names
 from linkwright.diagnostics.lookalikes import lookalike_hint
 from linkwright.learning.checks.findings import add_hint, describe_error
+from linkwright.learning.checks.node_hints import hint_about_line
 from linkwright.learning.checks.not_yet import NotYet
 
 if TYPE_CHECKING:
@@ -80,7 +81,9 @@ def _expect_complete_entries(path: Path) -> None:
         raise NotYet(phrase("setup.py, line {line}: a comma is missing at the end of the line", line=line))
     if match := _WITHOUT_FUNCTION.search(text):
         line = text.count("\n", 0, match.start()) + 1
-        written = f"{match[1]} = {match[2]}:main"
+        module, _, function = match[2].rpartition(".")
+        is_module = path.parent.joinpath(*match[2].split(".")).with_suffix(".py").is_file()
+        written = f"{match[1]} = {match[2]}:main" if is_module else f"{match[1]} = {module}:{function}"
         raise NotYet(
             phrase("setup.py, line {line}: the entry names no function; write '{written}'", line=line, written=written)
         )
@@ -111,6 +114,10 @@ def _missing_module(name: str, entry: EntryPoint, folder: Path, package: str) ->
     if not (inner / "__init__.py").is_file() and inner.is_dir():
         return phrase("{message}: the folder '{folder}' needs a file __init__.py", message=message, folder=inner.name)
     path = entry.module.replace(".", "/") + ".py"
+    if (folder / Path(path).name).is_file():
+        return phrase(
+            "{message}; move '{file}' into the folder '{folder}'", message=message, file=Path(path).name, folder=package
+        )
     return phrase("{message}; create the file '{path}' in the package", message=message, path=path)
 
 
@@ -127,6 +134,17 @@ def _expect_function(path: Path, function: str) -> None:
     names = {name for statement in tree.body for name in _names_of(statement)}
     if function not in names and "*" not in names:
         message = phrase("{file} has no function '{function}'", file=path.name, function=function)
+        for statement in tree.body:
+            inner = [part.name for part in getattr(statement, "body", ()) if isinstance(part, ast.FunctionDef)]
+            if isinstance(statement, ast.ClassDef) and function in inner:
+                raise NotYet(
+                    phrase(
+                        "{message}: it is inside the class '{name}'; begin 'def {function}' at the left margin",
+                        message=message,
+                        name=statement.name,
+                        function=function,
+                    )
+                )
         functions = [statement.name for statement in tree.body if isinstance(statement, ast.FunctionDef)]
         if not functions:
             raise NotYet(message)
@@ -140,10 +158,13 @@ def _names_of(statement: ast.stmt) -> Iterator[str]:
     elif isinstance(statement, (ast.Import, ast.ImportFrom)):
         yield from (alias.asname or alias.name for alias in statement.names)
     else:
-        yield from (node.id for node in ast.walk(statement) if isinstance(node, ast.Name))
         for node in ast.walk(statement):
-            if isinstance(node, ast.FunctionDef):
+            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+                yield node.id
+            elif isinstance(node, ast.FunctionDef):
                 yield node.name
+            elif isinstance(node, ast.alias):
+                yield node.asname or node.name
 
 
 def describe_failure(error: Exception, workspace: Path) -> Phrase:
@@ -164,13 +185,14 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
         hint = (
             _own_module_hint(error, Path(path))
             or hint_about(error)
-            or _hint_about_line(error, linecache.getline(path, line))
+            or hint_about_line(error, linecache.getline(path, line))
         )
         if isinstance(error, LinkwrightError):
             text, hint = error.diagnostics[0].message, error.diagnostics[0].hint or hint
     elif match := _BUDGET.search(text):
         return phrase(
-            "{file}, line {line}: a loop runs without waiting; call rclpy.spin_once(node) or time.sleep(...) in it",
+            "{file}, line {line}: a loop runs without waiting; call rclpy.spin_once(node) or time.sleep(...) in it; "
+            "a callback must return, so remove a loop in it",
             file=Path(match[1]).name,
             line=int(match[2]),
         )
@@ -186,17 +208,3 @@ def _own_module_hint(error: Exception, path: Path) -> Phrase | None:
     if name is None or not path.with_name(f"{name}.py").is_file():
         return None
     return phrase("write 'from {package}.{module} import ...'", package=path.parent.name, module=name)
-
-
-def _hint_about_line(error: Exception, line: str) -> Phrase | None:
-    """Return a hint about a line of a node that fails, or None."""
-    text = str(error)
-    if "create_" in line and "missing" in text and "()" in line:
-        return phrase("pass the function without parentheses, such as self.on_message")
-    if "create_" in line and "'type' is not iterable" in text:
-        return phrase("pass the type before the name, as in create_publisher(Twist, 'cmd_vel', 10)")
-    if "must be of type 'float'" in text:
-        return phrase("write the number with a point, such as 1.0; float(...) converts a value")
-    if "the response of" in text:
-        return phrase("end the callback of the service with 'return response'")
-    return None

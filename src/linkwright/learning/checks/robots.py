@@ -287,6 +287,14 @@ class JointCheck(_CheckedPart):
         actual = self._rotation @ np.asarray(self.joint.axis, float)
         if _angle(actual, axis, either_sign=either_sign) <= _ANGLE_TOLERANCE:
             return
+        if not np.any(actual):
+            raise self._not_yet(
+                phrase(
+                    "the axis of the joint '{joint}' has no direction; write <axis xyz=\"{expected}\"/>",
+                    joint=self.joint.name,
+                    expected=_vector_text(axis),
+                )
+            )
         if _angle(actual, self.joint.axis, either_sign=True) > _ANGLE_TOLERANCE:
             raise self._not_yet(
                 phrase(

@@ -72,6 +72,14 @@ def _explain_idle(test: Any) -> Phrase:
                 topic=name,
                 other_topic=others[0],
             )
+    for name, types in sorted(subscriptions.items()):
+        if name in published and not types & published[name]:
+            return phrase(
+                "the program subscribes to {topic} with the type {actual}, but its messages have the type {expected}",
+                topic=name,
+                actual=min(types),
+                expected=min(published[name]),
+            )
     for name in sorted(subscriptions):
         if _is_incompatible(graph, name):
             return phrase(
@@ -85,7 +93,7 @@ def _explain_idle(test: Any) -> Phrase:
         )
     return phrase(
         "the program has a publisher, but does not call publish(); is there a timer with a period in seconds, and does "
-        "main() spin the node?"
+        "main() spin the node? The lines below rclpy.spin() do not run while the node spins"
     )
 
 

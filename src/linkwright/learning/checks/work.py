@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from linkwright.diagnostics import did_you_mean, phrase, quoted_names
+from linkwright.diagnostics import LinkwrightError, Phrase, did_you_mean, phrase, quoted_names
 from linkwright.diagnostics.lookalikes import plain_text
+from linkwright.learning.checks.findings import describe_error
 from linkwright.learning.checks.installed import expect_valid_setup
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.packages import FileFolder, PackageCheck
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import package_name
+from linkwright.xmltree import parse_file
 
 SOURCE_FOLDER, SETUP_FILE = "src", "setup.py"
 _UNIT_FACTORS = (10.0, 100.0, 1000.0)
@@ -62,8 +64,17 @@ class Work(FileFolder):
         }
         if name in found:
             return found[name]
+        if (sources / name / "package.xml").is_file():
+            raise NotYet(_wrong_manifest(sources / name, name))
+        if (self.folder / name).is_dir():
+            raise NotYet(phrase("the package '{name}' is beside the folder 'src'; move it into 'src'", name=name))
         if (sources / name).is_dir():
-            raise NotYet(phrase("the folder 'src/{name}' has no package.xml with the name '{name}'", name=name))
+            raise NotYet(
+                phrase(
+                    "the folder 'src/{name}' has no file package.xml; does the package exist in another folder?",
+                    name=name,
+                )
+            )
         suggestion = did_you_mean(name, found)
         if suggestion is not None:
             raise NotYet(
@@ -120,3 +131,15 @@ class Work(FileFolder):
                     )
                 )
         raise NotYet(phrase("{number:g} is not correct; measure again", number=number))
+
+
+def _wrong_manifest(folder: Path, name: str) -> Phrase:
+    """Return the message for a ``package.xml`` that has another name than its folder, or is not XML."""
+    try:
+        parse_file(folder / "package.xml")
+    except LinkwrightError as error:
+        return describe_error(error)
+    actual = package_name(folder)
+    if actual is None:
+        return phrase("src/{name}/package.xml has no <name>; write <name>{name}</name>", name=name)
+    return phrase("src/{name}/package.xml has the name '{actual}'; write <name>{name}</name>", name=name, actual=actual)

@@ -35,6 +35,9 @@ _KILL_TIMEOUT_S = 2.0
 _PERIOD_S = 0.2
 """The interval between two checks of a thread's computing time."""
 
+_GENERATED_CODE = "<"
+"""The beginning of the file name of code without a file, such as the methods of a dataclass."""
+
 _OWN_FOLDERS = (str(Path(__file__).parents[2]), str(Path(threading.__file__).parent))
 
 
@@ -267,7 +270,8 @@ def _describe_place(thread_id: int) -> str:
     frames = list(_frames(sys._current_frames().get(thread_id)))
     if not frames:
         return "at an unknown place"
-    frame = next((frame for frame in frames if not frame.f_code.co_filename.startswith(_OWN_FOLDERS)), frames[0])
+    foreign_code = (*_OWN_FOLDERS, _GENERATED_CODE)
+    frame = next((frame for frame in frames if not frame.f_code.co_filename.startswith(foreign_code)), frames[0])
     return f"at {frame.f_code.co_filename}:{frame.f_lineno}, in {frame.f_code.co_name}"
 
 

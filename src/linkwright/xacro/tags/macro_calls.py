@@ -132,7 +132,7 @@ class _Call:
         if hint is None and macro_names:
             hint = phrase("the macros defined so far are {names}", names=joined(sorted(set(macro_names))[:10]))
         elif hint is None:
-            hint = phrase("no macro is defined before this; is an include missing?")
+            hint = phrase("no macro is defined before this; does <xacro:include> stand above the call?")
         span = node.span() if self._name_attribute is None else node.attribute_span(self._name_attribute)
         other_definition = inactive_definition(node.source, "macro", name, used_at=node.offset) if node.source else None
         notes = () if other_definition is None else (other_definition.note,)
