@@ -6,7 +6,8 @@ are left out: they touch where they are connected.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping
 from importlib.util import find_spec
 from itertools import chain
 from typing import Any
@@ -14,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.geometry.arrays import quaternion_from_matrix
 from linkwright.geometry.hull import convex_hull
@@ -25,6 +27,8 @@ from linkwright.urdf import Collision, Mesh
 from linkwright.urdf.bodies import Bodies
 
 _SAMPLES = 300
+_MIN_COUNT = 3
+"""The number of sampled configurations from which a collision is reported. Small changes move the border of a few."""
 _DEPTH = 1e-4
 """The depth in m from which two shapes collide; shapes that only touch do not."""
 
@@ -32,19 +36,42 @@ Array = NDArray[np.float64]
 Pair = tuple[str, str]
 
 
-def collision_changes(old: RobotMeasures, new: RobotMeasures) -> Iterator[Change]:
+def may_change_collisions(differences: Iterable[Difference]) -> bool:
+    """Return whether differences can change which links collide: shapes, the places of links, or limits of joints."""
+    return any(
+        difference.kind != "renamed"
+        and (
+            difference.subject == "joint"
+            or (difference.subject == "link" and (not difference.property or difference.property.startswith("coll")))
+        )
+        for difference in differences
+    )
+
+
+def collision_changes(old: RobotMeasures, new: RobotMeasures, links: Mapping[str, str]) -> Iterator[Change]:
     """Yield the pairs of links that collide in the new version only.
 
-    Nothing is found without MuJoCo (extra ``sim``).
+    Nothing is found without MuJoCo (extra ``sim``), or of links that the old version does not have.
+
+    Args:
+        old: the old robot.
+        new: the new robot.
+        links: the new names of the links that both robots have, by old name.
     """
+    hulls: dict[bytes, Array | None] = {}
     if find_spec("mujoco") is None or not any(link.collisions for link in new.robot.links.values()):
         return
-    old_counts, new_counts = _collisions(old), _collisions(new)
-    for pair, (is_home, count) in new_counts.items():
-        was_home, old_count = old_counts.get(pair, (False, 0))
+    old_counts = {
+        frozenset(links.get(name, "") for name in pair): counts for pair, counts in _collisions(old, hulls).items()
+    }
+    known = set(links.values())
+    for pair, (is_home, count) in _collisions(new, hulls).items():
+        was_home, old_count = old_counts.get(frozenset(pair), (False, 0))
+        if not known.issuperset(pair):
+            continue
         if is_home and not was_home:
             yield Change(phrase("links '{first}' and '{second}' collide at home", first=pair[0], second=pair[1]))
-        elif count and not old_count and not was_home:
+        elif count >= _MIN_COUNT and not old_count and not was_home:
             text = phrase(
                 "links '{first}' and '{second}' can collide: in {share:.2g} % of {total} configurations, "
                 "in none before",
@@ -56,9 +83,14 @@ def collision_changes(old: RobotMeasures, new: RobotMeasures) -> Iterator[Change
             yield Change(text)
 
 
-def _collisions(measures: RobotMeasures) -> dict[Pair, tuple[bool, int]]:
-    """Return the pairs of links that collide: whether at home, and in how many of the sampled configurations."""
-    scene = _Scene(measures)
+def _collisions(measures: RobotMeasures, hulls: dict[bytes, Array | None]) -> dict[Pair, tuple[bool, int]]:
+    """Return the pairs of links that collide: whether at home, and in how many of the sampled configurations.
+
+    Args:
+        measures: the robot.
+        hulls: the corners of hulls of both robots by the hash of their meshes, to which new ones are added.
+    """
+    scene = _Scene(measures, hulls)
     if scene.model is None:
         return {}
     home = np.array([measures.frames[name] for name in measures.link_names])
@@ -77,7 +109,8 @@ class _Scene:
         model: the model, or None if fewer than two links have shapes that can be used.
     """
 
-    def __init__(self, measures: RobotMeasures) -> None:
+    def __init__(self, measures: RobotMeasures, hulls: dict[bytes, Array | None]) -> None:
+        self._hulls = hulls
         self._mujoco = mujoco = load_mujoco()
         self._links: list[str] = []
         self._measures = measures
@@ -147,8 +180,11 @@ class _Scene:
             mesh = self._measures.meshes.load(shape, collision.element)
         except LinkwrightError:
             return None
-        hull = convex_hull(mesh.vertices)
-        return None if hull is None else mesh.vertices[np.unique(hull)]
+        key = hashlib.sha256(np.ascontiguousarray(mesh.vertices)).digest()
+        if key not in self._hulls:
+            hull = convex_hull(mesh.vertices)
+            self._hulls[key] = None if hull is None else mesh.vertices[np.unique(hull)]
+        return self._hulls[key]
 
 
 def _connected_pairs(measures: RobotMeasures) -> set[Pair]:
