@@ -6,7 +6,6 @@ are left out: they touch where they are connected.
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable, Iterator, Mapping
 from importlib.util import find_spec
 from itertools import chain
@@ -18,7 +17,6 @@ from numpy.typing import NDArray
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.geometry.arrays import quaternion_from_matrix
-from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere, placement
 from linkwright.review.changes import Change
 from linkwright.review.robots.figures import RobotMeasures
@@ -29,6 +27,9 @@ from linkwright.urdf.bodies import Bodies
 _SAMPLES = 300
 _MIN_COUNT = 3
 """The number of sampled configurations from which a collision is reported. Small changes move the border of a few."""
+_MIN_CORNERS = 4
+_MIN_THICKNESS = 1e-6
+"""The thickness of a mesh, as a fraction of its length, up to which it has no volume."""
 _DEPTH = 1e-4
 """The depth in m from which two shapes collide; shapes that only touch do not."""
 
@@ -58,14 +59,15 @@ def collision_changes(old: RobotMeasures, new: RobotMeasures, links: Mapping[str
         new: the new robot.
         links: the new names of the links that both robots have, by old name.
     """
-    hulls: dict[bytes, Array | None] = {}
     if find_spec("mujoco") is None or not any(link.collisions for link in new.robot.links.values()):
         return
-    old_counts = {
-        frozenset(links.get(name, "") for name in pair): counts for pair, counts in _collisions(old, hulls).items()
-    }
+    try:
+        counts_before, new_counts = _collisions(old), _collisions(new)
+    except ValueError:
+        return
+    old_counts = {frozenset(links.get(name, "") for name in pair): counts for pair, counts in counts_before.items()}
     known = set(links.values())
-    for pair, (is_home, count) in _collisions(new, hulls).items():
+    for pair, (is_home, count) in new_counts.items():
         was_home, old_count = old_counts.get(frozenset(pair), (False, 0))
         if not known.issuperset(pair):
             continue
@@ -83,14 +85,13 @@ def collision_changes(old: RobotMeasures, new: RobotMeasures, links: Mapping[str
             yield Change(text)
 
 
-def _collisions(measures: RobotMeasures, hulls: dict[bytes, Array | None]) -> dict[Pair, tuple[bool, int]]:
+def _collisions(measures: RobotMeasures) -> dict[Pair, tuple[bool, int]]:
     """Return the pairs of links that collide: whether at home, and in how many of the sampled configurations.
 
-    Args:
-        measures: the robot.
-        hulls: the corners of hulls of both robots by the hash of their meshes, to which new ones are added.
+    Raises:
+        ValueError: MuJoCo refuses a shape.
     """
-    scene = _Scene(measures, hulls)
+    scene = _Scene(measures)
     if scene.model is None:
         return {}
     home = np.array([measures.frames[name] for name in measures.link_names])
@@ -109,8 +110,7 @@ class _Scene:
         model: the model, or None if fewer than two links have shapes that can be used.
     """
 
-    def __init__(self, measures: RobotMeasures, hulls: dict[bytes, Array | None]) -> None:
-        self._hulls = hulls
+    def __init__(self, measures: RobotMeasures) -> None:
         self._mujoco = mujoco = load_mujoco()
         self._links: list[str] = []
         self._measures = measures
@@ -158,10 +158,10 @@ class _Scene:
         x, y, z, w = quaternion_from_matrix(np.array(place.rotation))
         pose = {"pos": list(place.position), "quat": [w, x, y, z], "mass": 0.0}
         if isinstance(shape, Mesh):
-            hull = self._hull_points(collision, shape)
-            if hull is None:
+            points = self._points(collision, shape)
+            if points is None:
                 return False
-            mesh = spec.add_mesh(name=f"mesh {len(spec.meshes)}", uservert=hull.ravel().tolist())
+            mesh = spec.add_mesh(name=f"mesh {len(spec.meshes)}", uservert=points.ravel().tolist())
             body.add_geom(type=kinds.mjGEOM_MESH, meshname=mesh.name, **pose)
         elif isinstance(shape, Box) and min(shape.size) > 0:
             body.add_geom(type=kinds.mjGEOM_BOX, size=[length / 2 for length in shape.size], **pose)
@@ -174,17 +174,17 @@ class _Scene:
             return False
         return True
 
-    def _hull_points(self, collision: Collision, shape: Mesh) -> Array | None:
-        """Return the corners of a mesh's convex hull, shape (corners, 3), or None if it has no volume."""
+    def _points(self, collision: Collision, shape: Mesh) -> Array | None:
+        """Return the corners of a mesh, shape (corners, 3), or None if its convex hull has no volume."""
         try:
             mesh = self._measures.meshes.load(shape, collision.element)
         except LinkwrightError:
             return None
-        key = hashlib.sha256(np.ascontiguousarray(mesh.vertices)).digest()
-        if key not in self._hulls:
-            hull = convex_hull(mesh.vertices)
-            self._hulls[key] = None if hull is None else mesh.vertices[np.unique(hull)]
-        return self._hulls[key]
+        points: Array = np.unique(mesh.vertices[np.unique(mesh.faces)], axis=0)
+        if len(points) < _MIN_CORNERS:
+            return None
+        extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+        return points if extents[-1] > _MIN_THICKNESS * extents[0] else None
 
 
 def _connected_pairs(measures: RobotMeasures) -> set[Pair]:
