@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.repositories import MACRO, PACKAGE
+from tests.repositories import ARM, MACRO, PACKAGE
 from tests.review.conftest import sentences, subject
 
 pytest.importorskip("mujoco")
@@ -55,3 +55,14 @@ def test_existing_collision_is_not_reported(solid, compare):
 
 def test_connected_links_may_touch(solid, compare):
     assert collisions(compare, solid, SOLID.replace("${length - 0.02}", "${length + 0.1}")) == []
+
+
+def test_renamed_links_and_joints_collide_as_before(solid, compare):
+    free = SOLID.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"')
+    solid.commit({SEGMENT: free})
+    text = free.replace('link name="${name}"', 'link name="${name}_link"').replace("${name}_joint", "${name}_axis")
+    text = text.replace('child link="${name}"', 'child link="${name}_link"').replace(
+        'parent link="${parent}"', "parent link=\"${parent}${'' if parent == 'base_link' else '_link'}\""
+    )
+    solid.write({PATH: ARM.replace('parent link="lower"', 'parent link="lower_link"')})
+    assert collisions(compare, solid, text) == []

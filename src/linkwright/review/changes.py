@@ -81,7 +81,7 @@ class Change:
     @property
     def name(self) -> str:
         """The name of the changed link, joint or extension; empty for other changes."""
-        return str(self._core.arguments.get("name", ""))
+        return str(self.core.arguments.get("name", ""))
 
     @property
     def identity(self) -> Hashable:
@@ -94,23 +94,23 @@ class Change:
         return self.location, self.other_locations, self.content
 
     @property
-    def content(self) -> Hashable:
+    def content(self) -> tuple[Effect, str, tuple[str, str, str, str]]:
         """A key that is equal for the same change of other links and joints, wherever they are written."""
         return self.effect, _QUOTED.sub("", self.property_name), self.values
 
     @property
     def property_name(self) -> str:
         """The name of the changed property; empty for other changes."""
-        return str(self._core.arguments.get("property", ""))
+        return str(self.core.arguments.get("property", ""))
 
     @property
-    def values(self) -> Hashable:
-        """The form of the sentence, and both values."""
-        values = (str(self._core.arguments.get(name)) for name in ("subject", "old", "new"))
-        return self._core.template, *values
+    def values(self) -> tuple[str, str, str, str]:
+        """The form of the sentence, the kind of the changed object, and both values."""
+        subject, old, new = (str(self.core.arguments.get(name)) for name in ("subject", "old", "new"))
+        return self.core.template, subject, old, new
 
     @property
-    def _core(self) -> Phrase:
+    def core(self) -> Phrase:
         """The sentence without what is added at its end."""
         core = self.sentence.arguments.get("change", self.sentence)
         return core if isinstance(core, Phrase) else self.sentence

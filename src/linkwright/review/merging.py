@@ -6,43 +6,108 @@ import re
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import replace
 
+from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.changes import Change, Location
 
 _PART = re.compile(r"(?P<part>(?:joint|gpio|sensor) \S+) (?P<rest>.+)")
 """A property of hardware of ros2_control below one of its joints, GPIOs or sensors."""
+_TOKEN = re.compile(r"[^\W_]+|[\W_]")
+"""A word or number of a name, or a character between two of them."""
+_NO_NAME = re.compile(r"None|[\d\s.,;:+\-e<>()]*", re.ASCII)
+"""A missing value or numbers, of which only equal ones are the same change."""
+_OWN_NAME = "*"
+"""The mark for the name of the changed link, joint or extension in its properties and values."""
 
 
 def merged(changes: Iterable[Change]) -> list[Change]:
     """Return changes in which equal changes of several links, joints or extensions are one.
 
-    Breaking changes stay apart, because the reason of each of them contains a name.
+    Names are equal changes if the same part of them is replaced, such as a prefix that all links get.
     """
     for key, names in ((_content, _names), (_content_of_part, _part_names)):
         groups: dict[Hashable, list[Change]] = {}
         for number, change in enumerate(changes):
-            content = None if change.reason is not None or not change.name else key(change)
+            content = key(change) if change.name else None
             groups.setdefault(number if content is None else (content, change.cases), []).append(change)
         changes = [group[0] if len(group) == 1 else _as_one(group, names) for group in groups.values()]
     return list(changes)
 
 
+def common_reason(reasons: Iterable[Phrase | None]) -> Phrase | None:
+    """Return why several changes are breaking, of which each has a reason with its own name; None if they are not."""
+    distinct = list({str(reason): reason for reason in reasons}.values())
+    first = distinct[0]
+    return first if first is None or len(distinct) == 1 else phrase("{reason}; likewise for the others", reason=first)
+
+
 def _content(change: Change) -> Hashable:
-    return change.content
+    """Return a key that is equal for the same change of other links, joints or extensions."""
+    own_name = change.name.rpartition(" ")[2]
+    effect, property_name, (template, subject, old, new) = change.content
+    old_name = _old_name(change)
+    if old_name is not None:
+        return effect, template, subject, name_edit(old_name, change.name)
+    property_name = property_name.replace(own_name, _OWN_NAME) if len(own_name) > 1 else property_name
+    contents = str(change.sentence.arguments.get("contents", "")).replace(own_name, _OWN_NAME)
+    return effect, template, subject, property_name, name_edit(old, new), contents
+
+
+def name_edit(old: str, new: str) -> Hashable:
+    """Return the part of a name that is replaced and its replacement, or both values if they are no names."""
+    if _NO_NAME.fullmatch(old) or _NO_NAME.fullmatch(new):
+        return old, new
+    start, end = _common_ends(old, new)
+    removed, inserted = old[start : len(old) - end], new[start : len(new) - end]
+    if not removed or not inserted:
+        return removed, inserted, start == 0
+    old_tokens, new_tokens = _TOKEN.findall(old), _TOKEN.findall(new)
+    start, end = _common_ends(old_tokens, new_tokens)
+    return tuple(old_tokens[start : len(old_tokens) - end]), tuple(new_tokens[start : len(new_tokens) - end])
+
+
+def _common_ends(old: str | list[str], new: str | list[str]) -> tuple[int, int]:
+    """Return how many items are equal at the start, and how many of the others at the end."""
+    length = min(len(old), len(new))
+    end = next((index for index in range(length) if old[-1 - index] != new[-1 - index]), length)
+    rest = length - end
+    return next((index for index in range(rest) if old[index] != new[index]), rest), end
+
+
+def _old_name(change: Change) -> str | None:
+    """Return the old name of a renamed link, joint or extension; None for other changes."""
+    arguments = change.core.arguments
+    is_renamed = "old" in arguments and "new" not in arguments
+    return str(arguments["old"]) if is_renamed else None
 
 
 def _names(change: Change) -> tuple[str, ...]:
-    return change.name, *change.other_names
+    old_name = _old_name(change)
+    return change.name if old_name is None else f"{old_name} -> {change.name}", *change.other_names
 
 
 def _content_of_part(change: Change) -> Hashable | None:
     """Return a key that is equal for the same change of other joints of the same hardware; None for other changes."""
-    part = _PART.fullmatch(change.property_name)
-    if part is None or change.other_names:
+    if change.other_names:
         return None
-    return change.name, part["rest"], change.values
+    new_name = _new_part_name(change)
+    if new_name is not None:
+        tag, _, old_name = change.property_name.rpartition(" ")
+        return change.effect, change.name, tag, name_edit(old_name, new_name)
+    part = _PART.fullmatch(change.property_name)
+    return None if part is None else (change.effect, change.name, part["rest"], change.values)
+
+
+def _new_part_name(change: Change) -> str | None:
+    """Return the new name of a renamed element of an extension; None for other changes."""
+    arguments = change.core.arguments
+    is_renamed = "new" in arguments and change.core.template.endswith("renamed to '{new}'")
+    return str(arguments["new"]) if is_renamed else None
 
 
 def _part_names(change: Change) -> tuple[str, ...]:
+    new_name = _new_part_name(change)
+    if new_name is not None:
+        return (f"{change.property_name} -> {new_name}",)
     part = _PART.fullmatch(change.property_name)
     return (change.name,) if part is None else (part["part"],)
 
@@ -56,4 +121,5 @@ def _as_one(changes: list[Change], names_of: Callable[[Change], tuple[str, ...]]
     for change in changes[1:]:
         if change.location is not None and change.location != first.location:
             locations[change.location] = None
-    return replace(first, other_names=tuple(names), other_locations=tuple(locations))
+    reason = common_reason(change.reason for change in changes)
+    return replace(first, reason=reason, other_names=tuple(names), other_locations=tuple(locations))

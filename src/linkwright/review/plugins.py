@@ -68,8 +68,19 @@ def _parameters(plugin: Element) -> Iterator[tuple[str, str]]:
         yield from _parameters(child)
 
 
+def _sensors_with_topics(element: Element) -> Iterator[Phrase]:
+    """Yield the sensors in an element that name topics."""
+    own = [child.text().strip() for child in element.elements("topic")] if element.tag == "sensor" else []
+    topics = list(filter(None, own))
+    if topics:
+        name = element.attributes.get("name") or element.attributes.get("type", "")
+        yield phrase("sensor '{name}' with the topics {topics}", name=name, topics=quoted_names(topics))
+    for child in element.elements():
+        yield from _sensors_with_topics(child)
+
+
 def contents_text(element: Element) -> Phrase | None:
-    """Return the topics of a plugin, or the plugins in another element with theirs; None if there are none."""
+    """Return the topics of a plugin, or the plugins and sensors in another element with theirs; None without any."""
     if element.tag == "plugin":
         topics = plugin_topics(element)
         return phrase("topics {topics}", topics=quoted_names(topics)) if topics else None
@@ -81,6 +92,7 @@ def contents_text(element: Element) -> Phrase | None:
             names = quoted_names(topics)
             part = phrase("plugin '{name}' with the topics {topics}", name=plugin_name(plugin), topics=names)
         parts.append(part)
+    parts += _sensors_with_topics(element)
     return joined(parts) if parts else None
 
 

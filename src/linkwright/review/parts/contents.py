@@ -17,6 +17,7 @@ from linkwright.review.breaking import (
 )
 from linkwright.review.changes import Change, Effect
 from linkwright.review.files.semantics import removal_reason
+from linkwright.review.merging import common_reason, name_edit
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.outline import PROPERTY, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
@@ -186,12 +187,21 @@ class _Described:
     def key(self) -> Hashable:
         """A key that is equal for changes of several elements that can be one line."""
         difference = self.difference
-        if self.reason is not None:
-            return id(self)
+        is_breaking = self.reason is not None
         if difference.is_whole:
             element = difference.new_element or difference.old_element
-            return self.macro, difference.new is None, difference.path[:-1], element and element.tag
+            return is_breaking, self.macro, difference.new is None, difference.path[:-1], element and element.tag
+        if is_breaking:
+            edit = name_edit(difference.old or "", difference.new or "") if difference.new else difference.path[-1]
+            return self.macro, difference.value, len(difference.path), edit
         return self.macro, difference.value == "conditions", difference.old, difference.new
+
+    @property
+    def name(self) -> str:
+        """The changed element among others with the same change: its path or, if it was renamed, both names."""
+        if self.difference.value == "name" and self.difference.new is not None:
+            return f"{self.difference.old} -> {self.difference.new}"
+        return self.element
 
     def _sentence(self) -> Phrase:
         difference = self.difference
@@ -246,15 +256,16 @@ class _Described:
         return None
 
 
-def _merged(described: list[_Described]) -> Iterator[Change]:
+def _merged(differences: list[_Described]) -> Iterator[Change]:
     """Yield the changes, one line for equal ones, and the number of those beyond the limit."""
     groups: dict[Hashable, list[_Described]] = {}
-    for each in described:
+    for each in differences:
         groups.setdefault(each.key, []).append(each)
     changes = []
     for first, *others in groups.values():
-        names = dict.fromkeys(each.element for each in others if each.element != first.element)
-        changes.append(replace(first.change, other_names=tuple(names)))
+        names = dict.fromkeys(other.name for other in others if other.element != first.element)
+        reason = common_reason(described.reason for described in (first, *others))
+        changes.append(replace(first.change, reason=reason, other_names=tuple(names)))
     breaking = [change for change in changes if change.effect is Effect.BREAKING]
     rest = [change for change in changes if change.effect is not Effect.BREAKING]
     yield from breaking

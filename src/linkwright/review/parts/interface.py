@@ -10,6 +10,7 @@ from linkwright.review.list_changes import change_text
 from linkwright.review.parts.include_graph import IncludeGraph
 from linkwright.review.parts.outline import MacroOutline, Outline
 from linkwright.review.parts.part_pair import PartPair
+from linkwright.review.parts.renamed_names import renamed_names
 from linkwright.xacro.macros import Parameter
 from linkwright.xmltree import Element
 
@@ -73,6 +74,20 @@ def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) ->
     """Add the parameters that a macro has gained or lost, and the changes of their defaults."""
     lost = [name for name in old.parameters if name not in new.parameters]
     gained = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
+    renamed = dict(
+        renamed_names(
+            {name: old.parameters[name].default for name in lost},
+            {parameter.name: parameter.default for parameter in gained},
+            old.element,
+            new.element,
+        )
+    )
+    for old_name, name in renamed.items():
+        change = phrase("parameter {old} renamed to {name}", old=old_name, name=name)
+        text = phrase("macro '{name}': {change}", name=new.name, change=change)
+        pair.add(text, old.element, new.element, phrase("calls that pass it cannot be expanded"))
+    lost = [name for name in lost if name not in renamed]
+    gained = [parameter for parameter in gained if parameter.name not in renamed.values()]
     required = [parameter.name for parameter in gained if not _has_default(parameter)]
     optional = [_with_default(parameter) for parameter in gained if _has_default(parameter)]
     for names, change, reason in (
@@ -138,25 +153,50 @@ def _with_default(parameter: Parameter) -> str:
 
 
 def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:
-    """Add the arguments that the new version of a file adds, removes or changes.
+    """Add the arguments that the new version of a file adds, removes, renames or changes.
 
     An argument that moves between a robot and its parts is none of these.
     """
+    added = {
+        name: element
+        for name, element in pair.new.arguments.items()
+        if name not in pair.old.arguments and not _is_declared(graphs.old, pair.old_path, name)
+    }
+    removed = {
+        name: element
+        for name, element in pair.old.arguments.items()
+        if name not in pair.new.arguments and not _is_declared(graphs.new, pair.new_path, name)
+    }
+    renamed = renamed_names(_defaults(removed), _defaults(added), pair.old.root, pair.new.root)
+    old_names = {name: old_name for old_name, name in renamed}
     for name, element in pair.new.arguments.items():
-        old_element = pair.old.arguments.get(name)
-        if old_element is not None:
-            _compare_argument(pair, old_element, element)
-        elif not _is_declared(graphs.old, pair.old_path, name):
-            default = element.attributes.get("default")
-            if default is None:
-                pair.add(phrase("argument '{name}' without a default added", name=name), None, element)
-            else:
-                text = phrase("argument '{name}' added, with the default '{value}'", name=name, value=default)
-                pair.add(text, None, element)
-    for name, element in pair.old.arguments.items():
-        if name not in pair.new.arguments and not _is_declared(graphs.new, pair.new_path, name):
-            reason = phrase("a value that a caller passes for '{name}' has no effect", name=name)
-            pair.add(phrase("argument '{name}' removed", name=name), element, None, reason)
+        if name in pair.old.arguments:
+            _compare_argument(pair, pair.old.arguments[name], element)
+        elif name in old_names:
+            old_name = old_names[name]
+            text = phrase("argument '{old}' renamed to '{name}'", old=old_name, name=name)
+            pair.add(text, removed.pop(old_name), element, _unused_value_reason(old_name))
+        elif name in added:
+            _add_argument(pair, name, element)
+    for name, element in removed.items():
+        pair.add(phrase("argument '{name}' removed", name=name), element, None, _unused_value_reason(name))
+
+
+def _add_argument(pair: PartPair, name: str, element: Element) -> None:
+    default = element.attributes.get("default")
+    if default is None:
+        reason = phrase("callers must pass '{name}'", name=name)
+        pair.add(phrase("argument '{name}' without a default added", name=name), None, element, reason)
+        return
+    pair.add(phrase("argument '{name}' added, with the default '{value}'", name=name, value=default), None, element)
+
+
+def _unused_value_reason(name: str) -> Phrase:
+    return phrase("a value that a caller passes for '{name}' has no effect", name=name)
+
+
+def _defaults(arguments: Mapping[str, Element]) -> dict[str, str | None]:
+    return {name: element.attributes.get("default") for name, element in arguments.items()}
 
 
 def _compare_argument(pair: PartPair, old: Element, new: Element) -> None:
@@ -164,11 +204,14 @@ def _compare_argument(pair: PartPair, old: Element, new: Element) -> None:
     old_default, new_default = old.attributes.get("default"), new.attributes.get("default")
     if old_default == new_default:
         return
+    if old_default is None and new_default is not None:
+        pair.add(phrase("argument '{name}' has the default '{value}' now", name=name, value=new_default), old, new)
+        return
     if new_default is None:
         text = phrase("argument '{name}' has no default any more", name=name)
         pair.add(text, old, new, phrase("callers must pass '{name}'", name=name))
         return
-    text = change_text(phrase("default of argument '{name}'", name=name), old_default or "-", new_default)
+    text = change_text(phrase("default of argument '{name}'", name=name), old_default or "''", new_default or "''")
     pair.add(text, old, new)
 
 

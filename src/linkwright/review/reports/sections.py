@@ -12,6 +12,8 @@ from linkwright.review.changes import Change, Effect, Review, Subject
 
 _MAX_NAMES = 3
 """The number of other links or joints that a line names."""
+_MAX_BREAKING_NAMES = 12
+"""The number of other links or joints that a line about a breaking change names, which users may look for."""
 _MAX_PATHS = 4
 """The number of other files that a line names."""
 _MAX_NAMED_CASES = 1
@@ -111,10 +113,11 @@ def sentence_of(change: Change) -> Phrase:
         return phrase("{change} ({count} times)", change=change.sentence, count=1 + len(change.other_locations))
     if not names:
         return change.sentence
-    listed = quoted_names(names[:_MAX_NAMES])
-    if len(names) <= _MAX_NAMES:
+    limit = _MAX_BREAKING_NAMES if change.effect is Effect.BREAKING else _MAX_NAMES
+    listed = quoted_names(names[:limit])
+    if len(names) <= limit:
         return phrase("{change}; also {names}", change=change.sentence, names=listed)
-    more = len(names) - _MAX_NAMES
+    more = len(names) - limit
     return phrase("{change}; also {names} and {count} more", change=change.sentence, names=listed, count=more)
 
 
@@ -122,10 +125,36 @@ def cases_text(change: Change, subject: Subject) -> Phrase | None:
     """Return with which argument sets a change occurs, or None if it occurs with all of them."""
     if not change.cases:
         return None
-    names = [_distinct_values(name, subject.cases or change.cases) or "-" for name in change.cases]
+    cause = _common_cause(change.cases, subject.cases)
+    if cause is not None:
+        return cause
+    names = [_distinct_values(name, subject.cases or change.cases) for name in change.cases]
+    if names == [""]:
+        return phrase("with the default arguments")
     if len(names) <= _MAX_NAMED_CASES:
         return phrase("with {arguments}", arguments=", ".join(names))
     return phrase("with {count} of {total} argument sets", count=len(names), total=len(subject.cases))
+
+
+def _common_cause(cases: Sequence[str], all_cases: Sequence[str]) -> Phrase | None:
+    """Return the argument that all argument sets with a change have and no other set, or the other way round.
+
+    None if there is none, or if the arguments of all sets are the same.
+    """
+    words = [set(_ARGUMENT.split(case)) for case in cases if case]
+    other_words = [set(_ARGUMENT.split(case)) for case in all_cases if case and case not in cases]
+    others = len(set(all_cases) - set(cases))
+    if not others:
+        return None
+    if len(words) == len(cases):
+        causes = sorted(set.intersection(*words) - set().union(*other_words))
+        if causes:
+            return phrase("with {arguments}", arguments=causes[0])
+    if len(other_words) == others:
+        causes = sorted(set.intersection(*other_words) - set().union(*words))
+        if causes:
+            return phrase("without {arguments}", arguments=causes[0])
+    return None
 
 
 def _distinct_values(name: str, cases: Sequence[str]) -> str:

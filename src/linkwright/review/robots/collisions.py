@@ -6,7 +6,7 @@ are left out: they touch where they are connected.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from importlib.util import find_spec
 from itertools import chain
 from typing import Any
@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.geometry.arrays import quaternion_from_matrix
-from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere, placement
 from linkwright.review.changes import Change
 from linkwright.review.robots.figures import RobotMeasures
@@ -25,6 +25,11 @@ from linkwright.urdf import Collision, Mesh
 from linkwright.urdf.bodies import Bodies
 
 _SAMPLES = 300
+_MIN_COUNT = 3
+"""The number of sampled configurations from which a collision is reported. Small changes move the border of a few."""
+_MIN_CORNERS = 4
+_MIN_THICKNESS = 1e-6
+"""The thickness of a mesh, as a fraction of its length, up to which it has no volume."""
 _DEPTH = 1e-4
 """The depth in m from which two shapes collide; shapes that only touch do not."""
 
@@ -32,19 +37,43 @@ Array = NDArray[np.float64]
 Pair = tuple[str, str]
 
 
-def collision_changes(old: RobotMeasures, new: RobotMeasures) -> Iterator[Change]:
+def may_change_collisions(differences: Iterable[Difference]) -> bool:
+    """Return whether differences can change which links collide: shapes, the places of links, or limits of joints."""
+    return any(
+        difference.kind != "renamed"
+        and (
+            difference.subject == "joint"
+            or (difference.subject == "link" and (not difference.property or difference.property.startswith("coll")))
+        )
+        for difference in differences
+    )
+
+
+def collision_changes(old: RobotMeasures, new: RobotMeasures, links: Mapping[str, str]) -> Iterator[Change]:
     """Yield the pairs of links that collide in the new version only.
 
-    Nothing is found without MuJoCo (extra ``sim``).
+    Nothing is found without MuJoCo (extra ``sim``), or of links that the old version does not have.
+
+    Args:
+        old: the old robot.
+        new: the new robot.
+        links: the new names of the links that both robots have, by old name.
     """
     if find_spec("mujoco") is None or not any(link.collisions for link in new.robot.links.values()):
         return
-    old_counts, new_counts = _collisions(old), _collisions(new)
+    try:
+        counts_before, new_counts = _collisions(old), _collisions(new)
+    except ValueError:
+        return
+    old_counts = {frozenset(links.get(name, "") for name in pair): counts for pair, counts in counts_before.items()}
+    known = set(links.values())
     for pair, (is_home, count) in new_counts.items():
-        was_home, old_count = old_counts.get(pair, (False, 0))
+        was_home, old_count = old_counts.get(frozenset(pair), (False, 0))
+        if not known.issuperset(pair):
+            continue
         if is_home and not was_home:
             yield Change(phrase("links '{first}' and '{second}' collide at home", first=pair[0], second=pair[1]))
-        elif count and not old_count and not was_home:
+        elif count >= _MIN_COUNT and not old_count and not was_home:
             text = phrase(
                 "links '{first}' and '{second}' can collide: in {share:.2g} % of {total} configurations, "
                 "in none before",
@@ -57,7 +86,11 @@ def collision_changes(old: RobotMeasures, new: RobotMeasures) -> Iterator[Change
 
 
 def _collisions(measures: RobotMeasures) -> dict[Pair, tuple[bool, int]]:
-    """Return the pairs of links that collide: whether at home, and in how many of the sampled configurations."""
+    """Return the pairs of links that collide: whether at home, and in how many of the sampled configurations.
+
+    Raises:
+        ValueError: MuJoCo refuses a shape.
+    """
     scene = _Scene(measures)
     if scene.model is None:
         return {}
@@ -125,10 +158,10 @@ class _Scene:
         x, y, z, w = quaternion_from_matrix(np.array(place.rotation))
         pose = {"pos": list(place.position), "quat": [w, x, y, z], "mass": 0.0}
         if isinstance(shape, Mesh):
-            hull = self._hull_points(collision, shape)
-            if hull is None:
+            points = self._points(collision, shape)
+            if points is None:
                 return False
-            mesh = spec.add_mesh(name=f"mesh {len(spec.meshes)}", uservert=hull.ravel().tolist())
+            mesh = spec.add_mesh(name=f"mesh {len(spec.meshes)}", uservert=points.ravel().tolist())
             body.add_geom(type=kinds.mjGEOM_MESH, meshname=mesh.name, **pose)
         elif isinstance(shape, Box) and min(shape.size) > 0:
             body.add_geom(type=kinds.mjGEOM_BOX, size=[length / 2 for length in shape.size], **pose)
@@ -141,14 +174,17 @@ class _Scene:
             return False
         return True
 
-    def _hull_points(self, collision: Collision, shape: Mesh) -> Array | None:
-        """Return the corners of a mesh's convex hull, shape (corners, 3), or None if it has no volume."""
+    def _points(self, collision: Collision, shape: Mesh) -> Array | None:
+        """Return the corners of a mesh, shape (corners, 3), or None if its convex hull has no volume."""
         try:
             mesh = self._measures.meshes.load(shape, collision.element)
         except LinkwrightError:
             return None
-        hull = convex_hull(mesh.vertices)
-        return None if hull is None else mesh.vertices[np.unique(hull)]
+        points: Array = np.unique(mesh.vertices[np.unique(mesh.faces)], axis=0)
+        if len(points) < _MIN_CORNERS:
+            return None
+        extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+        return points if extents[-1] > _MIN_THICKNESS * extents[0] else None
 
 
 def _connected_pairs(measures: RobotMeasures) -> set[Pair]:

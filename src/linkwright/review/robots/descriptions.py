@@ -12,12 +12,13 @@ from linkwright.geometry.single import Pose, pose_quaternion
 from linkwright.review.breaking import breaking_reason
 from linkwright.review.robots.cases import Case, cases, switched_cases
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.robots.collisions import collision_changes
+from linkwright.review.robots.collisions import collision_changes, may_change_collisions
 from linkwright.review.robots.figures import RobotMeasures, figures_of
+from linkwright.review.robots.inertials import INERTIAL, inertial_sentence, with_joined_inertials
 from linkwright.review.file_pair import FilePair
 from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.drawings.images import view_images
-from linkwright.review.merging import merged
+from linkwright.review.merging import common_reason, merged
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.parts.expanded import expanded_places
 from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
@@ -39,6 +40,7 @@ def compare_descriptions(pair: FilePair) -> None:
             group = groups.setdefault(change.identity, _Group(change))
             group.names[change.name] = None
             group.cases[case.name] = None
+            group.reasons.append(change.reason)
         if case.partial is not None and case.partial.has_stand_ins:
             continue  # where the links are is unknown
         if pair.drawings.images and not pair.images:
@@ -48,9 +50,11 @@ def compare_descriptions(pair: FilePair) -> None:
                 pair.scene = robot_scene(case.models, case.old, case.new, roots)
         if len(pair.cases) == 1 and case.partial is None:
             old = RobotMeasures(case.old.robot, case.models.old, UNMOVED, frames.old)
-            new = RobotMeasures(case.new.robot, case.models.new, frames.new_root, frames.new)
+            old_joints = {name: old_name for old_name, name in comparison.joints.items()}
+            new = RobotMeasures(case.new.robot, case.models.new, frames.new_root, frames.new, old_joints)
             pair.figures += figures_of(old, new)
-            collisions = list(collision_changes(old, new))
+            if may_change_collisions(comparison.differences):
+                collisions = list(collision_changes(old, new, comparison.links))
     pair.changes += merged(group.change(pair.cases) for group in groups.values())
     pair.changes += collisions
 
@@ -67,15 +71,17 @@ def _cases(pair: FilePair, groups: Sized) -> Iterator[Case]:
 
 @dataclass
 class _Group:
-    """A change with the names of the links or joints, and of the argument sets, with which it occurs."""
+    """A change with the names of the links or joints, and of the argument sets, with which it occurs, and its reasons."""
 
     first: Change
     names: dict[str, None] = field(default_factory=dict)
     cases: dict[str, None] = field(default_factory=dict)
+    reasons: list[Phrase | None] = field(default_factory=list)
 
     def change(self, all_cases: Sequence[str]) -> Change:
         cases = () if len(self.cases) == len(set(all_cases)) else tuple(self.cases)
-        return replace(self.first, cases=cases, other_names=tuple(self.names)[1:])
+        reason = common_reason(self.reasons)
+        return replace(self.first, cases=cases, reason=reason, other_names=tuple(self.names)[1:])
 
 
 # --- changes of a robot ----------------------------------------------------------------------------------------------
@@ -99,7 +105,7 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case:
             else phrase("programs that look up the frame '{name}' do not find it", name=old.root),
         )
     added = added_topics(comparison.differences)
-    for difference in comparison.differences:
+    for difference in with_joined_inertials(comparison.differences):
         if partial is not None and not partial.is_certain(difference):
             continue
         reason = breaking_reason(difference, old, new) or missing_topics_reason(difference, added)
@@ -133,6 +139,8 @@ def _location(pair: FilePair, difference: Difference) -> Location | None:
 
 def sentence_of_difference(difference: Difference) -> Phrase:
     """Return a difference in one line. A moved or rotated frame also has the distance or angle."""
+    if difference.property == INERTIAL and difference.old and difference.new:
+        return inertial_sentence(difference)
     text = sentence(difference)
     old_path = path_of_renamed(difference, difference.property)
     if old_path is not None:

@@ -57,6 +57,7 @@ class RobotMeasures:
         model: the description of the robot.
         root: the frame of the root link in the frame of the figures.
         frames: the frames of the links in the frame of the figures.
+        old_joints: the old names of renamed joints, by new name.
 
     Attributes:
         robot: the robot.
@@ -65,8 +66,16 @@ class RobotMeasures:
         link_names: the links in the order of the frames of `sampled_frames`.
     """
 
-    def __init__(self, robot: Robot, model: Model, root: Placement, frames: Mapping[str, Placement]) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        model: Model,
+        root: Placement,
+        frames: Mapping[str, Placement],
+        old_joints: Mapping[str, str] | None = None,
+    ) -> None:
         self.robot = robot
+        self._old_joints = old_joints or {}
         self._root = matrix(root)
         self.frames = {name: matrix(frame) for name, frame in frames.items()}
         self.meshes = MeshLibrary(model.finder, model.path.parent)
@@ -163,7 +172,7 @@ class RobotMeasures:
         return self.frames_at(self.sampled_positions(count))
 
     def sampled_positions(self, count: int) -> Array:
-        """Return positions within the limits, which depend only on the names and the limits of the joints.
+        """Return positions within the limits, which depend only on the old names and the limits of the joints.
 
         Returns:
             Positions in rad or m, shape (count, joints).
@@ -172,7 +181,8 @@ class RobotMeasures:
         names = self._tree.joint_names
         samples = np.zeros((count, len(names)))
         for index, name in enumerate(names):
-            samples[:, index] = np.random.default_rng(zlib.crc32(name.encode())).random(count)
+            seed = zlib.crc32(self._old_joints.get(name, name).encode())
+            samples[:, index] = np.random.default_rng(seed).random(count)
         positions: Array = low + samples * (high - low)
         return positions
 

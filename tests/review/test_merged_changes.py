@@ -1,0 +1,172 @@
+"""Changes that a review lists once: names that are edited alike, and the values of one inertial."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.diagnostics import phrase
+from linkwright.review.changes import Change, Effect, Subject, SubjectKind
+from linkwright.review.merging import merged, name_edit
+from linkwright.review.reports.sections import cases_text, sentence_of
+from tests.repositories import ARM, MACRO
+from tests.review.conftest import breaking, sentences, subject
+
+ROBOT = "arm_description/urdf/arm.urdf.xacro"
+SEGMENT = "arm_description/urdf/segment.xacro"
+RANGE = """<xacro:macro name="range" params="side">
+    <link name="${side}_range"/>
+    <joint name="${side}_joint" type="fixed"><parent link="base_link"/><child link="${side}_range"/></joint>
+    {sensor}
+  </xacro:macro>
+  <xacro:range side="fl"/>
+  <xacro:range side="fr"/>
+</robot>"""
+SENSOR = """<gazebo reference="${side}_range">
+      <sensor name="${side}_range" type="gpu_lidar"><topic>/range/${side}</topic></sensor>
+    </gazebo>"""
+
+
+def with_ranges(sensor: str) -> str:
+    return ARM.replace("</robot>", RANGE.replace("{sensor}", sensor))
+
+
+def test_links_and_joints_with_a_new_prefix_are_a_line_each(package, compare):
+    text = MACRO.replace('link name="${name}"', 'link name="left_${name}"').replace(
+        'child link="${name}"', 'child link="left_${name}"'
+    )
+    text = text.replace('joint name="${name}', 'joint name="left_${name}').replace(
+        'parent link="${parent}"', "parent link=\"${'' if parent == 'base_link' else 'left_'}${parent}\""
+    )
+    package.write({SEGMENT: text, ROBOT: ARM.replace('parent link="lower"', 'parent link="left_lower"')})
+    result = compare(package)
+    lines = [sentence_of(change) for _, change in result.breaking_changes]
+    assert [str(line) for line in lines] == [
+        "link 'upper' renamed to 'left_upper'; also 'middle -> left_middle', 'lower -> left_lower'",
+        (
+            "joint 'upper_joint' renamed to 'left_upper_joint'; "
+            "also 'middle_joint -> left_middle_joint', 'lower_joint -> left_lower_joint'"
+        ),
+    ]
+    reason = result.breaking_changes[0][1].reason
+    assert str(reason) == "programs that look up the frame 'upper' do not find it; likewise for the others"
+
+
+def test_joints_of_an_uncalled_macro_with_new_names_are_one_line(package, compare):
+    joint = '<joint name="${name}_%s" type="revolute"><parent link="%s"/><axis xyz="0 0 1"/></joint>'
+    tool = MACRO.replace('"segment"', '"finger"').replace("</link>", f"</link>{joint % (1, 'a')}{joint % (2, 'b')}")
+    path = "arm_description/urdf/tool.xacro"
+    package.commit({path: tool})
+    package.write({path: tool.replace("name}_1", "name}_a1").replace("name}_2", "name}_a2")})
+    (found,) = subject(compare(package), path).changes
+    assert str(sentence_of(found)) == (
+        "macro 'finger': joint ${name}_a1 name: ${name}_1 -> ${name}_a1; also '${name}_2 -> ${name}_a2'"
+    )
+    assert str(found.reason).endswith("'${name}_1' do not find it; likewise for the others")
+
+
+def test_values_of_an_inertial_are_one_line(package, compare):
+    package.write({SEGMENT: MACRO.replace('mass value="2"', 'mass value="3"').replace('iyy="0.1"', 'iyy="0.2"')})
+    (found,) = subject(compare(package), ROBOT).changes
+    expected = "link 'upper': inertial: mass 2 -> 3 kg, iyy 0.1 -> 0.2 kg m2; also 'middle', 'lower'"
+    assert str(sentence_of(found)) == expected
+
+
+def test_added_sensors_have_their_topics(package, compare):
+    package.commit({ROBOT: with_ranges("")})
+    package.write({ROBOT: with_ranges(SENSOR)})
+    expected = "extension 'gazebo fl_range' added: sensor 'fl_range' with the topics '/range/fl'"
+    assert sentences(subject(compare(package), ROBOT)) == [expected]
+
+
+def test_topics_that_lose_the_same_part_are_one_line(package, compare):
+    package.commit({ROBOT: with_ranges(SENSOR)})
+    package.write({ROBOT: with_ranges(SENSOR.replace("/range", "range"))})
+    result = compare(package)
+    assert breaking(result) == ["extension 'gazebo fl_range': sensor fl_range topic /range/fl -> range/fl"]
+    assert result.breaking_changes[0][1].other_names == ("gazebo fr_range",)
+
+
+def change(name: str, old: str, new: str) -> Change:
+    sentence = phrase(
+        "{subject} '{name}': {property} {old} -> {new}", subject="link", name=name, property="p", old=old, new=new
+    )
+    return Change(sentence, Effect.CHANGED)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "count"),
+    [
+        (("a/x.stl", "b/x.stl"), ("a/y.stl", "b/y.stl"), 1),
+        (("a/x.stl", "b/x.stl"), ("c/y.stl", "b/y.stl"), 2),
+        (("1.5", "2.5"), ("1.25", "2.25"), 2),
+        (("1 0 0", "2 0 0"), ("1 0 0", "2 0 0"), 1),
+        (("-", "red"), ("-", "blue"), 2),
+    ],
+)
+def test_names_with_the_same_edit_are_one_line_and_numbers_are_not(first, second, count):
+    assert len(merged([change("one", *first), change("two", *second)])) == count
+
+
+def test_edit_of_a_name_is_a_prefix_or_words():
+    assert name_edit("link_0", "left_link_0") == name_edit("tool", "left_tool")
+    assert name_edit("old_link_0", "new_link_0") == name_edit("old_tool", "new_tool")
+    assert name_edit("link_0", "left_link_0") != name_edit("link_0", "link_0_left_")
+
+
+ALL = ("sim:=true tool:=a", "sim:=true tool:=b", "sim:=false tool:=a", "")
+
+
+@pytest.mark.parametrize(
+    ("cases", "all_cases", "expected"),
+    [
+        (ALL[:2], ALL, "with sim:=true"),
+        (("", ALL[2]), (ALL[0], ALL[1], ALL[2], ""), "without sim:=true"),
+        (ALL[1:3], ALL, "with 2 of 4 argument sets"),
+        (("",), ("", "sim:=true", "tool:=b"), "with the default arguments"),
+    ],
+)
+def test_argument_that_causes_a_change_is_named(cases, all_cases, expected):
+    subject_of_all = Subject(SubjectKind.DESCRIPTION, "r.urdf", "r.urdf", "r.urdf", cases=all_cases)
+    assert str(cases_text(Change(phrase("robot"), cases=cases), subject_of_all)) == expected
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ('name="tool" default', 'name="gripper" default', "argument 'tool' renamed to 'gripper'", True),
+        (
+            'name="tool" default="none"',
+            'name="tool" default="probe"',
+            "default of argument 'tool' none -> probe",
+            False,
+        ),
+        (
+            "<xacro:include",
+            '<xacro:arg name="color"/>\n<xacro:include',
+            "argument 'color' without a default added",
+            True,
+        ),
+    ],
+)
+def test_arguments_of_a_robot_are_compared(package, compare, old, new, expected, is_breaking):
+    text = ARM.replace(old, new)
+    package.write({ROBOT: text.replace("$(arg tool)", "$(arg gripper)") if "gripper" in new else text})
+    result = compare(package)
+    assert (expected in breaking(result)) == is_breaking
+    assert expected in sentences(subject(result, ROBOT))
+
+
+def test_renamed_parameter_of_a_macro_is_one_line(package, compare):
+    package.write({SEGMENT: MACRO.replace("length", "size"), ROBOT: ARM})
+    assert breaking(compare(package)) == ["macro 'segment': parameter length renamed to size"]
+
+
+def test_other_parameter_with_the_same_default_is_not_a_renamed_one(package, compare):
+    text = MACRO.replace("name parent length:=0.5", "name parent length:=0.5 color:=''").replace(
+        "</visual>", '<material name="${color}"/></visual>'
+    )
+    package.commit({SEGMENT: text})
+    package.write(
+        {SEGMENT: MACRO.replace("length:=0.5", "length:=0.5 topic:=''").replace("name}_joint", "name}${topic}_joint")}
+    )
+    assert "macro 'segment': parameter color removed" in breaking(compare(package))
