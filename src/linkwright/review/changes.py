@@ -32,6 +32,8 @@ class SubjectKind(Enum):
     MAP = "map"
     INTERFACE = "interface"
     MANIFEST = "package manifest"
+    BUILD = "build file"
+    RVIZ = "RViz configuration"
     MESH = "mesh"
     SCENARIO = "scenario"
     SEMANTICS = "semantic description"

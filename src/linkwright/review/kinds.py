@@ -11,12 +11,15 @@ from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import SubjectKind
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.cmake_files import CMAKE_FILE, compare_cmake_files
 from linkwright.review.files.interfaces import compare_interfaces
 from linkwright.review.files.manifests import compare_manifests
 from linkwright.review.files.maps import compare_maps
 from linkwright.review.files.meshes import compare_meshes
 from linkwright.review.files.parameter_files import compare_parameter_files
+from linkwright.review.files.rviz_files import compare_rviz_files
 from linkwright.review.files.semantics import compare_semantics
+from linkwright.review.files.setup_files import SETUP_FILE, compare_setup_files
 from linkwright.review.files.worlds import compare_worlds
 from linkwright.review.launches.files import compare_launch_files
 from linkwright.review.robots.descriptions import compare_descriptions
@@ -32,7 +35,7 @@ class KindRule:
     Attributes:
         kind: the kind.
         compare: the function that compares two versions.
-        suffixes: the ends of the names.
+        suffixes: the ends of the names; one that does not start with a dot or an underscore is a whole name.
         added: the sentence for an added file.
         removed: the sentence for a removed file.
         removal_reason: why it is breaking to remove or rename a file; None if it is not.
@@ -88,12 +91,34 @@ _RULES = (
         phrase("packages that depend on the package do not build or start"),
     ),
     KindRule(
+        SubjectKind.BUILD,
+        compare_cmake_files,
+        (CMAKE_FILE.lower(),),
+        phrase("build file added"),
+        phrase("build file removed"),
+    ),
+    KindRule(
+        SubjectKind.BUILD,
+        compare_setup_files,
+        (SETUP_FILE,),
+        phrase("build file added"),
+        phrase("build file removed"),
+    ),
+    KindRule(
         SubjectKind.SEMANTICS,
         compare_semantics,
         (".srdf",),
         phrase("semantic description added"),
         phrase("semantic description removed"),
         phrase("launch files and programs that name the file do not find it"),
+    ),
+    KindRule(
+        SubjectKind.RVIZ,
+        compare_rviz_files,
+        (".rviz",),
+        phrase("RViz configuration added"),
+        phrase("RViz configuration removed"),
+        phrase("launch files and users that name the file do not find it"),
     ),
     KindRule(SubjectKind.MAP, compare_maps, (".pgm",), phrase("map added"), phrase("map removed")),
     KindRule(
@@ -143,4 +168,8 @@ def rule_of(path: str) -> KindRule | None:
         return None  # a test with launch_testing
     if is_launch_file_name(name):
         return next(rule for rule in _RULES if rule.kind is SubjectKind.LAUNCH_FILE)
-    return next((rule for rule in _RULES if name.endswith(rule.suffixes)), None)
+    return next((rule for rule in _RULES if any(_has_name(name, suffix) for suffix in rule.suffixes)), None)
+
+
+def _has_name(name: str, suffix: str) -> bool:
+    return name.endswith(suffix) if suffix.startswith((".", "_")) else name == suffix

@@ -20,6 +20,7 @@ from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind, nesting_problem
 from linkwright.review.file_pair import Drawings, FilePair
+from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.mesh_groups import grouped_meshes
 from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.findings import compare_findings, find
@@ -148,7 +149,7 @@ class _Reviewer:
             if rule is None or rule.kind in _EXPANDED or file.is_submodule:
                 continue
             if self._is_part_of_a_robot(rule, file):
-                paths.add((file.old_path, file.new_path))
+                paths.add(self._package_build_file(file) or (file.old_path, file.new_path))
         for old_path, new_path in sorted(paths, key=lambda pair: (pair[1] or pair[0] or "", pair[0] or "")):
             rule = self._rule(old_path, new_path)
             if rule is not None:
@@ -162,6 +163,18 @@ class _Reviewer:
             is_helper = any(makes_actions(version.file(path)) for version, path in sides if path)
             return LAUNCH_HELPER if is_helper else None
         return rule
+
+    def _package_build_file(self, file: ChangedFile) -> tuple[str, str] | None:
+        """Return the paths of the ``CMakeLists.txt`` of the package that runs another one, or None."""
+        path = PurePosixPath(file.path)
+        folder = _package_folder(self._versions.new, file.path)
+        if path.name != CMAKE_FILE or folder is None:
+            return None
+        new_path = self._versions.new.relative(folder / CMAKE_FILE)
+        old_path = None if new_path is None else self._old_path(new_path)
+        if new_path is None or old_path is None or new_path == file.path or not (folder / CMAKE_FILE).is_file():
+            return None
+        return old_path, new_path
 
     def _is_part_of_a_robot(self, rule: KindRule, file: ChangedFile) -> bool:
         """Return whether a file is not a setting of a tool: hidden, or in YAML and outside all packages."""

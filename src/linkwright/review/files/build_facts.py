@@ -1,0 +1,228 @@
+"""The facts of build files that other packages depend on, and their comparison."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
+from linkwright.review.file_pair import FilePair
+
+_MAX_NAMES = 8
+"""The number of names that a line lists."""
+
+
+class FactKind(Enum):
+    """The kind of a fact: its name in a report, and why it is breaking to remove one."""
+
+    EXECUTABLE = (
+        phrase("installed executables"),
+        phrase("launch files and users that start them do not find them"),
+    )
+    LIBRARY = (
+        phrase("installed libraries"),
+        phrase("packages and programs that link to them or load them do not build or start"),
+    )
+    EXPORTED_TARGET = (phrase("exported targets"), phrase("packages that link to them do not build"))
+    COMPONENT = (
+        phrase("components"),
+        phrase("launch files that load them into a container do not find them"),
+    )
+    PLUGIN_DESCRIPTION = (
+        phrase("exported plugin descriptions"),
+        phrase("programs that load their classes do not find them"),
+    )
+    INTERFACE = (phrase("built interfaces"), phrase("programs that use the types do not build or start"))
+    MODULE = (phrase("installed Python modules"), phrase("programs that import them do not find them"))
+    ENTRY_POINT = (phrase("entry points"), phrase("programs that load them do not find them"))
+    PACKAGE = (phrase("calls of find_package"), None)
+    EXPORTED_DEPENDENCY = (phrase("exported dependencies"), None)
+    TEST = (phrase("tests"), None)
+    SETTING = (phrase("settings"), None)
+
+    def __init__(self, title: Phrase, reason: Phrase | None) -> None:
+        self.title = title
+        self.reason = reason
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A fact of a build file.
+
+    Attributes:
+        kind: the kind.
+        name: the name of the target, package or other subject.
+        value: a property that may change, such as the function of an executable; empty if there is none.
+        span: the location.
+        is_value_used: whether other packages use the value, so that another value is breaking.
+    """
+
+    kind: FactKind
+    name: str
+    value: str = ""
+    span: Span | None = None
+    is_value_used: bool = False
+
+
+@dataclass
+class BuildFacts:
+    """The facts of a build file.
+
+    Attributes:
+        facts: the facts that are known.
+        files: the sources of the installed files relative to the package, by destination relative to the prefix.
+        is_complete: whether `files` has all files.
+        rest: the other commands or settings, each with its name and its text.
+        package: the path of the folder of the package relative to the root.
+    """
+
+    facts: list[Fact] = field(default_factory=list)
+    files: dict[str, str] = field(default_factory=dict)
+    is_complete: bool = True
+    rest: list[tuple[str, str]] = field(default_factory=list)
+    package: str = ""
+
+
+def compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
+    """Add the differences between the facts of two versions of a build file."""
+    for kind in FactKind:
+        old_facts, new_facts = (
+            {fact.name: fact for fact in facts.facts if fact.kind is kind and _is_reported(pair, facts, fact)}
+            for facts in (old, new)
+        )
+        for name, fact in new_facts.items():
+            before = old_facts.get(name)
+            if before is not None and before.value != fact.value and before.value and fact.value:
+                text = phrase(
+                    "{kind}: '{name}': {old} -> {new}", kind=kind.title, name=name, old=before.value, new=fact.value
+                )
+                reason = kind.reason if fact.is_value_used else None
+                pair.add(text, pair.location(fact.span), reason)
+        added = [fact for name, fact in new_facts.items() if name not in old_facts]
+        removed = [fact for name, fact in old_facts.items() if name not in new_facts]
+        if added:
+            pair.add(_sentence(kind, added, is_added=True), pair.location(added[0].span))
+        if removed:
+            location = pair.location(removed[0].span, is_old=True)
+            pair.add(_sentence(kind, removed, is_added=False), location, kind.reason)
+    _compare_files(pair, old, new)
+    _compare_rest(pair, old, new)
+
+
+def _sentence(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:
+    texts = [f"{fact.name} {fact.value}" if kind is FactKind.SETTING else fact.name for fact in facts]
+    return _list_sentence(kind.title, texts, is_added=is_added)
+
+
+def _list_sentence(title: Phrase, names: Sequence[str], *, is_added: bool) -> Phrase:
+    listed = _listed(names)
+    if is_added:
+        return phrase("{kind} added: {names}", kind=title, names=listed)
+    return phrase("{kind} removed: {names}", kind=title, names=listed)
+
+
+def _listed(names: Sequence[str]) -> Phrase:
+    listed = quoted_names(names[:_MAX_NAMES])
+    if len(names) <= _MAX_NAMES:
+        return listed
+    return phrase("{names} and {count} more", names=listed, count=len(names) - _MAX_NAMES)
+
+
+def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:
+    """Return whether the other version has the file of an interface, so that the file is not reported itself."""
+    if fact.kind is not FactKind.INTERFACE:
+        return True
+    path = (PurePosixPath(facts.package) / fact.name).as_posix()
+    return pair.versions.old.file(path).is_file() and pair.versions.new.file(path).is_file()
+
+
+# --- installed files --------------------------------------------------------------------------------------------------
+
+
+def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
+    """Add the files that only one version installs although both have them, and those with another destination."""
+    if not old.is_complete or not new.is_complete:
+        return
+    old_sources, new_sources = ({source: target for target, source in facts.files.items()} for facts in (old, new))
+    kept = {source: _new_source(pair, old, new, source) for source in old_sources}
+    moved: dict[tuple[str, str], list[str]] = {}
+    removed: list[str] = []
+    for source, target in old_sources.items():
+        new_source = kept[source]
+        new_target = None if new_source is None else new_sources.get(new_source)
+        if new_source is None or target in new.files:
+            continue
+        if new_target is None:
+            removed.append(target)
+        elif new_source == source:
+            moved.setdefault((_folder(target), _folder(new_target)), []).append(_name(target))
+    added = [
+        target
+        for source, target in new_sources.items()
+        if target not in old.files and source not in old_sources and _is_in_old_version(pair, old, source)
+    ]
+    for (old_folder, new_folder), names in moved.items():
+        text = phrase(
+            "installed in {new} instead of {old}: {names}", old=old_folder, new=new_folder, names=_listed(names)
+        )
+        pair.add(text, None, phrase("programs that look for the files do not find them"))
+    if added:
+        names = _files_and_folders(added, old.files)
+        pair.add(phrase("installed now: {names}", names=_listed(names)), None)
+    if removed:
+        names = _files_and_folders(removed, new.files)
+        text = phrase("not installed any more: {names}", names=_listed(names))
+        pair.add(text, None, phrase("programs that look for the files do not find them"))
+
+
+def _new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str | None:
+    """Return the path of an installed file in the new version, or None if the new version does not have it."""
+    path = (PurePosixPath(old.package) / source).as_posix()
+    new_path = next((file.new_path for file in pair.versions.changed_files if file.old_path == path), path)
+    if new_path is None or not pair.versions.new.file(new_path).is_file():
+        return None
+    pure_path = PurePosixPath(new_path)
+    return pure_path.relative_to(new.package).as_posix() if pure_path.is_relative_to(new.package) else None
+
+
+def _is_in_old_version(pair: FilePair, old: BuildFacts, source: str) -> bool:
+    return pair.versions.old.file((PurePosixPath(old.package) / source).as_posix()).is_file()
+
+
+def _files_and_folders(targets: Sequence[str], others: Mapping[str, str]) -> list[str]:
+    """Return installed files, or their folders if the other version installs nothing in these folders."""
+    other_folders = {parent.as_posix() for target in others for parent in PurePosixPath(target).parents}
+    names: dict[str, None] = {}
+    for target in targets:
+        folders = [parent.as_posix() for parent in PurePosixPath(target).parents]
+        outermost = next((folder for folder in reversed(folders) if folder not in other_folders), None)
+        names[target if outermost is None else f"{outermost}/"] = None
+    return list(names)
+
+
+def _folder(path: str) -> str:
+    return PurePosixPath(path).parent.as_posix()
+
+
+def _name(path: str) -> str:
+    return PurePosixPath(path).name
+
+
+# --- other commands ---------------------------------------------------------------------------------------------------
+
+
+def _compare_rest(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
+    names = list(dict.fromkeys([*_lone_names(new.rest, old.rest), *_lone_names(old.rest, new.rest)]))
+    if names:
+        pair.add(phrase("other build settings changed: {names}", names=_listed(names)), None)
+
+
+def _lone_names(items: Sequence[tuple[str, str]], others: Sequence[tuple[str, str]]) -> Iterator[str]:
+    rest = list(others)
+    for item in items:
+        if item in rest:
+            rest.remove(item)
+        else:
+            yield item[0]

@@ -1,0 +1,212 @@
+"""The comparison of configurations of RViz: displays with their topics, frames, tools, panels and the view."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import yaml
+
+from linkwright.diagnostics import Phrase, counted, joined, phrase, quoted_names
+from linkwright.review.changes import Location
+from linkwright.review.file_pair import FilePair, UnreadableFileError
+from linkwright.review.files.yaml_values import composed, read_yaml_values
+
+_MANAGER = "Visualization Manager"
+_GLOBAL = f"{_MANAGER}.Global Options."
+_VIEW = f"{_MANAGER}.Views.Current."
+_IGNORED = frozenset({"Class", "Name", "Value", "Displays", "Links", "Frames", "Tree", "Namespaces", "Status"})
+"""The properties of displays that are shown elsewhere, or that RViz fills from the data that it received."""
+_COMPUTED = frozenset({"Min Intensity", "Max Intensity", "Min Value", "Max Value", "Min Color", "Max Color"})
+_TOPIC = "Topic"
+_MAX_PROPERTIES = 4
+"""The number of properties of a display that a line shows."""
+
+
+@dataclass(frozen=True)
+class _Item:
+    """A display, tool or panel.
+
+    Attributes:
+        name: its name, with those of the groups that contain it.
+        class_name: its class.
+        properties: its properties by name.
+        line: its line, starting at 1.
+        column: its column, starting at 1.
+    """
+
+    name: str
+    class_name: str
+    properties: Mapping[str, str]
+    line: int
+    column: int
+
+    @property
+    def topic(self) -> str:
+        """The topic; empty if there is none."""
+        return self.properties.get(_TOPIC, "")
+
+
+@dataclass(frozen=True)
+class _Configuration:
+    displays: Sequence[_Item]
+    tools: Sequence[_Item]
+    panels: Sequence[_Item]
+    values: Mapping[str, str]
+
+
+def compare_rviz_files(pair: FilePair) -> None:
+    """Compare two versions of a configuration of RViz, without the layout of its window."""
+    configurations = pair.read(_read)
+    if configurations is None:
+        return
+    old, new = configurations
+    _compare_values(pair, old.values, new.values)
+    _compare_displays(pair, old.displays, new.displays)
+    for items, title in (
+        ((old.tools, new.tools), phrase("tools")),
+        ((old.panels, new.panels), phrase("panels")),
+    ):
+        _compare_classes(pair, *items, title)
+
+
+def _read(file: Path) -> _Configuration:
+    text = file.read_text(encoding="utf-8-sig")
+    root = composed(text)
+    manager = _child(root, _MANAGER)
+    if manager is None:
+        raise UnreadableFileError(phrase("it has no '{name}'", name=_MANAGER))
+    values = {name: value.text for name, value in read_yaml_values(text).items()}
+    return _Configuration(
+        list(_items(_child(manager, "Displays"), "")),
+        list(_items(_child(manager, "Tools"), "")),
+        list(_items(_child(root, "Panels"), "")),
+        values,
+    )
+
+
+def _child(node: yaml.Node | None, name: str) -> yaml.Node | None:
+    if not isinstance(node, yaml.MappingNode):
+        return None
+    return next((value for key, value in node.value if key.value == name), None)
+
+
+def _text(node: yaml.Node | None) -> str:
+    return str(node.value) if isinstance(node, yaml.ScalarNode) else ""
+
+
+def _items(node: yaml.Node | None, group: str) -> Iterator[_Item]:
+    """Yield the items of a list, and those of the groups of displays in it."""
+    for item in node.value if isinstance(node, yaml.SequenceNode) else ():
+        class_name = _text(_child(item, "Class"))
+        if not class_name:
+            continue
+        name = group + (_text(_child(item, "Name")) or class_name)
+        properties = dict(_properties(item, ""))
+        yield _Item(name, class_name, properties, item.start_mark.line + 1, item.start_mark.column + 1)
+        yield from _items(_child(item, "Displays"), f"{name}/")
+
+
+def _properties(node: yaml.Node, path: str) -> Iterator[tuple[str, str]]:
+    """Yield the properties of an item. A topic is a text in old files and a group of properties in new ones."""
+    for key, value in node.value:
+        name = str(key.value)
+        if name in _COMPUTED or (not path and name in _IGNORED):
+            continue
+        full_name = path if path and name == "Value" else f"{path} {name}".strip()
+        if isinstance(value, yaml.MappingNode):
+            yield from _properties(value, full_name)
+        elif isinstance(value, yaml.ScalarNode):
+            yield full_name, " ".join(str(value.value).split())
+
+
+def _compare_values(pair: FilePair, old: Mapping[str, str], new: Mapping[str, str]) -> None:
+    for name in dict.fromkeys([*new, *old]):
+        before, after = old.get(name), new.get(name)
+        if name.startswith(_GLOBAL) and before != after:
+            option = name.removeprefix(_GLOBAL)
+            pair.add(phrase("{parameter} {old} -> {new}", parameter=option, old=before or "-", new=after or "-"), None)
+    old_view, new_view = ({name: values[name] for name in values if name.startswith(_VIEW)} for values in (old, new))
+    if old_view != new_view:
+        classes = [view.get(f"{_VIEW}Class", "-") for view in (old_view, new_view)]
+        text = phrase("view changed")
+        if classes[0] != classes[1]:
+            text = phrase("view {old} -> {new}", old=classes[0], new=classes[1])
+        pair.add(text, None)
+
+
+def _compare_displays(pair: FilePair, old: Sequence[_Item], new: Sequence[_Item]) -> None:
+    old_rest, new_rest = list(old), list(new)
+    for before, after in list(_matched(old_rest, new_rest)):
+        for text in _display_changes(before, after):
+            pair.add(text, _location(pair, after))
+    for display in new_rest:
+        text = phrase("display '{name}' of class '{type}' added", name=display.name, type=display.class_name)
+        if display.topic:
+            text = phrase("{change}: topic {topic}", change=text, topic=display.topic)
+        pair.add(text, _location(pair, display))
+    for display in old_rest:
+        text = phrase("display '{name}' of class '{type}' removed", name=display.name, type=display.class_name)
+        if display.topic:
+            text = phrase("{change}: topic {topic}", change=text, topic=display.topic)
+        pair.add(text, _location(pair, display, is_old=True))
+
+
+def _matched(old: list[_Item], new: list[_Item]) -> Iterator[tuple[_Item, _Item]]:
+    """Take the displays that belong together from both lists, and yield them."""
+    for keys in (("name", "class_name", "topic"), ("name", "class_name"), ("class_name", "topic"), ("name",)):
+        for after in list(new):
+            key = [getattr(after, name) for name in keys]
+            same = (display for display in old if [getattr(display, name) for name in keys] == key)
+            before = next(same, None) if all(key) or "name" in keys else None
+            if before is not None:
+                old.remove(before)
+                new.remove(after)
+                yield before, after
+
+
+def _display_changes(old: _Item, new: _Item) -> Iterator[Phrase]:
+    if old.name != new.name:
+        yield phrase("display '{old}' renamed to '{name}'", old=old.name, name=new.name)
+    if old.class_name != new.class_name:
+        yield phrase("display '{name}': class {old} -> {new}", name=new.name, old=old.class_name, new=new.class_name)
+    if old.topic != new.topic:
+        yield phrase(
+            "display '{name}': topic {old} -> {new}", name=new.name, old=old.topic or "-", new=new.topic or "-"
+        )
+    changes = [
+        phrase("{parameter} {old} -> {new}", parameter=name, old=before or "-", new=after or "-")
+        for name in dict.fromkeys([*new.properties, *old.properties])
+        if name != _TOPIC and name in old.properties and name in new.properties
+        if (before := old.properties[name]) != (after := new.properties[name])
+    ]
+    if not changes:
+        return
+    text = phrase("display '{name}': {changes}", name=new.name, changes=joined(changes[:_MAX_PROPERTIES]))
+    rest = len(changes) - _MAX_PROPERTIES
+    if rest > 0:
+        text = counted("{change} and {count} more value", "{change} and {count} more values", rest, change=text)
+    yield text
+
+
+def _compare_classes(pair: FilePair, old: Sequence[_Item], new: Sequence[_Item], title: Phrase) -> None:
+    old_classes, new_classes = ({item.class_name: item for item in items} for items in (old, new))
+    added = [item for name, item in new_classes.items() if name not in old_classes]
+    removed = [item for name, item in old_classes.items() if name not in new_classes]
+    if added:
+        names = quoted_names([item.class_name for item in added])
+        pair.add(phrase("{kind} added: {names}", kind=title, names=names), _location(pair, added[0]))
+    if removed:
+        names = quoted_names([item.class_name for item in removed])
+        text = phrase("{kind} removed: {names}", kind=title, names=names)
+        pair.add(text, _location(pair, removed[0], is_old=True))
+    for name, item in new_classes.items():
+        before = old_classes.get(name)
+        if before is not None and before.topic != item.topic:
+            text = phrase("'{name}': topic {old} -> {new}", name=name, old=before.topic or "-", new=item.topic or "-")
+            pair.add(text, _location(pair, item))
+
+
+def _location(pair: FilePair, item: _Item, *, is_old: bool = False) -> Location:
+    return Location(pair.old_path if is_old else pair.new_path, item.line, item.column, is_old)

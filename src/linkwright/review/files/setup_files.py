@@ -1,0 +1,79 @@
+"""The comparison of ``setup.py``: executables, other entry points, and files that a package installs."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import SourceText, foreign
+from linkwright.packages.readers.installed import PROGRAM_GROUP
+from linkwright.packages.readers.python_values import PythonFile, argument_of
+from linkwright.packages.readers.setup_py import SetupFile, read_setup
+from linkwright.review.file_pair import FilePair, UnreadableFileError
+from linkwright.review.files.build_facts import BuildFacts, Fact, FactKind, compare_facts
+from linkwright.review.versions import Version
+
+SETUP_FILE = "setup.py"
+_COMPARED = frozenset({"entry_points", "data_files", "packages"})
+_SHOWN = frozenset({"name", "version", "python_requires", "license"})
+"""The arguments of ``setup`` whose values are shown if they are texts."""
+
+
+def compare_setup_files(pair: FilePair) -> None:
+    """Compare two versions of a ``setup.py`` without running it."""
+    sides = ((pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path))
+    versions = {version.file(path): (version, path) for version, path in sides}
+    facts = pair.read(lambda file: _read(*versions[file]))
+    if facts is not None:
+        compare_facts(pair, *facts)
+
+
+def _read(version: Version, path: str) -> BuildFacts:
+    file = version.file(path)
+    source = SourceText(str(file), file.read_text(encoding="utf-8", errors="replace"))
+    setup = read_setup(source)
+    if setup.error is not None:
+        raise UnreadableFileError(foreign(setup.error.message))
+    parent = PurePosixPath(path).parent.as_posix()
+    facts = BuildFacts(package="" if parent == "." else parent)
+    facts.is_complete = setup.has_call
+    for installed in setup.installed_files(file.parent):
+        facts.files[installed.destination] = installed.source
+    facts.facts += [
+        Fact(FactKind.EXECUTABLE, program.executable, f"{program.module}:{program.function or ''}", program.span)
+        for program in setup.entry_points
+    ]
+    facts.facts += [Fact(FactKind.MODULE, name, span=span) for name, span in setup.packages or ()]
+    _read_call(facts, setup, PythonFile(source))
+    return facts
+
+
+def _read_call(facts: BuildFacts, setup: SetupFile, python: PythonFile) -> None:
+    call = next(python.calls("setup"), None)
+    if call is None:
+        return
+    facts.facts += _entry_points(python, argument_of(call, "entry_points"))
+    for keyword in call.keywords:
+        if keyword.arg in _COMPARED and (keyword.arg != "packages" or setup.packages is not None):
+            continue
+        text = python.text(keyword.value)
+        if keyword.arg in _SHOWN and text is not None:
+            facts.facts.append(Fact(FactKind.SETTING, keyword.arg or "", text, python.span(keyword.value)))
+        else:
+            facts.rest.append((keyword.arg or "**", ast.dump(keyword.value)))
+
+
+def _entry_points(python: PythonFile, node: ast.expr | None) -> Iterator[Fact]:
+    """Yield the entry points of groups other than that of the executables."""
+    entries = None if node is None else python.resolved(node)
+    if not isinstance(entries, ast.Dict):
+        return
+    for key, value in zip(entries.keys, entries.values, strict=True):
+        group, items = python.text(key), python.resolved(value)
+        if group is None or group == PROGRAM_GROUP or not isinstance(items, (ast.List, ast.Tuple)):
+            continue
+        for item in items.elts:
+            name, _, target = (python.text(item) or "").partition("=")
+            if target:
+                yield Fact(FactKind.ENTRY_POINT, f"{group}: {name.strip()}", target.strip(), python.span(item))

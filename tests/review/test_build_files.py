@@ -1,0 +1,197 @@
+"""What a review says of CMakeLists.txt and setup.py."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+CMAKE = """cmake_minimum_required(VERSION 3.8)
+project(arm)
+set(CMAKE_CXX_STANDARD 14)
+find_package(ament_cmake REQUIRED)
+find_package(rclcpp REQUIRED)
+find_package(rosidl_default_generators REQUIRED)
+rosidl_generate_interfaces(${PROJECT_NAME} msg/State.msg msg/Load.msg DEPENDENCIES std_msgs)
+add_library(arm_core src/core.cpp)
+add_executable(driver src/driver.cpp)
+add_executable(tuner src/tuner.cpp)
+ament_target_dependencies(driver rclcpp)
+install(TARGETS arm_core EXPORT export_arm LIBRARY DESTINATION lib)
+install(TARGETS driver tuner RUNTIME DESTINATION lib/${PROJECT_NAME})
+install(PROGRAMS scripts/home.py DESTINATION lib/${PROJECT_NAME})
+install(DIRECTORY launch config DESTINATION share/${PROJECT_NAME})
+pluginlib_export_plugin_description_file(arm_base plugins.xml)
+ament_export_dependencies(rclcpp)
+ament_package()
+"""
+FILES = {
+    "a/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+    "a/CMakeLists.txt": CMAKE,
+    "a/launch/arm.launch.xml": "<launch/>\n",
+    "a/config/arm.txt": "rate 10\n",
+    "a/scripts/home.py": "print('home')\n",
+    "a/plugins.xml": "<library path='arm'/>\n",
+    "a/msg/State.msg": "int32 state\n",
+    "a/msg/Load.msg": "float32 load\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("driver tuner RUNTIME", "driver RUNTIME", ["installed executables removed: 'tuner'"], True),
+        ("scripts/home.py DEST", "scripts/home.py scripts/up.py DEST", ["installed executables added: 'up.py'"], False),
+        (" EXPORT export_arm", "", ["exported targets removed: 'arm_core'"], True),
+        ("install(DIRECTORY launch config", "install(DIRECTORY launch",
+         ["not installed any more: 'share/arm/config/'"], True),
+        ("config DESTINATION share/${PROJECT_NAME}", "DESTINATION share/${PROJECT_NAME}/more",
+         ["installed in share/arm/more/launch instead of share/arm/launch: 'arm.launch.xml'",
+          "not installed any more: 'share/arm/config/'"], True),
+        ("msg/Load.msg ", "", ["built interfaces removed: 'msg/Load.msg'"], True),
+        ("(arm_base plugins", "(arm_tools plugins",
+         ["exported plugin descriptions: 'plugins.xml': arm_base -> arm_tools"], True),
+        ("find_package(rclcpp REQUIRED)", "find_package(rclcpp REQUIRED)\nfind_package(tf2_ros REQUIRED)",
+         ["calls of find_package added: 'tf2_ros'"], False),
+        ("STANDARD 14", "STANDARD 17", ["settings: 'CMAKE_CXX_STANDARD': 14 -> 17"], False),
+        ("(driver rclcpp)", "(driver rclcpp tf2_ros)",
+         ["other build settings changed: 'ament_target_dependencies'"], False),
+        ("RUNTIME DESTINATION lib/${PROJECT_NAME}", "RUNTIME DESTINATION bin",
+         ["installed executables: 'driver': lib/arm -> bin", "installed executables: 'tuner': lib/arm -> bin"], True),
+        ("set(CMAKE_CXX_STANDARD 14)", "set(X 1) # a comment\nset(CMAKE_CXX_STANDARD 14)", [], False),
+        ("install(DIRECTORY launch config", "install(DIRECTORY\n  config\n  launch", [], False),
+    ],
+)  # fmt: skip
+def test_changes_of_cmake_files_are_reported(repository, compare, old, new, expected, is_breaking):
+    repository.commit(FILES)
+    assert old in CMAKE
+    repository.write({"a/CMakeLists.txt": CMAKE.replace(old, new)})
+    result = compare(repository)
+    found = [sentence for subject in result.subjects for sentence in sentences(subject)]
+    assert found == expected
+    assert bool(breaking(result)) is is_breaking
+
+
+def test_interface_that_is_added_is_not_repeated_for_its_build_file(repository, compare):
+    repository.commit(FILES)
+    text = CMAKE.replace("msg/Load.msg", "msg/Load.msg msg/Heat.msg")
+    repository.write({"a/CMakeLists.txt": text, "a/msg/Heat.msg": "float32 heat\n"})
+    assert [subject.path for subject in compare(repository).subjects] == ["a/msg/Heat.msg"]
+
+
+def test_build_file_of_a_subdirectory_is_compared_with_its_package(repository, compare):
+    text = CMAKE.replace("ament_package()", "add_subdirectory(tools)\nament_package()")
+    tools = "add_executable(show show.cpp)\ninstall(TARGETS show RUNTIME DESTINATION lib/${PROJECT_NAME})\n"
+    repository.commit({**FILES, "a/CMakeLists.txt": text, "a/tools/CMakeLists.txt": tools})
+    repository.write(
+        {"a/tools/CMakeLists.txt": tools.replace("show show.cpp", "view show.cpp").replace("S show", "S view")}
+    )
+    result = compare(repository)
+    found = subject(result, "a/CMakeLists.txt")
+    assert sentences(found) == [
+        "installed executables added: 'view'",
+        "installed executables removed: 'show'",
+        "other build settings changed: 'add_executable'",
+    ]
+    assert found.changes[1].location.file == "a/tools/CMakeLists.txt"
+    assert result.other_files == []
+
+
+SETUP = """from glob import glob
+from setuptools import setup
+
+package_name = 'arm'
+setup(
+    name=package_name,
+    version='1.0.0',
+    packages=[package_name],
+    data_files=[
+        ('share/' + package_name, ['package.xml']),
+        ('share/' + package_name + '/launch', glob('launch/*.launch.py')),
+        ('share/' + package_name + '/config', glob('config/*.yaml')),
+    ],
+    install_requires=['setuptools'],
+    entry_points={
+        'console_scripts': ['driver = arm.driver:main', 'tuner = arm.tuner:main'],
+        'arm.tools': ['home = arm.tools:Home'],
+    },
+)
+"""
+PYTHON_FILES = {
+    "a/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+    "a/setup.py": SETUP,
+    "a/launch/arm.launch.py": "",
+    "a/launch/all.launch.py": "",
+    "a/config/arm.yaml": "rate: 10\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        (", 'tuner = arm.tuner:main'", "", ["installed executables removed: 'tuner'"], True),
+        ("arm.driver:main", "arm.nodes.driver:main",
+         ["installed executables: 'driver': arm.driver:main -> arm.nodes.driver:main"], False),
+        ("launch/*.launch.py", "launch/a*.launch.py", [], False),
+        ("glob('launch/*.launch.py')", "['launch/arm.launch.py']",
+         ["not installed any more: 'share/arm/launch/all.launch.py'"], True),
+        ("        ('share/' + package_name + '/config', glob('config/*.yaml')),\n", "",
+         ["not installed any more: 'share/arm/config/'"], True),
+        ("'home = arm", "'rest = arm", ["entry points added: 'arm.tools: rest'",
+                                        "entry points removed: 'arm.tools: home'"], True),
+        ("'1.0.0'", "'1.1.0'", ["settings: 'version': 1.0.0 -> 1.1.0"], False),
+        ("['setuptools']", "['setuptools', 'numpy']", ["other build settings changed: 'install_requires'"], False),
+    ],
+)  # fmt: skip
+def test_changes_of_setup_files_are_reported(repository, compare, old, new, expected, is_breaking):
+    repository.commit(PYTHON_FILES)
+    assert old in SETUP
+    repository.write({"a/setup.py": SETUP.replace(old, new)})
+    result = compare(repository)
+    assert [sentence for found in result.subjects for sentence in sentences(found)] == expected
+    assert bool(breaking(result)) is is_breaking
+
+
+def test_setup_file_that_is_no_python_any_more_is_breaking(repository, compare):
+    repository.commit(PYTHON_FILES)
+    repository.write({"a/setup.py": SETUP + "setup("})
+    (sentence,) = breaking(compare(repository))
+    assert sentence.startswith("cannot be read any more")
+
+
+EXPORTS = PACKAGE_XML.replace(
+    "</package>",
+    """  <export>
+    <build_type>ament_cmake</build_type>
+    <arm_base plugin="${prefix}/plugins.xml"/>
+    <gazebo_ros gazebo_model_path="${prefix}/models"/>
+  </export>
+</package>""",
+)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("arm_base plugin", "arm_core plugin", ["export added: arm_core plugin=${prefix}/plugins.xml",
+                                                "export removed: arm_base plugin=${prefix}/plugins.xml"], True),
+        ("prefix}/plugins", "prefix}/all", ["export added: arm_base plugin=${prefix}/all.xml",
+                                            "export removed: arm_base plugin=${prefix}/plugins.xml"], False),
+        ("ament_cmake", "ament_python", ["build type: ament_cmake -> ament_python"], False),
+        ('    <gazebo_ros gazebo_model_path="${prefix}/models"/>\n', "",
+         ["export removed: gazebo_ros gazebo_model_path=${prefix}/models"], True),
+        ("<exec_depend>", '<exec_depend condition="$ROS_VERSION == 2">',
+         ["exec_depend xacro: condition - -> $ROS_VERSION == 2"], False),
+        ("ann@example.org", "ann@example.com", ["email of maintainer: ann@example.org -> ann@example.com"], False),
+        ("An arm.", "Two arms.", ["description changed"], False),
+        ("1.0.0", "1.0.1", ["version: 1.0.0 -> 1.0.1"], False),
+    ],
+)  # fmt: skip
+def test_changes_of_manifests_are_reported(repository, compare, old, new, expected, is_breaking):
+    repository.commit({"a/package.xml": EXPORTS})
+    assert old in EXPORTS
+    repository.write({"a/package.xml": EXPORTS.replace(old, new)})
+    result = compare(repository)
+    assert sentences(subject(result, "a/package.xml")) == expected
+    assert bool(breaking(result)) is is_breaking
