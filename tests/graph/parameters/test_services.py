@@ -60,8 +60,8 @@ async def test_parameter_client_gets_values_types_and_descriptions(graph, client
     assert [(descriptor.name, descriptor.type, descriptor.description) for descriptor in descriptors] == [
         ("arm.name", 4, "which")
     ]
-    listed = (await answer(graph, client.list_parameters(["arm"]))).result
-    assert (list(listed.names), list(listed.prefixes)) == (["arm.name"], ["arm"])
+    listing = (await answer(graph, client.list_parameters(["arm"]))).result
+    assert (list(listing.names), list(listing.prefixes)) == (["arm.name"], ["arm"])
     assert len((await answer(graph, client.list_parameters(depth=1))).result.names) == 4
 
 
