@@ -37,20 +37,20 @@ def numbers(path: Path) -> list[int]:
 
 
 def test_finish_all_completes_recording_while_thread_writes(writer: BagWriter) -> None:
-    written = 0
+    count = 0
     over = threading.Event()
 
     def write() -> None:
-        nonlocal written
+        nonlocal count
         while not over.is_set():
-            writer.write("/chatter", written + 1, serialize(String(data="word " * 50)))
+            writer.write("/chatter", count + 1, serialize(String(data="word " * 50)))
             writer.flush()
-            written += 1
+            count += 1
 
     thread = threading.Thread(target=write)
     thread.start()
     try:
-        wait_until(lambda: written > 100 or not thread.is_alive())
+        wait_until(lambda: count > 100 or not thread.is_alive())
         finish_all()
     finally:
         over.set()

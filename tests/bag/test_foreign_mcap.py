@@ -94,9 +94,9 @@ def test_bag_reader_reads_ros2_topics_and_names_others(tmp_path: Path, kind: str
         assert [(topic.name, topic.type_name, topic.count) for topic in bag.topics] == [
             ("/chatter", "std_msgs/msg/String", 5)
         ]
-        read = list(bag.messages())
-        assert [deserialize(data, String).data for _, _, data in read] == [str(stamp) for _, stamp, _ in read]
-        assert len(read) == 5
+        messages = list(bag.messages())
+        assert [deserialize(data, String).data for _, _, data in messages] == [str(stamp) for _, stamp, _ in messages]
+        assert len(messages) == 5
         finding = bag.findings[-1]
         assert finding.code == "BAG112"
         assert finding.message.endswith("not ROS 2 messages: /pose (protobuf), /thing (json)")

@@ -303,8 +303,8 @@ def test_messages_between_thinned_clock_ticks_keep_simulated_times() -> None:
         tick(history, clock, SECOND + clock.ns)
         if number in (333, 667):
             transforms(history, clock, number)
-    moved = [stamp for name, stamp, _ in to_simulated_time(history.messages_between(0, clock.ns)) if name == "/tf"]
-    assert moved[:2] == [int(4.33 * SECOND), int(7.67 * SECOND)]
+    stamps = [stamp for name, stamp, _ in to_simulated_time(history.messages_between(0, clock.ns)) if name == "/tf"]
+    assert stamps[:2] == [int(4.33 * SECOND), int(7.67 * SECOND)]
 
 
 def test_content_of_malformed_clock_is_none() -> None:

@@ -262,7 +262,7 @@ async def test_player_publishes_recording_time_on_clock(
 ) -> None:
     clocks: list[int] = []
     graph.create_node("watch").create_subscription(
-        get_message("rosgraph_msgs/msg/Clock"), "/clock", lambda m: clocks.append(m.clock.nanoseconds), 10
+        get_message("rosgraph_msgs/msg/Clock"), "/clock", lambda message: clocks.append(message.clock.nanoseconds), 10
     )
     with record(tmp_path, [0, 2]) as bag:
         Player(player_node, bag, PlayOptions(clock_hz=4, rate=2)).start()
@@ -309,7 +309,9 @@ async def test_unknown_type_is_played_with_definition_from_recording(
         graph.create_node("listener").create_subscription(
             probe,
             "/probe",
-            lambda m: events.append((m.depth, [sample.label for sample in m.samples], m.header.frame_id)),
+            lambda message: events.append(
+                (message.depth, [sample.label for sample in message.samples], message.header.frame_id)
+            ),
             10,
         )
         player = Player(player_node, bag, PlayOptions())

@@ -106,8 +106,8 @@ def test_reindex_restores_metadata(tmp_path, storage, compression) -> None:
     before = metadata(folder)
     (folder / "metadata.yaml").unlink()
     reindex(folder)
-    known = ("relative_file_paths", "files", "message_count", "starting_time", "topics_with_message_count", "duration")
-    assert {key: metadata(folder)[key] for key in known} == {key: before[key] for key in known}
+    keys = ("relative_file_paths", "files", "message_count", "starting_time", "topics_with_message_count", "duration")
+    assert {key: metadata(folder)[key] for key in keys} == {key: before[key] for key in keys}
     assert content(folder) == whole()
 
 

@@ -230,12 +230,12 @@ def test_action_goals_and_feedback_are_bridged(networks, server, client):
     asking = ActionClient(here.node, Fibonacci, "count")
     spin_all(asking.server_is_ready, here, there)
     spin_all(lambda: there.node.count_subscribers("/count/_action/feedback"), there)
-    heard = []
+    messages = []
 
     def act():
         """Carry out a goal; what is said at once may come before its way across is known, and is not kept for it."""
         feedback = []
-        heard.append(feedback)
+        messages.append(feedback)
         sent = asking.send_goal_async(
             Fibonacci.Goal(order=3), feedback_callback=lambda message: feedback.append(list(message.feedback.sequence))
         )
@@ -247,10 +247,10 @@ def test_action_goals_and_feedback_are_bridged(networks, server, client):
 
     for _ in range(100):
         act()
-        if [[0], [1], [2]] in heard:
+        if [[0], [1], [2]] in messages:
             break
     else:
-        raise AssertionError(heard)
+        raise AssertionError(messages)
 
 
 def test_outlet_queues_messages_while_publish_blocks():

@@ -27,6 +27,6 @@ def test_name_filter_matches_allowed_names_and_those_below_them(allowed, denied,
 @pytest.mark.parametrize("pattern", ["", "scan", "/a/", "//", "/a b", "/a.*", "/[ab]"])
 def test_malformed_pattern_is_rejected(pattern):
     for names in (((pattern,), ()), ((), (pattern,))):
-        with pytest.raises(LinkwrightError) as refused:
+        with pytest.raises(LinkwrightError) as raised:
             NameFilter(*names)
-        assert [diagnostic.code for diagnostic in refused.value.diagnostics] == ["CLI453"]
+        assert [diagnostic.code for diagnostic in raised.value.diagnostics] == ["CLI453"]

@@ -163,17 +163,17 @@ async def test_channels_are_advertised_and_unadvertised():
 
 
 async def test_client_publishes_to_ros_topic():
-    heard = []
+    messages = []
     async with bridge_setup() as setup, setup.client() as client:
         twist = get_message("geometry_msgs/msg/Twist")
-        setup.node.create_subscription(twist, "/cmd_vel", heard.append, 10)
+        setup.node.create_subscription(twist, "/cmd_vel", messages.append, 10)
         channel = {"id": 9, "topic": "/cmd_vel", "encoding": "cdr", "schemaName": "geometry_msgs/Twist"}
         await client.send("advertise", channels=[channel])
         message = twist()
         message.linear.x = 0.5
         await client.socket.send_bytes(struct.pack("<BI", 1, 9) + serialize(message))
-        await eventually(lambda: heard)
-        assert heard[0].linear.x == 0.5
+        await eventually(lambda: messages)
+        assert messages[0].linear.x == 0.5
         await client.send("unadvertise", channelIds=[9])
         await client.socket.send_bytes(struct.pack("<BI", 1, 9) + serialize(message))
         assert "was not advertised" in (await client.until("status"))["message"]
@@ -200,8 +200,8 @@ async def test_client_calls_service():
         assert (service, call, frame[13 : 13 + length]) == (light["id"], 77, b"cdr")
         assert deserialize(frame[13 + length :], set_bool.Response).message == "set to True"
         await client.socket.send_bytes(struct.pack("<BIII", 2, 9999, 78, 3) + b"cdr")
-        failed = await client.until("serviceCallFailure")
-        assert (failed["callId"], failed["serviceId"]) == (78, 9999)
+        failure = await client.until("serviceCallFailure")
+        assert (failure["callId"], failure["serviceId"]) == (78, 9999)
 
 
 async def test_parameters_are_read_set_and_subscribed():
@@ -282,7 +282,7 @@ async def test_only_meshes_of_packages_in_robot_description_are_served(tmp_path,
         await setup.graph.settle()
         assert await fetched(client, "package://arm_pkg/meshes/a.stl") == (0, b"solid a")
         assert await fetched(client, "package://arm_pkg/meshes/b.stl") == (0, b"solid b")
-        for refused in (
+        for request in (
             "package://arm_pkg/secret.py",
             "package://arm_pkg/../secret.png",
             "package://arm_pkg/meshes/../../secret.png",
@@ -294,8 +294,8 @@ async def test_only_meshes_of_packages_in_robot_description_are_served(tmp_path,
             "/etc/passwd",
             "http://example.com/a.stl",
         ):
-            failed, why = await fetched(client, refused)
-            assert failed == 1, refused
+            failed, why = await fetched(client, request)
+            assert failed == 1, request
             assert b"secret" not in why
 
 

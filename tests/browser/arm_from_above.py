@@ -50,10 +50,10 @@ class Scene:
             ("PoseStamped", "/goal_pose"),
             ("PointStamped", "/clicked_point"),
         ):
-            heard = self.heard[topic] = []
+            messages = self.heard[topic] = []
             viewer.run(
-                lambda kind=kind, topic=topic, heard=heard: viewer.node.create_subscription(
-                    f"geometry_msgs/msg/{kind}", topic, heard.append, 10
+                lambda kind=kind, topic=topic, messages=messages: viewer.node.create_subscription(
+                    f"geometry_msgs/msg/{kind}", topic, messages.append, 10
                 )
             )
 

@@ -49,19 +49,19 @@ def found_in_panels(page: Page, *names: str) -> list[str]:
 def found_in_menu(page: Page) -> list[str]:
     """What is found in the menu that was opened, which goes then."""
     page.get_by_role("menu").wait_for()
-    found = violations(page, ".menu")
+    found_violations = violations(page, ".menu")
     page.keyboard.press("Escape")
-    return found
+    return found_violations
 
 
 def found_in_dialog(page: Page, keys: str) -> list[str]:
     """What is found in the dialog that keys open."""
     page.keyboard.press(keys)
     page.locator("dialog[open]").wait_for()
-    found = violations(page, "dialog")
+    found_violations = violations(page, "dialog")
     page.keyboard.press("Escape")
     page.locator("dialog[open]").wait_for(state="detached")
-    return found
+    return found_violations
 
 
 def test_robot_page_and_description_panels_pass_axe(start, open_page, tmp_path: Path):
@@ -238,9 +238,9 @@ def test_recording_menu_and_playback_pass_axe(start, open_page, tmp_path: Path):
     page.get_by_role("dialog").get_by_role("button", name="Download").wait_for()
     assert violations(page, "dialog") == []
     (file,) = state(page, "recording")["files"]
-    shown = open_page(start("view", file), wait=False)
-    until(shown, "lw.timeline?.live === false && lw.timeline.length > 0.5")
-    assert violations(shown) == []
+    robot_page = open_page(start("view", file), wait=False)
+    until(robot_page, "lw.timeline?.live === false && lw.timeline.length > 0.5")
+    assert violations(robot_page) == []
 
 
 def test_robot_editing_and_comparison_pass_axe(start, open_page, tmp_path: Path):

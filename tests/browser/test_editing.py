@@ -109,9 +109,9 @@ def test_handle_moves_link_along_one_axis(start, open_page, file):
         page.mouse.move(x, y - 12 * step)
     page.mouse.up()
     until(page, "lw.panels.editing.draft !== null && lw.panels.editing.draft.xyz[2] > 0.01")
-    moved = state(page, "panels.editing.draft.xyz")
-    assert moved[:2] == [0.6, 0.6]
-    assert moved[2] == pytest.approx(round(moved[2], 2), abs=1e-12)
+    position = state(page, "panels.editing.draft.xyz")
+    assert position[:2] == [0.6, 0.6]
+    assert position[2] == pytest.approx(round(position[2], 2), abs=1e-12)
     page.get_by_text("would also change joint 'right_joint'", exact=False).wait_for()
 
 
@@ -237,12 +237,12 @@ def test_low_panel_shows_parts_numbers_and_diff_without_scrolling(start, browser
     type_in(page, "xyz0", "0.1")
     page.locator(".edit-diff mark").first.wait_for()
     assert page.locator(".edit-diff mark").all_inner_texts() == ["0", "0.1"]
-    seen = ".editing-part, .editing-number .field, .editing-tools select, .edit-diff mark, .edit-bar .primary"
+    selector = ".editing-part, .editing-number .field, .editing-tools select, .edit-diff mark, .edit-bar .primary"
     panel = page.locator(".editing-panel").bounding_box()
     text = page.locator(".edit-text").bounding_box()
     assert panel is not None
     assert text is not None
-    for element in page.locator(seen).all():
+    for element in page.locator(selector).all():
         box = element.bounding_box()
         assert box is not None
         around = text if element.evaluate("(e) => e.tagName") == "MARK" else panel

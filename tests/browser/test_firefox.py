@@ -122,14 +122,14 @@ def test_firefox_drags_handle(start, launch, tmp_path):
     browser.until("document.querySelector('.selection-card .edit-link')")
     browser.evaluate("document.querySelector('.selection-card .edit-link').click()")
     browser.until("lw.panels.editing?.handles?.z")
-    seen: list[Any] = []
+    samples: list[Any] = []
 
     def is_still() -> bool:  # the panel that came took its room from the scene
-        seen.append(browser.evaluate("window.linkwright.panels.editing.handles.z"))
-        return len(seen) > 5 and seen[-1] == seen[-5]
+        samples.append(browser.evaluate("window.linkwright.panels.editing.handles.z"))
+        return len(samples) > 5 and samples[-1] == samples[-5]
 
     wait_until(is_still, pause=LOOK_EVERY)
-    handle = seen[-1]
+    handle = samples[-1]
     canvas = browser.evaluate("document.querySelector('.canvas-box canvas').getBoundingClientRect()")
     browser.drag(canvas["x"] + handle["x"], canvas["y"] + handle["y"], 0, -60)
     browser.until("lw.panels.editing.draft?.xyz[2] > 0.01")
@@ -150,11 +150,11 @@ def test_firefox_edits_file_with_language_server(start, launch, tmp_path):
     browser.until("lw.ready")
 
     def click(selector: str, text: str) -> None:
-        found = (
+        element = (
             f"[...document.querySelectorAll('{selector}')].find((element) => element.textContent.trim() === '{text}')"
         )
-        browser.until(f"{found} && !{found}.disabled")
-        browser.evaluate(f"{found}.click()")
+        browser.until(f"{element} && !{element}.disabled")
+        browser.evaluate(f"{element}.click()")
 
     click(".title-bar button", "Panels")
     click("[role=menuitemcheckbox]", "Source")

@@ -67,9 +67,9 @@ def test_middle_drag_moves_focal_point_and_keeps_angles(page):
     assert (view["yaw"], view["pitch"], view["distance"]) == pytest.approx((5.5, 0.33, 1.7))
     # In the camera's plane: 2 d tan(fov/2) / height meters a pixel, to the camera's left.
     meters = 80 * 2 * 1.7 * math.tan(math.radians(22.5)) / scene_box(page)["height"]
-    moved = view["focalPoint"]
-    assert math.hypot(*moved) == pytest.approx(meters, rel=0.02)
-    assert moved[2] == pytest.approx(0, abs=1e-6)
+    focal_point = view["focalPoint"]
+    assert math.hypot(*focal_point) == pytest.approx(meters, rel=0.02)
+    assert focal_point[2] == pytest.approx(0, abs=1e-6)
 
 
 def test_display_checkbox_hides_and_shows_robot(page):

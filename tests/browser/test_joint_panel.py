@@ -47,9 +47,9 @@ def test_long_joint_names_keep_their_ends(start, open_page, tmp_path):
     page = open_page(start("view", str(tmp_path / "hand.urdf")))
     names = page.locator(".joint-name")
     names.nth(1).wait_for()
-    for number, shown in enumerate(names.all(), start=1):
-        assert shown.get_attribute("title") == shown.text_content() == name.format(number)
-        beginning, end = (shown.locator("span").nth(index) for index in (0, 1))
+    for number, label in enumerate(names.all(), start=1):
+        assert label.get_attribute("title") == label.text_content() == name.format(number)
+        beginning, end = (label.locator("span").nth(index) for index in (0, 1))
         assert end.text_content() == f"finger_{number}_joint"
         assert beginning.evaluate("(element) => element.scrollWidth > element.clientWidth")
         assert end.evaluate("(element) => element.scrollWidth <= element.clientWidth + 1")

@@ -88,10 +88,10 @@ def test_all_marker_types_are_drawn(live, open_page, tmp_path):
     viewer.publish("/marks", MarkerArray(markers=all_kinds(mesh)))
     until(page, "Object.keys(lw.displays[1]?.drawn?.markers ?? {}).length === 13")
     viewer.settle(page)  # markers are there before they are placed
-    drawn = page.evaluate("() => window.linkwright.displays[1].drawn")
-    assert drawn["markers"]["a/0"] == "arrow"
-    assert drawn["markers"]["a/12"] == "arrow_strip"
-    low, high = drawn["bounds"]
+    drawing = page.evaluate("() => window.linkwright.displays[1].drawn")
+    assert drawing["markers"]["a/0"] == "arrow"
+    assert drawing["markers"]["a/12"] == "arrow_strip"
+    low, high = drawing["bounds"]
     assert low[1] == pytest.approx(-9.2, abs=0.1)
     assert high[1] == pytest.approx(9.2, abs=0.2)
     assert {level for level, _ in viewer.status("Marks").values()} == {"ok"}

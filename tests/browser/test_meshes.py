@@ -119,9 +119,9 @@ def test_slow_mesh_is_reported_until_loaded(start, open_page, robot):
 
 
 def test_robot_without_readable_meshes_is_reported_and_shown_by_frames(start, open_page, tmp_path):
-    gone = '<visual><geometry><mesh filename="package://elsewhere/arm.stl"/></geometry></visual>'
+    missing = '<visual><geometry><mesh filename="package://elsewhere/arm.stl"/></geometry></visual>'
     joint = '<joint name="j" type="fixed"><origin xyz="0 0 1"/><parent link="base"/><child link="arm"/></joint>'
-    text = f'<robot name="r"><link name="base">{gone}</link><link name="arm">{gone}</link>{joint}</robot>'
+    text = f'<robot name="r"><link name="base">{missing}</link><link name="arm">{missing}</link>{joint}</robot>'
     file = tmp_path / "robot.urdf"
     file.write_text(text)
     page = open_page(start("view", str(file)))
@@ -133,7 +133,7 @@ def test_robot_without_readable_meshes_is_reported_and_shown_by_frames(start, op
     banner.get_by_role("button", name="Close").click()
     assert banner.is_hidden()
     page.get_by_role("tab", name="Diagnostics (2)").wait_for()  # the display has an error, too
-    file.write_text(text.replace(gone, '<visual><geometry><box size="1 1 1"/></geometry></visual>', 1))
+    file.write_text(text.replace(missing, '<visual><geometry><box size="1 1 1"/></geometry></visual>', 1))
     page.get_by_role("tab", name="Diagnostics (1)").wait_for()  # a mesh is still not there
-    file.write_text(text.replace(gone, ""))
+    file.write_text(text.replace(missing, ""))
     page.get_by_role("tab", name="Diagnostics", exact=True).wait_for()

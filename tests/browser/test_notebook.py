@@ -62,9 +62,9 @@ def lab(tmp_path: Path):
         assert process.poll() is None, (tmp_path / "lab.log").read_text()
         for file in (tmp_path / "RUNTIME").glob("jpserver-*.json"):
             with contextlib.suppress(OSError, json.JSONDecodeError):  # the server may still be writing the file
-                found: str = json.loads(file.read_text())["url"]
-                urllib.request.urlopen(f"{found}api?token={TOKEN}").close()
-                return found
+                url: str = json.loads(file.read_text())["url"]
+                urllib.request.urlopen(f"{url}api?token={TOKEN}").close()
+                return url
         return ""
 
     try:

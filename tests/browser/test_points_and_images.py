@@ -27,8 +27,8 @@ RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
 
 
 def entry(cls: str, **properties: Any) -> dict[str, Any]:
-    named = {name.replace("_", " "): value for name, value in properties.items()}
-    return {"Class": f"rviz_default_plugins/{cls}", "Name": cls, "Enabled": True, **named}
+    properties_by_name = {name.replace("_", " "): value for name, value in properties.items()}
+    return {"Class": f"rviz_default_plugins/{cls}", "Name": cls, "Enabled": True, **properties_by_name}
 
 
 def config(*displays: dict[str, Any]) -> str:
@@ -76,8 +76,8 @@ def test_point_cloud_is_drawn_in_all_styles(live, open_page):
         places = [(-2.0, 1.0), (0.0, 1.0), (2.0, 1.0), (0.35, 1.0), (inside, 1.0), (0.27, 1.27)]
 
         def looks(places: list[tuple[float, float]] = places) -> tuple[list[Color], bool, bool]:
-            *known, near_edge, corner = seen(page, *places)
-            return known, near_edge[1] > 100, corner == BACKGROUND
+            *colors, near_edge, corner = seen(page, *places)
+            return colors, near_edge[1] > 100, corner == BACKGROUND
 
         becomes(looks, ([RED, GREEN, BLUE, BACKGROUND], True, style == "Spheres"))
     set_property(viewer, 0, ("Style",), "Flat Squares")

@@ -140,10 +140,10 @@ def test_phone_view_fits_map_until_user_moves_camera(browser, live):
         page.locator(".canvas-box canvas").hover()
         page.mouse.wheel(0, -120)
         until(page, f"lw.view.values.Scale !== {framed}")
-        moved = state(page, "view.values.Scale")
+        scale = state(page, "view.values.Scale")
         page.set_viewport_size({"width": 390, "height": 844})
         viewer.settle(page)
-        assert state(page, "view.values.Scale") == moved
+        assert state(page, "view.values.Scale") == scale
 
 
 @pytest.mark.parametrize(("width", "height"), [(1024, 600), (1280, 800)])

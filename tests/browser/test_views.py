@@ -55,13 +55,13 @@ def test_fps_view_moves_and_rotates(scene):
     scene.page.keyboard.press("z")
     before = state(scene.page, "view")
     scene.drag((0, 0), (1, 0))
-    turned = state(scene.page, "view")
-    assert turned["yaw"] == pytest.approx(before["yaw"] - SCALE * 0.005, abs=0.01)
-    assert turned["camera"]["position"] == pytest.approx([5, 5, 10])
+    view = state(scene.page, "view")
+    assert view["yaw"] == pytest.approx(before["yaw"] - SCALE * 0.005, abs=0.01)
+    assert view["camera"]["position"] == pytest.approx([5, 5, 10])
     scene.page.mouse.wheel(0, -120)
     until(scene.page, "Math.abs(lw.view.camera.position[2] - 10) > 0.5")
-    moved = state(scene.page, "view.camera.position")
-    assert math.dist(moved, [5, 5, 10]) == pytest.approx(1.2, rel=0.02)
+    position = state(scene.page, "view.camera.position")
+    assert math.dist(position, [5, 5, 10]) == pytest.approx(1.2, rel=0.02)
 
 
 def test_follower_view_follows_position_and_yaw_of_frame(scene):
@@ -77,10 +77,10 @@ def test_follower_view_follows_position_and_yaw_of_frame(scene):
     half = math.sqrt(0.5)
     scene.viewer.place("tip", *TIP, 0.0, 0.0, 0.0, half, half)  # a quarter turn about z
     until(scene.page, "Math.abs(lw.frames.tip.orientation[2] - 0.7071) < 0.001")
-    turned = state(scene.page, "view.camera")
+    camera = state(scene.page, "view.camera")
     x, y = start["position"][0] - TIP[0], start["position"][1] - TIP[1]
-    assert turned["position"][:2] == pytest.approx([TIP[0] - y, TIP[1] + x], abs=1e-5)
-    assert turned["back"][2] == pytest.approx(start["back"][2])
+    assert camera["position"][:2] == pytest.approx([TIP[0] - y, TIP[1] + x], abs=1e-5)
+    assert camera["back"][2] == pytest.approx(start["back"][2])
     scene.viewer.place("tip", *TIP, 0.0, half, 0.0, 0.0, half)  # tilted, not turned
     until(scene.page, "Math.abs(lw.frames.tip.orientation[0] - 0.7071) < 0.001")
     assert state(scene.page, "view.camera.up") == pytest.approx(start["up"], abs=1e-6)

@@ -57,8 +57,10 @@ class Robot:
     def _listen(self) -> None:
         node = self.viewer.node
         node.create_subscription("audio_common_msgs/msg/AudioDataStamped", "/audio/audio_stamped", self._hear, 100)
-        node.create_subscription("std_msgs/msg/Bool", "/voice/listen", lambda m: self.held.append(m.data), 10)
-        node.create_subscription(STRING, "/voice/text_input", lambda m: self.commands.append(m.data), 10)
+        node.create_subscription(
+            "std_msgs/msg/Bool", "/voice/listen", lambda message: self.held.append(message.data), 10
+        )
+        node.create_subscription(STRING, "/voice/text_input", lambda message: self.commands.append(message.data), 10)
 
     def _hear(self, message: Any) -> None:
         self.samples.append(np.frombuffer(bytes(message.audio.data), "<i2"))

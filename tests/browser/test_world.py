@@ -56,8 +56,8 @@ def moved(viewer, x: float) -> None:
 
 
 def bounds(page, link: str, shape: int = 0) -> list[list[float]]:
-    drawn = page.evaluate("() => window.linkwright.displays[0].drawn")
-    box = drawn["links"][link]["visuals"][shape]["bounds"]
+    drawing = page.evaluate("() => window.linkwright.displays[0].drawn")
+    box = drawing["links"][link]["visuals"][shape]["bounds"]
     return [[round(coordinate, 2) for coordinate in box[end]] for end in ("min", "max")]
 
 

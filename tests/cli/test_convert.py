@@ -131,9 +131,9 @@ def test_mujoco_error_is_reported(folder, capsys, monkeypatch):
 
 def test_sdf_model_is_converted_to_urdf(folder, capsys):
     assert main(["convert", "models/ball/model.sdf", "--to", "urdf", "-o", "ball.urdf"]) == 0
-    written = (folder / "ball.urdf").read_text()
-    assert '<robot name="ball"' in written
-    assert 'filename="models/ball/meshes/ball.stl"' in written
+    text_of_ball = (folder / "ball.urdf").read_text()
+    assert '<robot name="ball"' in text_of_ball
+    assert 'filename="models/ball/meshes/ball.stl"' in text_of_ball
     assert capsys.readouterr().err == ""
 
 

@@ -94,8 +94,8 @@ def test_exported_files_from_outside_packages_are_listed(model, capsys, monkeypa
     assert main(["export", "box.glb", "box.xacro"]) == 0
     output = capsys.readouterr().err
     assert "the export contains 3 files from outside the packages" in output
-    named = [word for word in output.split() if "secret" in word or "own" in word or "shared" in word]
-    assert [name.rpartition("/")[2] for name in named] == ["secret.xacro", "secret.yaml", "secret.obj"]
+    secrets = [word for word in output.split() if "secret" in word or "own" in word or "shared" in word]
+    assert [name.rpartition("/")[2] for name in secrets] == ["secret.xacro", "secret.yaml", "secret.obj"]
 
 
 def test_comparison_page_contains_no_local_paths(model, monkeypatch):

@@ -208,8 +208,8 @@ def statuses(commands: Mapping[str, Sequence[str]], folder: Path, redirection: s
         timeout=300,
         check=False,
     )
-    printed, _, found = result.stderr.rpartition("[")
-    return dict(zip(commands, map(int, found.rstrip("]").split(",")), strict=True)), printed
+    printed, _, exit_statuses = result.stderr.rpartition("[")
+    return dict(zip(commands, map(int, exit_statuses.rstrip("]").split(",")), strict=True)), printed
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")

@@ -88,7 +88,7 @@ def test_print_option_shows_launch_description(write: Write, capsys: pytest.Capt
 def test_show_arguments_and_short_option_are_equivalent(write: Write, capsys: pytest.CaptureFixture[str]) -> None:
     path = str(write("DeclareLaunchArgument('gui', default_value='true')"))
     assert main(["launch", "--show-arguments", path]) == 0
-    listed = capsys.readouterr().out
-    assert "'gui':" in listed
+    listing = capsys.readouterr().out
+    assert "'gui':" in listing
     assert main(["launch", "-s", path]) == 0
-    assert capsys.readouterr().out == listed
+    assert capsys.readouterr().out == listing

@@ -139,4 +139,4 @@ def test_command_help_is_fully_translated(verb):
     finally:
         set_language(None)
         parser_for(verb)  # argparse's own words are English again
-    assert [text for text, shown in zip(english, chinese, strict=True) if text == shown] == []
+    assert [text for text, translation in zip(english, chinese, strict=True) if text == translation] == []

@@ -286,10 +286,10 @@ def test_qos_profile_names_match_graph_presets():
 # pub
 
 
-def listener(heard: list, kind=String, topic: str = "chatter"):
+def listener(messages: list, kind=String, topic: str = "chatter"):
     def make(graph: Graph) -> None:
         node = graph.create_node("listener", start_parameter_services=False)
-        node.create_subscription(kind, topic, heard.append, 10)
+        node.create_subscription(kind, topic, messages.append, 10)
 
     return make
 

@@ -50,10 +50,10 @@ def test_world_list_prints_json(folder, capsys):
 def test_new_world_has_no_findings(folder, capsys, name, file):
     assert main(["world", "new", name]) == 0
     assert f"Created file {file}" in capsys.readouterr().out
-    found = examine_world(folder / file)
-    assert found.diagnostics == ()
-    assert found.sdf is not None
-    world = found.sdf.worlds[0]
+    examined = examine_world(folder / file)
+    assert examined.diagnostics == ()
+    assert examined.sdf is not None
+    world = examined.sdf.worlds[0]
     assert file.endswith((f"{world.name}.world", f"{world.name}.sdf"))
     assert [model.name for model in world.models] == ["ground_plane", "box"]
     assert main(["world", "check", "--strict", file]) == 0

@@ -113,11 +113,11 @@ def test_package_with_import_error_is_reported_by_name():
 def names(table: Any) -> set[str]:
     """The names of the parameters of a table and those in it, without those that they stand below."""
     hints = get_type_hints(table)
-    found: set[str] = set()
+    found_names: set[str] = set()
     for field in fields(table):
         inside = field.metadata.get("table") or (hints[field.name] if is_dataclass(hints[field.name]) else None)
-        found |= {field.name} if inside is None else names(inside)
-    return found
+        found_names |= {field.name} if inside is None else names(inside)
+    return found_names
 
 
 @pytest.mark.parametrize("page", PAGES, ids=["en", "zh"])

@@ -145,15 +145,15 @@ def test_paths_below_current_folder_are_relative(tmp_path, monkeypatch):
 
 def test_long_line_is_shortened_around_span() -> None:
     source = SourceText("robot.urdf", f"{'a' * 1000}HERE{'b' * 1000}")
-    shown = render(Diagnostic("XML206", "it is wrong", source.span(1000, 1004), source=source)).splitlines()
-    assert shown[3] == f"1 | ...{'a' * 80}HERE{'b' * 76}..."
-    assert shown[4] == f"  | {' ' * 83}^^^^"
+    lines = render(Diagnostic("XML206", "it is wrong", source.span(1000, 1004), source=source)).splitlines()
+    assert lines[3] == f"1 | ...{'a' * 80}HERE{'b' * 76}..."
+    assert lines[4] == f"  | {' ' * 83}^^^^"
 
 
 def test_long_line_is_shortened_if_span_is_at_end() -> None:
     source = SourceText("robot.urdf", f"{'a' * 1000}HERE")
-    shown = render(Diagnostic("XML206", "it is wrong", source.span(1000, 1004), source=source)).splitlines()
-    assert shown[3] == f"1 | ...{'a' * 80}HERE"
+    lines = render(Diagnostic("XML206", "it is wrong", source.span(1000, 1004), source=source)).splitlines()
+    assert lines[3] == f"1 | ...{'a' * 80}HERE"
 
 
 def test_control_characters_are_replaced():

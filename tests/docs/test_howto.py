@@ -18,7 +18,8 @@ PUBLISH = 'linkwright topic pub -r 10 /cmd_vel geometry_msgs/msg/Twist "{linear:
 @pytest.mark.parametrize("page", sorted(DOCS.glob("howto-*.md")), ids=lambda page: page.stem)
 def test_both_languages_show_same_files(page: Path) -> None:
     english, chinese = (
-        [(block.title, block.text) for block in blocks(p) if block.title] for p in (page, DOCS / "zh" / page.name)
+        [(block.title, block.text) for block in blocks(language_page) if block.title]
+        for language_page in (page, DOCS / "zh" / page.name)
     )
     assert english == chinese
 

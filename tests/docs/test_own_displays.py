@@ -16,7 +16,7 @@ from linkwright.rviz.displays import catalog
 from tests.docs.pages import DOCS, blocks
 from tests.toml_files import read_toml
 from tests.viewer.contents import shown_markers
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import page, open_world
 
 PAGES = (DOCS / "own-displays.md", DOCS / "zh" / "own-displays.md")
 CLASS = "street_displays/TrackedObjects"
@@ -86,21 +86,21 @@ def test_example_display_has_at_most_60_lines():
 
 
 async def test_example_display_draws_and_removes_tracked_objects(street):
-    async with open_world(RvizConfig.parse(CONFIG)) as w, page(w.viewer) as client:
+    async with open_world(RvizConfig.parse(CONFIG)) as world, page(world.viewer) as client:
         await client.opened()
         await client.send("ask_display_choices")
         offered = (await client.until("display_choices"))["classes"]
         assert {"cls": CLASS, "messages": ["street_msgs/msg/TrackedObjects"]} in offered
-        node = w.graph.create_node("perception")
+        node = world.graph.create_node("perception")
         publisher = node.create_publisher("street_msgs/msg/TrackedObjects", "/objects", 10)
-        await w.settle()
+        await world.settle()
         publisher.publish(seen(car(1, 5.0, path=3), car(2, -5.0, label="bicycle")))
-        await w.settle()
-        (display,) = w.viewer.displays
+        await world.settle()
+        (display,) = world.viewer.displays
         assert display.row().drawing == "rviz_default_plugins/MarkerArray"
         assert shown_markers(display) == {}  # there is no frame 'street' yet
-        w.move({("base", "street"): (0, 0, 1, 0, 0, 0, 1)}, static=True)
-        await w.settle()
+        world.move({("base", "street"): (0, 0, 1, 0, 0, 0, 1)}, static=True)
+        await world.settle()
         markers = shown_markers(display)
         assert {name: marker["shape"] for name, marker in markers.items()} == {
             "boxes/1": "cube",
@@ -117,32 +117,34 @@ async def test_example_display_draws_and_removes_tracked_objects(street):
         assert sorted(markers) == ["boxes/1", "boxes/2", "paths/1"]
         assert markers["boxes/2"]["color"] == pytest.approx([1, 0.6, 0, 0.25])
         publisher.publish(seen(car(2, -4.0, speed=math.inf)))
-        await w.settle()
+        await world.settle()
         assert list(shown_markers(display)) == ["boxes/2"]
-        assert w.status("TrackedObjects")["Speed"] == ("warn", "The speed of object 2 is impossible")
+        assert world.status("TrackedObjects")["Speed"] == ("warn", "The speed of object 2 is impossible")
         publisher.publish(seen(car(3, math.nan)))
-        await w.settle()
-        status = w.status("TrackedObjects")
+        await world.settle()
+        status = world.status("TrackedObjects")
         assert status["boxes/3"] == ("error", "Contains invalid floating point values (nans or infs)")
         assert "Speed" not in status
-        assert w.viewer.config.text() != CONFIG
+        assert world.viewer.config.text() != CONFIG
         display.set_property(("Show Names",), True)
 
 
 async def test_configuration_with_example_display_is_saved_unchanged(street):
-    async with open_world(RvizConfig.parse(CONFIG)) as w:
-        assert w.viewer.displays[0].SUPPORTED
-        assert w.viewer.config.text() == CONFIG
+    async with open_world(RvizConfig.parse(CONFIG)) as world:
+        assert world.viewer.displays[0].SUPPORTED
+        assert world.viewer.config.text() == CONFIG
 
 
 async def test_the_objects_are_drawn_as_points_with_a_channel(street):
-    async with open_world(RvizConfig.parse(CONFIG.replace(CLASS, POINTS_CLASS))) as w:
-        publisher = w.graph.create_node("perception").create_publisher("street_msgs/msg/TrackedObjects", "/objects", 10)
-        w.move({("base", "street"): (0, 0, 1, 0, 0, 0, 1)}, static=True)
-        await w.settle()
+    async with open_world(RvizConfig.parse(CONFIG.replace(CLASS, POINTS_CLASS))) as world:
+        publisher = world.graph.create_node("perception").create_publisher(
+            "street_msgs/msg/TrackedObjects", "/objects", 10
+        )
+        world.move({("base", "street"): (0, 0, 1, 0, 0, 0, 1)}, static=True)
+        await world.settle()
         publisher.publish(seen(car(1, 5.0), car(2, -5.0)))
-        await w.settle()
-        (display,) = w.viewer.displays
+        await world.settle()
+        (display,) = world.viewer.displays
         assert display.row().drawing == "rviz_default_plugins/PointCloud2"
         assert display.fields_of("", 0) == {"speed": 3.0}
-        assert w.status("ObjectPoints")["Points"][0] == "ok"
+        assert world.status("ObjectPoints")["Points"][0] == "ok"

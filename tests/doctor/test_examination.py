@@ -171,11 +171,11 @@ def test_joint_states_on_unread_topic_hint_at_remapping():
 
 
 def test_prefixed_frames_match_robot_links():
-    named = tuple(
+    transforms = tuple(
         replace(transform, parent=f"r1/{transform.parent}", child=f"r1/{transform.child}")
         for transform in WELL.transforms
     )
-    assert examine(replace(WELL, transforms=named)) == []
+    assert examine(replace(WELL, transforms=transforms)) == []
 
 
 def test_transform_from_two_publishers_is_reported():
@@ -328,14 +328,14 @@ EITHER = tuple(subscription("/behavior_server", "/cmd_vel_teleop", kind) for kin
 
 @pytest.mark.parametrize("kinds", [(), (TWIST,), (f"{TWIST}Stamped",), (TWIST, f"{TWIST}Stamped")])
 def test_subscriber_to_both_velocity_types_matches_either_type(kinds):
-    sent = [publisher(f"/teleop_{number}", "/cmd_vel_teleop", kind) for number, kind in enumerate(kinds)]
-    assert not {"DOC201", "DOC202"} & set(codes(with_endpoints(WELL, *EITHER, *sent)))
+    publishers = [publisher(f"/teleop_{number}", "/cmd_vel_teleop", kind) for number, kind in enumerate(kinds)]
+    assert not {"DOC201", "DOC202"} & set(codes(with_endpoints(WELL, *EITHER, *publishers)))
 
 
 def test_type_mismatch_is_reported_beside_subscriber_to_both_types():
-    sent = publisher("/teleop", "/cmd_vel_teleop", TWIST)
+    stamped_publisher = publisher("/teleop", "/cmd_vel_teleop", TWIST)
     other = subscription("/base", "/cmd_vel_teleop", f"{TWIST}Stamped")
-    assert "DOC202" in codes(with_endpoints(WELL, *EITHER, sent, other))
+    assert "DOC202" in codes(with_endpoints(WELL, *EITHER, stamped_publisher, other))
 
 
 def test_velocity_topic_without_subscriber_is_reported():

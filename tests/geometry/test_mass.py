@@ -17,10 +17,10 @@ angles = st.tuples(*[st.floats(-3.0, 3.0)] * 3)
 @given(lengths, lengths, lengths, places, angles)
 def test_moved_body_keeps_mass_and_principal_moments(a, b, c, xyz, rpy):
     body = shape_properties(Box((a, b, c)), 700.0)
-    moved = body.moved(Pose(xyz, rpy))
-    assert moved.mass == body.mass
-    assert np.allclose(moved.center, xyz)
-    assert np.allclose(moved.principal().moments, body.principal().moments, rtol=1e-9, atol=1e-12)
+    moved_body = body.moved(Pose(xyz, rpy))
+    assert moved_body.mass == body.mass
+    assert np.allclose(moved_body.center, xyz)
+    assert np.allclose(moved_body.principal().moments, body.principal().moments, rtol=1e-9, atol=1e-12)
 
 
 @given(lengths, lengths, lengths, st.floats(0.1, 0.9), places, angles)
@@ -76,10 +76,10 @@ def test_rotated_inertial_is_transformed_to_link_frame():
 @given(lengths, places, angles)
 def test_inertial_round_trip_keeps_mass_properties(edge, xyz, rpy):
     body = shape_properties(Box((edge, 2 * edge, 3 * edge)), 800.0).moved(Pose(xyz, rpy))
-    again = Inertial.of(body).properties
-    assert again.mass == body.mass
-    assert np.allclose(again.center, body.center)
-    assert np.allclose(again.inertia, body.inertia)
+    round_trip = Inertial.of(body).properties
+    assert round_trip.mass == body.mass
+    assert np.allclose(round_trip.center, body.center)
+    assert np.allclose(round_trip.inertia, body.inertia)
 
 
 def test_empty_sum_has_no_mass():

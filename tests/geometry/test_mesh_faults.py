@@ -78,9 +78,9 @@ def glb(
     indices: tuple[int, int, int] = (0, 1, 2),
     text: bytes | None = None,
 ) -> bytes:
-    described = document()
-    change(described)
-    text = json.dumps(described).encode() if text is None else text
+    contents = document()
+    change(contents)
+    text = json.dumps(contents).encode() if text is None else text
     text += b" " * (-len(text) % 4)
     binary = np.array(corners, dtype="<f4").tobytes() + struct.pack("<3H", *indices) + bytes(2)
     body = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
@@ -161,12 +161,12 @@ def test_malformed_mesh_is_rejected_with_specific_error(name: str, tmp_path: Pat
     data, expected = CASES[name]
     path = tmp_path / name
     path.write_bytes(data if isinstance(data, bytes) else data.encode())
-    with pytest.raises(LinkwrightError) as read:
+    with pytest.raises(LinkwrightError) as raised:
         read_mesh(path)
     with pytest.raises(BadMeshError) as exported:
         read_parts(path, resolver=file_resolver(str(path)))
-    assert expected in read.value.diagnostics[0].message
-    assert str(exported.value.reason) in read.value.diagnostics[0].message
+    assert expected in raised.value.diagnostics[0].message
+    assert str(exported.value.reason) in raised.value.diagnostics[0].message
 
 
 @pytest.mark.parametrize(

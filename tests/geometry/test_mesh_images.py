@@ -41,9 +41,9 @@ def test_png_is_not_reencoded(tmp_path: Path) -> None:
 def test_jpeg_is_converted_to_png_of_same_color(tmp_path: Path) -> None:
     image = image_of(tmp_path, "i.jpg", encoded("JPEG"))
     assert image is not None
-    with Image.open(BytesIO(image)) as read:
-        assert read.format == "PNG"
-        assert np.abs(np.asarray(read).astype(int) - (200, 30, 60)).max() < 4
+    with Image.open(BytesIO(image)) as opened_image:
+        assert opened_image.format == "PNG"
+        assert np.abs(np.asarray(opened_image).astype(int) - (200, 30, 60)).max() < 4
 
 
 def test_truncated_png_is_rejected(tmp_path: Path) -> None:

@@ -61,8 +61,8 @@ async def test_viewer_uses_world_frame_and_simulated_time():
     await eventually(lambda: "gzserver-2]: started" in err.getvalue() or running.done(), what=err.getvalue)
     config = view._viewer_config()
     assert config.options.text("Fixed Frame") == "world"
-    shown = {display.cls.rpartition("/")[2]: display.checked for display in config.displays}
-    assert shown == {"Grid": True, "RobotModel": False, "TF": False, "World": True, "Odometry": False}
+    displays = {display.cls.rpartition("/")[2]: display.checked for display in config.displays}
+    assert displays == {"Grid": True, "RobotModel": False, "TF": False, "World": True, "Odometry": False}
     listener = view.host.graph.create_node("listener")
     client = listener.create_client(get_service("rcl_interfaces/srv/GetParameters"), "/viewer/get_parameters")
     answer = await client.call_async(client.srv_type.Request(names=["use_sim_time"]))
@@ -87,8 +87,8 @@ async def test_robot_without_collisions_is_reported_in_viewers(tmp_path: Path):
 
 
 async def test_robot_named_like_world_model_ends_simulation(tmp_path: Path):
-    named = '<model name="mbot"><static>true</static><link name="link"/></model>'
-    (tmp_path / "a.world").write_text(f'<sdf version="1.7"><world name="w">{named}</world></sdf>')
+    model = '<model name="mbot"><static>true</static><link name="link"/></model>'
+    (tmp_path / "a.world").write_text(f'<sdf version="1.7"><world name="w">{model}</world></sdf>')
     world = replace(in_an_empty_world(), world=str(tmp_path / "a.world"), seconds=0.0)
     err = io.StringIO()
     view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
@@ -129,11 +129,11 @@ async def test_scans_and_first_camera_are_shown():
     text = f"{scan}{camera.format('b', 'left')}{camera.format('c', 'right')}"
     world = replace(in_an_empty_world(), text=text)
     view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), io.StringIO()))
-    shown = [
+    topics = [
         (display.name, display.section.text("Topic", "Value"), display.checked)
         for display in view._viewer_config().displays
     ]
-    assert shown[4:] == [("LaserScan", "/scan", True), ("Image", "/left", True), ("Image", "/right", False)]
+    assert topics[4:] == [("LaserScan", "/scan", True), ("Image", "/left", True), ("Image", "/right", False)]
     await view.host.close()
 
 
@@ -143,9 +143,9 @@ def test_image_topics_are_read_from_description():
     assert image_topics(classic.format("<cameraName>left</cameraName><imageTopicName>rgb</imageTopicName>")) == [
         "/left/rgb"
     ]
-    moved = "<ros><namespace>mbot</namespace><remapping>eye/image_raw:={}</remapping></ros>"
-    assert image_topics(classic.format(moved.format("seen"))) == ["/mbot/seen"]
-    assert image_topics(classic.format(moved.format("/seen"))) == ["/seen"]
+    remapping = "<ros><namespace>mbot</namespace><remapping>eye/image_raw:={}</remapping></ros>"
+    assert image_topics(classic.format(remapping.format("seen"))) == ["/mbot/seen"]
+    assert image_topics(classic.format(remapping.format("/seen"))) == ["/seen"]
     newer = '<sensor type="{}" name="b">{}</sensor>'
     assert image_topics(newer.format("camera", "") + newer.format("gpu_lidar", "<topic>scan</topic>")) == ["/image"]
     assert image_topics(newer.format("rgbd_camera", "<topic>front</topic>")) == ["/front/image"]

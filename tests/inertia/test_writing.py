@@ -30,13 +30,13 @@ def write(tmp_path):
         path = tmp_path / name
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
         robot = load(path)
-        written = write_inertials(robot, dict.fromkeys(links or ("a",), CUBE))
+        result = write_inertials(robot, dict.fromkeys(links or ("a",), CUBE))
         reloaded = load(path)
-        for link in written.links:
+        for link in result.links:
             assert reloaded.links[link].inertial is not None
             assert reloaded.links[link].inertial.mass == 1.0
             assert reloaded.links[link].inertial.ixx == pytest.approx(CUBE.inertia[0, 0], rel=1e-5)
-        return written, path.read_bytes().decode("utf-8")
+        return result, path.read_bytes().decode("utf-8")
 
     return run
 
@@ -129,18 +129,18 @@ def test_several_links_of_one_file_are_written(write):
     joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
     links = [f'<link name="{name}">\n  <visual/>\n</link>\n' for name in "ab"]
     text = f'<robot name="r">\n{joint.join(links)}</robot>'
-    written, text = write(text, "b", "a")
+    result, text = write(text, "b", "a")
     assert text.count("<inertial>") == 2
-    assert sorted(written.links) == ["a", "b"]
+    assert sorted(result.links) == ["a", "b"]
 
 
 def test_plain_link_of_xacro_file_is_written(write):
-    written, text = write(
+    result, text = write(
         f'{XACRO}\n  <xacro:arg name="p" default="/"/>\n  <link name="a">\n'
         '    <visual><geometry><box size="1 1 1"/></geometry></visual>\n  </link>\n</robot>',
         name="r.xacro",
     )
-    assert written.links == ("a",)
+    assert result.links == ("a",)
     assert "<inertial>" in text
 
 
@@ -163,17 +163,17 @@ REFUSED = {
 @pytest.mark.parametrize("why", REFUSED, ids=["macro", "shape", "inertial", "part"])
 def test_link_generated_by_xacro_is_refused(write, why):
     before = f"{XACRO}{REFUSED[why]}</robot>"
-    written, text = write(before, name="r.xacro")
-    assert written.refusals == {"a": why}
-    assert written.links == ()
+    result, text = write(before, name="r.xacro")
+    assert result.refusals == {"a": why}
+    assert result.links == ()
     assert text == before
 
 
 def test_included_file_is_written(write, tmp_path):
     part = tmp_path / "part.xacro"
     part.write_text(f'{XACRO}\n  <link name="a">\n    <visual/>\n  </link>\n</robot>\n')
-    written, text = write(f'{XACRO}<xacro:include filename="part.xacro"/></robot>', name="r.xacro")
-    assert written.files == (part,)
+    result, text = write(f'{XACRO}<xacro:include filename="part.xacro"/></robot>', name="r.xacro")
+    assert result.files == (part,)
     assert "<inertial>" in part.read_text()
     assert "<inertial>" not in text
 
@@ -183,8 +183,8 @@ def test_element_that_expands_to_two_links_is_refused(write, tmp_path):
     part.write_text(f'{XACRO}<link name="$(eval n)"/></robot>'.replace("$(eval n)", "${n}"))
     joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
     include = '<xacro:property name="n" value="{}"/><xacro:include filename="part.xacro"/>'
-    written, _ = write(f"{XACRO}{include.format('a')}{include.format('b')}{joint}</robot>", name="r.xacro")
-    assert written.refusals == {"a": "its text in the file defines several links"}
+    result, _ = write(f"{XACRO}{include.format('a')}{include.format('b')}{joint}</robot>", name="r.xacro")
+    assert result.refusals == {"a": "its text in the file defines several links"}
 
 
 def test_file_changed_since_reading_is_refused(tmp_path):

@@ -25,16 +25,16 @@ def write(tmp_path):
         path.write_bytes(text.encode())
         description = examine(path)
         inference = infer(description.robot, MeshLibrary(PackageFinder(start=tmp_path), tmp_path))
-        written = write_inference(description.robot, inference)
-        return written, read(complete_description(description.document, inference)).robot, path.read_bytes().decode()
+        result = write_inference(description.robot, inference)
+        return result, read(complete_description(description.document, inference)).robot, path.read_bytes().decode()
 
     return run
 
 
 @pytest.mark.parametrize("robot", [case[1] for case in CASES], ids=[case[0] for case in CASES])
 def test_written_file_describes_completed_robot(write, tmp_path, robot):
-    written, expected, text = write(robot)
-    assert not written.refused
+    result, expected, text = write(robot)
+    assert not result.refused
     reloaded = load(tmp_path / "r.urdf")
     assert dict(reloaded.links) == dict(expected.links)
     assert dict(reloaded.joints) == dict(expected.joints)
@@ -64,17 +64,17 @@ def test_empty_link_element_is_expanded(write):
 
 def test_link_of_macro_is_refused_and_other_links_are_written(write):
     visual = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
-    written, _, text = write(
+    result, _, text = write(
         f'{XACRO}\n<xacro:macro name="part" params="name"><link name="${{name}}">{visual}</link></xacro:macro>\n'
         f'<xacro:part name="b"/>\n<link name="a">{visual}</link>\n'
         '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>\n</robot>\n',
         "r.urdf.xacro",
     )
-    assert written.count == 2
+    assert result.count == 2
     assert text.count("<collision>") == 1
-    assert [diagnostic.code for diagnostic in written.refused] == ["DRIVE301", "DRIVE301"]
-    assert "the macro 'part' generates it" in written.refused[0].message
-    assert written.refused[0].span is not None
+    assert [diagnostic.code for diagnostic in result.refused] == ["DRIVE301", "DRIVE301"]
+    assert "the macro 'part' generates it" in result.refused[0].message
+    assert result.refused[0].span is not None
 
 
 def test_drive_with_joint_names_from_expressions_is_refused(write):
@@ -84,7 +84,7 @@ def test_drive_with_joint_names_from_expressions_is_refused(write):
         '<joint name="${{prefix}}_{side}" type="continuous"><origin xyz="0 {y} 0"/>'
         '<parent link="base_link"/><child link="{side}"/><axis xyz="0 1 0"/></joint>\n'
     )
-    written, _, text = write(
+    result, _, text = write(
         f'{XACRO}\n<xacro:property name="prefix" value="p"/>\n<link name="base_link"/>\n'
         + wheel.format(side="l", y="0.2")
         + wheel.format(side="r", y="-0.2")
@@ -93,7 +93,7 @@ def test_drive_with_joint_names_from_expressions_is_refused(write):
     )
     assert "<gazebo>" not in text
     assert any(
-        "the referenced name 'p_l' comes from an expression" in diagnostic.message for diagnostic in written.refused
+        "the referenced name 'p_l' comes from an expression" in diagnostic.message for diagnostic in result.refused
     )
     assert text.count("<inertial>") == 3
 
@@ -104,6 +104,6 @@ def test_file_changed_since_reading_is_refused(tmp_path):
     description = examine(path)
     inference = infer(description.robot, MeshLibrary(PackageFinder(start=tmp_path), tmp_path))
     path.write_text('<robot name="r"><link name="abc"/></robot>')
-    written = write_inference(description.robot, inference)
-    assert "has changed since it was read" in written.refused[0].message
+    result = write_inference(description.robot, inference)
+    assert "has changed since it was read" in result.refused[0].message
     assert path.read_text() == '<robot name="r"><link name="abc"/></robot>'

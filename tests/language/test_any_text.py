@@ -159,15 +159,15 @@ def test_requests_survive_any_incomplete_text_of_own_formats(data):
     offset = start + len(typed)
     file = Path(__file__).parents[2] / "robots/my_robot_description" / name
     document = Document(WORKSPACE, {file: text}, file, text)
-    known = format_of(file)
-    assert known is not None
-    assert all(0 <= item.start <= offset for item in known.complete(document, offset))
-    explained = known.explain(document, offset)
+    file_format = format_of(file)
+    assert file_format is not None
+    assert all(0 <= item.start <= offset for item in file_format.complete(document, offset))
+    explained = file_format.explain(document, offset)
     assert explained is None or 0 <= explained.start <= explained.end <= len(text)
-    for target in known.define(document, offset):
+    for target in file_format.define(document, offset):
         assert 0 <= target.start <= target.end
-    assert all(0 <= link.start < link.end <= len(text) for link in known.links(document))
-    for symbol in known.symbols(document) if known.symbols is not None else ():
+    assert all(0 <= link.start < link.end <= len(text) for link in file_format.links(document))
+    for symbol in file_format.symbols(document) if file_format.symbols is not None else ():
         assert 0 <= symbol.start <= symbol.end <= len(text)
 
 

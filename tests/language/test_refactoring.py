@@ -58,15 +58,15 @@ MACRO = """  <xacro:macro name="wheel" params="side radius:=0.3">
 
 
 def test_extract_property_inserts_number_before_top_level_element(tmp_path):
-    changed = Description(tmp_path, MACRO).refactored(Action.EXTRACT_PROPERTY, "0.5")
-    assert changed.startswith('  <xacro:property name="sphere_radius" value="0.5"/>\n  <xacro:macro')
-    assert "${radius * sphere_radius + 0.1}" in changed
+    edited_text = Description(tmp_path, MACRO).refactored(Action.EXTRACT_PROPERTY, "0.5")
+    assert edited_text.startswith('  <xacro:property name="sphere_radius" value="0.5"/>\n  <xacro:macro')
+    assert "${radius * sphere_radius + 0.1}" in edited_text
 
 
 def test_extract_property_with_parameters_stays_in_macro(tmp_path):
-    changed = Description(tmp_path, MACRO).refactored(Action.EXTRACT_PROPERTY, "radius * 0.5", "${")
-    assert '\n    <xacro:property name="sphere_radius" value="${radius * 0.5}"/>\n    <link' in changed
-    assert "${sphere_radius + 0.1}" in changed
+    edited_text = Description(tmp_path, MACRO).refactored(Action.EXTRACT_PROPERTY, "radius * 0.5", "${")
+    assert '\n    <xacro:property name="sphere_radius" value="${radius * 0.5}"/>\n    <link' in edited_text
+    assert "${sphere_radius + 0.1}" in edited_text
 
 
 def test_extract_property_is_not_offered_across_operator_precedence(tmp_path):
@@ -77,21 +77,21 @@ def test_extract_property_is_not_offered_across_operator_precedence(tmp_path):
 
 def test_extracted_number_is_named_after_its_axis(tmp_path):
     body = '  <link name="a"><visual><origin xyz="0 0.2 0"/></visual></link>\n'
-    changed = Description(tmp_path, body).refactored(Action.EXTRACT_PROPERTY, "0.2")
-    assert '<xacro:property name="origin_y" value="0.2"/>' in changed
-    assert 'xyz="0 ${origin_y} 0"' in changed
+    edited_text = Description(tmp_path, body).refactored(Action.EXTRACT_PROPERTY, "0.2")
+    assert '<xacro:property name="origin_y" value="0.2"/>' in edited_text
+    assert 'xyz="0 ${origin_y} 0"' in edited_text
 
 
 def test_duplicate_property_name_gets_a_number(tmp_path):
     body = '  <xacro:property name="mass_value" value="2"/>\n  <a><mass value="3"/></a>\n'
-    changed = Description(tmp_path, body).refactored(Action.EXTRACT_PROPERTY, "3")
-    assert '<mass value="${mass_value_2}"/>' in changed
+    edited_text = Description(tmp_path, body).refactored(Action.EXTRACT_PROPERTY, "3")
+    assert '<mass value="${mass_value_2}"/>' in edited_text
 
 
 def test_comment_stays_above_its_element(tmp_path):
     body = '  <!-- the arm\n       of the robot -->\n  <!-- b -->\n  <a v="3"/>\n'
-    changed = Description(tmp_path, body).refactored(Action.EXTRACT_PROPERTY, "3")
-    assert changed.startswith('  <xacro:property name="a_v" value="3"/>\n  <!-- the arm')
+    edited_text = Description(tmp_path, body).refactored(Action.EXTRACT_PROPERTY, "3")
+    assert edited_text.startswith('  <xacro:property name="a_v" value="3"/>\n  <!-- the arm')
 
 
 def test_inline_property_is_rejected_if_xacro_would_keep_its_comment(tmp_path):
@@ -106,23 +106,25 @@ def test_extract_property_is_rejected_if_number_format_would_change(tmp_path):
 
 def test_extract_macro_passes_used_names_as_parameters(tmp_path):
     visual = '<visual><geometry><sphere radius="${radius * 0.5 + 0.1}"/></geometry></visual>'
-    changed = Description(tmp_path, MACRO).refactored(Action.EXTRACT_MACRO, visual)
-    assert changed.startswith(f'  <xacro:macro name="wheel_visual" params="radius">\n    {visual}\n  </xacro:macro>\n')
-    assert '\n      <xacro:wheel_visual radius="${radius}"/>\n' in changed
+    edited_text = Description(tmp_path, MACRO).refactored(Action.EXTRACT_MACRO, visual)
+    assert edited_text.startswith(
+        f'  <xacro:macro name="wheel_visual" params="radius">\n    {visual}\n  </xacro:macro>\n'
+    )
+    assert '\n      <xacro:wheel_visual radius="${radius}"/>\n' in edited_text
 
 
 def test_extract_macro_moves_comment_with_element(tmp_path):
     body = '  <!-- the arm -->\n  <a v="3"/>\n'
-    changed = Description(tmp_path, body).refactored(Action.EXTRACT_MACRO, '<a v="3"/>')
+    edited_text = Description(tmp_path, body).refactored(Action.EXTRACT_MACRO, '<a v="3"/>')
     macro = '  <xacro:macro name="a_macro" params="">\n    <!-- the arm -->\n    <a v="3"/>\n  </xacro:macro>\n'
-    assert changed == f"{macro}  <xacro:a_macro/>\n"
+    assert edited_text == f"{macro}  <xacro:a_macro/>\n"
 
 
 def test_extract_macro_keeps_relative_indentation(tmp_path):
     link = MACRO[MACRO.index("<link") : MACRO.index("</link>") + len("</link>")]
-    changed = Description(tmp_path, f"  <gazebo>\n{MACRO}  </gazebo>\n").refactored(Action.EXTRACT_MACRO, link)
-    assert '\n    <link name="${side}_wheel">\n      <visual>' in changed
-    assert "</visual>\n    </link>\n  </xacro:macro>\n" in changed
+    edited_text = Description(tmp_path, f"  <gazebo>\n{MACRO}  </gazebo>\n").refactored(Action.EXTRACT_MACRO, link)
+    assert '\n    <link name="${side}_wheel">\n      <visual>' in edited_text
+    assert "</visual>\n    </link>\n  </xacro:macro>\n" in edited_text
 
 
 START = '  <xacro:arg name="x" default="1"/>\n  <xacro:property name="a" value="1"/>\n'
@@ -145,10 +147,10 @@ START = '  <xacro:arg name="x" default="1"/>\n  <xacro:property name="a" value="
 )
 def test_inline_property_adds_parentheses_where_needed(tmp_path, value, use, expected):
     body = f'{START}  <xacro:property name="r" value="{value}"/>\n  <b v="{use}"/>\n'
-    changed = Description(tmp_path, body).refactored(
+    edited_text = Description(tmp_path, body).refactored(
         Action.INLINE_PROPERTY, "r", 'name="a" value="1"/>\n  <xacro:property name="'
     )
-    assert changed == f'{START}  <b v="{expected}"/>\n'
+    assert edited_text == f'{START}  <b v="{expected}"/>\n'
 
 
 def test_inline_property_with_two_definitions_is_rejected(tmp_path):
@@ -166,8 +168,8 @@ def test_inline_property_of_computed_text_in_expression_is_rejected(tmp_path):
 def test_fill_in_inertia_computes_from_shapes(tmp_path):
     body = '  <link name="a">\n    <visual><geometry><box size="1 1 1"/></geometry></visual>\n  </link>\n'
     description = Description(tmp_path, body)
-    changed = description.refactored(Action.FILL_IN_INERTIA, "link")
-    assert '    <inertial>\n      <origin xyz="0 0 0" rpy="0 0 0"/>\n      <mass value="1000"/>\n' in changed
+    edited_text = description.refactored(Action.FILL_IN_INERTIA, "link")
+    assert '    <inertial>\n      <origin xyz="0 0 0" rpy="0 0 0"/>\n      <mass value="1000"/>\n' in edited_text
 
 
 def test_fill_in_inertia_with_expressions_is_rejected(tmp_path):

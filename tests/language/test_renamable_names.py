@@ -284,8 +284,8 @@ def test_inherited_launch_argument_is_renamed_in_included_files(make: Make):
 
 def test_launch_configuration_passed_as_value_is_renamed_only_in_its_file(make: Make):
     _, texts = make(LAUNCH_FILES).rename("p/launch/main.launch.py", "LaunchConfiguration('sp", "pace")
-    changed = MAIN_PY.replace("'speed'", "'pace'").replace("{'pace'", "{'speed'")
-    assert texts == {"p/launch/main.launch.py": changed}
+    edited_text = MAIN_PY.replace("'speed'", "'pace'").replace("{'pace'", "{'speed'")
+    assert texts == {"p/launch/main.launch.py": edited_text}
 
 
 def test_launch_argument_rename_to_existing_name_is_rejected(make: Make):
@@ -324,10 +324,10 @@ def test_sdf_link_is_renamed_in_its_scope_and_in_including_worlds(make: Make):
     _, texts = make(SDF_FILES).rename("p/models/cart/model.sdf", '  <link name="bo', "base")
     nested = MODEL.index('  <model name="arm">'), MODEL.index('  <joint name="hold"')
     inner = MODEL[slice(*nested)]
-    changed = MODEL.replace("body", "base").replace("<topic>base", "<topic>body").replace("arm::base", "arm::body")
-    changed = changed.replace(inner.replace("body", "base"), inner)
+    edited_text = MODEL.replace("body", "base").replace("<topic>base", "<topic>body").replace("arm::base", "arm::body")
+    edited_text = edited_text.replace(inner.replace("body", "base"), inner)
     assert texts == {
-        "p/models/cart/model.sdf": changed,
+        "p/models/cart/model.sdf": edited_text,
         "p/worlds/w.world": WORLD.replace("one::body", "one::base"),
     }
 
@@ -365,8 +365,8 @@ def test_renamed_file_is_updated_in_launch_yaml_and_build_files(make: Make):
     )
     folder = files.folder / "description" / "urdf"
     edits, unchanged = rename_file(files.workspace, {}, folder / "wheel.xacro", folder / "parts.xacro")
-    changed = {edit.file.name: edit.file.read_text()[edit.start : edit.end] for edit in edits}
-    assert changed.keys() == {"rover.urdf.xacro", "CMakeLists.txt", "main.launch.py", "part.yaml"}
+    old_texts = {edit.file.name: edit.file.read_text()[edit.start : edit.end] for edit in edits}
+    assert old_texts.keys() == {"rover.urdf.xacro", "CMakeLists.txt", "main.launch.py", "part.yaml"}
     assert {edit.text.rpartition("/")[2] for edit in edits} == {"parts.xacro"}
     assert [(mention.file.name, mention.start) for mention in unchanged] == [
         ("main.launch.py", launch.index("NAME = '") + len("NAME = '"))

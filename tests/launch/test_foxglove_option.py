@@ -12,16 +12,16 @@ from linkwright.packages import PackageFinder
 
 
 def launched(monkeypatch, options: LaunchOptions) -> list[Node]:
-    seen: list[LaunchDescription] = []
+    descriptions: list[LaunchDescription] = []
 
     async def run(description, *_, noninteractive):
-        seen.append(description)
+        descriptions.append(description)
         return True
 
     monkeypatch.setattr(launch_run, "_run", run)
     load = lambda _: (LaunchDescription([]), {})  # noqa: E731 - as launch files are loaded
     assert launch_run.run_description(load, {}, PackageFinder(), options, "nothing") == 0
-    return [entity for entity in seen[0].entities if isinstance(entity, Node)]
+    return [entity for entity in descriptions[0].entities if isinstance(entity, Node)]
 
 
 def test_foxglove_option_adds_bridge(monkeypatch):

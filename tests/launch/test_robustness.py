@@ -173,8 +173,8 @@ def test_line_splitter_decodes_and_splits_output() -> None:
 
 def test_long_line_is_split_into_pieces() -> None:
     lines = _LineSplitter()
-    shown = [piece for _ in range(300) for piece in lines.feed(b"x" * 1000)]
-    assert [len(piece) for piece in shown] == [_MAX_LINE_LENGTH] * 3
+    pieces = [piece for _ in range(300) for piece in lines.feed(b"x" * 1000)]
+    assert [len(piece) for piece in pieces] == [_MAX_LINE_LENGTH] * 3
     assert lines.finish() == []
 
 

@@ -87,9 +87,9 @@ class TestSignals:
         wait_until(lambda: running.out.count("pid ") >= 4)
         pids = [int(pid) for pid in re.findall(r"pid (\d+)", running.out)]
         assert running.end(number)[0] == 128 + number
-        for sent, following in (("SIGINT", "SIGTERM"), ("SIGTERM", "SIGKILL")):
+        for signal_name, following in (("SIGINT", "SIGTERM"), ("SIGTERM", "SIGKILL")):
             assert (
-                f"failed to terminate '0.3' seconds after receiving '{sent}', escalating to '{following}'"
+                f"failed to terminate '0.3' seconds after receiving '{signal_name}', escalating to '{following}'"
                 in running.err
             )
         wait_until(lambda: all(map(is_gone, pids)))

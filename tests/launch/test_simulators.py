@@ -128,10 +128,10 @@ async def test_launch_files_missing_in_unbuilt_sources_are_substituted(
     write("ws/src/ros_gz/ros_gz_sim/launch/gz_sim.launch.py.in", "@GZ_SIM_VER@")
     edited = write("ws/src/ros_gz/ros_gz_sim/launch/gz_spawn_model.launch.py", "# edited")
     finder = PackageFinder(start=tmp_path / "ws", environment={})
-    found = finder.share("ros_gz_sim")
-    assert source_of(str(found / "launch" / "gz_spawn_model.launch.py")) == str(edited)
-    assert (found / "launch" / "gz_server.launch.py").is_file()
-    path = str(found / "launch" / "gz_sim.launch.py")
+    share = finder.share("ros_gz_sim")
+    assert source_of(str(share / "launch" / "gz_spawn_model.launch.py")) == str(edited)
+    assert (share / "launch" / "gz_server.launch.py").is_file()
+    path = str(share / "launch" / "gz_sim.launch.py")
     launched = await launch(
         IncludeLaunchDescription(path, launch_arguments={"gz_args": f"-r -s {WORLD}"}.items()), finder=finder
     )

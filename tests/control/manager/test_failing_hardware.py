@@ -110,8 +110,8 @@ async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(grap
     leg = running._manager.resources.components["leg"]
     assert [command.value for command in leg.commands] == [3.0]
 
-    refused = await ask(graph, node, "switch_controller", activate_controllers=["hips"], strictness=2)
-    assert not refused.ok
+    response = await ask(graph, node, "switch_controller", activate_controllers=["hips"], strictness=2)
+    assert not response.ok
     arm.wrong = None
     set_state = {"name": "arm", "target_state": State(id=0, label="active")}
     assert (await ask(graph, node, "set_hardware_component_state", **set_state)).ok

@@ -69,14 +69,14 @@ class Driver:
 
 @pytest.fixture
 def start(stage, terminal):
-    started = []
+    drivers = []
 
     def driver(**options):
-        started.append(Driver(stage, *terminal, **options))
-        return started[-1]
+        drivers.append(Driver(stage, *terminal, **options))
+        return drivers[-1]
 
     yield driver
-    for started_driver in started:
+    for started_driver in drivers:
         if not started_driver.closed:
             started_driver.close()
 

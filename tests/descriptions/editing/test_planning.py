@@ -369,10 +369,16 @@ def rounded(value: Any) -> Any:
 
 def facts(robot_model: Robot) -> Any:
     joints = {
-        name: (j.type, j.parent, j.child, j.origin.xyz, j.origin.rpy, j.axis) for name, j in robot_model.joints.items()
+        name: (joint.type, joint.parent, joint.child, joint.origin.xyz, joint.origin.rpy, joint.axis)
+        for name, joint in robot_model.joints.items()
     }
     links = {
-        name: [[(s.name, s.origin.xyz, s.origin.rpy, repr(s.geometry)) for s in (*link.visuals, *link.collisions)]]
+        name: [
+            [
+                (shape.name, shape.origin.xyz, shape.origin.rpy, repr(shape.geometry))
+                for shape in (*link.visuals, *link.collisions)
+            ]
+        ]
         for name, link in robot_model.links.items()
     }
     masses = {

@@ -120,7 +120,7 @@ async def test_deadline_is_missed_without_running_executor(graph, node, clock):
 
 
 async def test_liveliness_events_are_sent_to_both_sides(graph, node, clock):
-    lost, changed = [], []
+    lost, events = [], []
     qos = QoSProfile(
         depth=1, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC, liveliness_lease_duration=Duration(seconds=1.0)
     )
@@ -128,7 +128,7 @@ async def test_liveliness_events_are_sent_to_both_sides(graph, node, clock):
         String, "topic", qos, event_callbacks=PublisherEventCallbacks(liveliness=lost.append)
     )
     node.create_subscription(
-        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(liveliness=changed.append)
+        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(liveliness=events.append)
     )
     for _ in range(3):
         publisher.assert_liveliness()
@@ -138,36 +138,36 @@ async def test_liveliness_events_are_sent_to_both_sides(graph, node, clock):
     assert [event.total_count for event in lost] == [1]
     publisher.publish(String())
     await graph.settle()
-    assert [(event.alive_count, event.not_alive_count) for event in changed] == [(1, 0), (0, 1), (1, 0)]
+    assert [(event.alive_count, event.not_alive_count) for event in events] == [(1, 0), (0, 1), (1, 0)]
 
 
 async def test_destroyed_lost_publisher_decrements_not_alive_count(graph, node, clock):
-    changed = []
+    events = []
     qos = QoSProfile(
         depth=1, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC, liveliness_lease_duration=Duration(seconds=1.0)
     )
     publisher = node.create_publisher(String, "topic", qos, event_callbacks=PublisherEventCallbacks())
     await clock.advance(2.0)
     node.create_subscription(
-        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(liveliness=changed.append)
+        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(liveliness=events.append)
     )
     publisher.assert_liveliness()
     await clock.advance(2.0)
     node.destroy_publisher(publisher)
     await graph.settle()
-    assert [(event.alive_count, event.not_alive_count) for event in changed] == [(0, 1), (1, 0), (0, 1), (0, 0)]
+    assert [(event.alive_count, event.not_alive_count) for event in events] == [(0, 1), (1, 0), (0, 1), (0, 0)]
 
 
 async def test_liveliness_of_remote_publishers_is_counted(graph, node):
-    changed = []
+    events = []
     subscription = node.create_subscription(
-        String, "topic", nothing, 1, event_callbacks=SubscriptionEventCallbacks(liveliness=changed.append)
+        String, "topic", nothing, 1, event_callbacks=SubscriptionEventCallbacks(liveliness=events.append)
     )
     for alive, not_alive in [(2, 0), (2, 0), (1, 1), (0, 1), (0, 0)]:
         subscription.set_remote_count(alive + not_alive)
         subscription.set_remote_liveliness(alive, not_alive)
     await graph.settle()
-    result = [(status.alive_count, status.not_alive_count, status.alive_count_change) for status in changed]
+    result = [(status.alive_count, status.not_alive_count, status.alive_count_change) for status in events]
     assert result == [(2, 0, 2), (1, 1, -1), (0, 1, -1), (0, 0, 0)]
 
 

@@ -164,12 +164,12 @@ def test_call_returns_none_after_timeout():
 def test_wait_for_service_ends_when_graph_closes():
     graph = Graph(threads=True, on_log=print)
     client = graph.create_node("node").create_client(AddTwoInts, "add")
-    found = []
-    thread = threading.Thread(target=lambda: found.append(_waits(client)))
+    results = []
+    thread = threading.Thread(target=lambda: results.append(_waits(client)))
     thread.start()
     graph.close_threadsafe()
     thread.join(60.0)
-    assert found == [False]
+    assert results == [False]
 
 
 def _waits(client):

@@ -62,13 +62,13 @@ async def test_malformed_messages_in_batch_are_skipped(graph):
 
 async def test_callbacks_are_not_reentrant(graph):
     node = graph.create_node("echo")
-    depth, deepest, seen = 0, 0, []
+    depth, deepest, data_received = 0, 0, []
 
     def on_message(message):
         nonlocal depth, deepest
         depth += 1
         deepest = max(deepest, depth)
-        seen.append(message.data)
+        data_received.append(message.data)
         if len(message.data) < 5:
             publisher.publish(String(data=message.data + "x"))
         depth -= 1
@@ -77,7 +77,7 @@ async def test_callbacks_are_not_reentrant(graph):
     publisher = node.create_publisher(String, "loop", 10)
     publisher.publish(String(data=""))
     await graph.settle()
-    assert seen == ["", "x", "xx", "xxx", "xxxx", "xxxxx"]
+    assert data_received == ["", "x", "xx", "xxx", "xxxx", "xxxxx"]
     assert deepest == 1
 
 
@@ -161,12 +161,12 @@ async def test_late_subscription_does_not_receive_expired_messages(graph, clock)
     for text in "abc":
         publisher.publish(String(data=text))
         await clock.advance(0.6)
-    received, sent = [], []
+    received, sent_messages = [], []
     node.create_subscription(String, "topic", received.append, QoSProfile(5, durability=LATCHED.durability))
-    publisher.set_remote_sender(sent.append)
+    publisher.set_remote_sender(sent_messages.append)
     await graph.settle()
     assert texts(received) == ["c"]
-    assert texts(sent) == ["c"]
+    assert texts(sent_messages) == ["c"]
 
 
 async def test_volatile_publisher_keeps_no_messages(graph):

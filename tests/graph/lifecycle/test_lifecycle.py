@@ -71,11 +71,11 @@ async def test_lifecycle_node_goes_through_all_states(managed):
 
 
 async def test_invalid_transition_is_rejected_with_hint(managed):
-    with pytest.raises(RclError, match="No transition matching activate found for current state") as e:
+    with pytest.raises(RclError, match="No transition matching activate found for current state") as raised:
         managed.trigger_activate()
-    assert "Transition is not registered" in str(e.value)
-    assert e.value.diagnostics[0].hint == "the transitions from this state are configure, shutdown"
-    assert isinstance(e.value, RuntimeError)
+    assert "Transition is not registered" in str(raised.value)
+    assert raised.value.diagnostics[0].hint == "the transitions from this state are configure, shutdown"
+    assert isinstance(raised.value, RuntimeError)
 
 
 @pytest.mark.parametrize(

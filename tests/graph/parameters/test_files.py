@@ -59,8 +59,8 @@ def values(text: str):
     ],
 )
 def test_scalars_are_parsed_like_rcl(word, value):
-    found = values(f"p: {word}")["p"]
-    assert (found, type(found)) == (value, type(value))
+    value_read = values(f"p: {word}")["p"]
+    assert (value_read, type(value_read)) == (value, type(value))
     assert parse_value(word, "p") == value
 
 

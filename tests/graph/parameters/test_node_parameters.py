@@ -222,8 +222,8 @@ async def test_last_of_duplicate_declarations_applies(graph):
 )
 async def test_integer_range_is_enforced(graph, value, reason):
     node = graph.create_node("node")
-    allowed = DescriptorMessage(integer_range=[IntegerRange(from_value=0, to_value=10, step=2)])
-    node.declare_parameter("p", 2, allowed)
+    descriptor = DescriptorMessage(integer_range=[IntegerRange(from_value=0, to_value=10, step=2)])
+    node.declare_parameter("p", 2, descriptor)
     result = node.set_parameters_atomically([Parameter("p", value=value)])
     assert (result.successful, result.reason) == (reason is None, reason or "")
 
@@ -264,8 +264,8 @@ async def test_descriptor_can_be_shared_by_parameters(graph, descriptor_type):
     descriptor = descriptor_type(read_only=True)
     node.declare_parameter("wide", 1.5, descriptor)
     node.declare_parameter("whole", 2, descriptor)
-    described = node.describe_parameters(["wide", "whole"])
-    assert [(description.name, description.type, description.read_only) for description in described] == [
+    descriptions = node.describe_parameters(["wide", "whole"])
+    assert [(description.name, description.type, description.read_only) for description in descriptions] == [
         ("wide", 3, True),
         ("whole", 2, True),
     ]

@@ -60,8 +60,8 @@ async def test_parameter_client_gets_values_types_and_descriptions(graph, client
     assert [(descriptor.name, descriptor.type, descriptor.description) for descriptor in descriptors] == [
         ("arm.name", 4, "which")
     ]
-    listed = (await answer(graph, client.list_parameters(["arm"]))).result
-    assert (list(listed.names), list(listed.prefixes)) == (["arm.name"], ["arm"])
+    listing = (await answer(graph, client.list_parameters(["arm"]))).result
+    assert (list(listing.names), list(listing.prefixes)) == (["arm.name"], ["arm"])
     assert len((await answer(graph, client.list_parameters(depth=1))).result.names) == 4
 
 
@@ -136,11 +136,11 @@ async def test_parameter_events_are_published_for_accepted_changes(graph, server
     await graph.settle()
     assert [
         (
-            [p.name for p in e.new_parameters],
-            [p.name for p in e.changed_parameters],
-            [p.name for p in e.deleted_parameters],
+            [parameter.name for parameter in event.new_parameters],
+            [parameter.name for parameter in event.changed_parameters],
+            [parameter.name for parameter in event.deleted_parameters],
         )
-        for e in events
+        for event in events
     ] == [([], ["rate"], []), (["any"], [], []), ([], [], ["any"]), (["fresh"], [], [])]
     assert {event.node for event in events} == {"/robot/server"}
     assert events[0].stamp.sec == clock.now_ns() // 10**9
@@ -151,10 +151,14 @@ async def test_parameter_event_handler_reports_single_parameters(graph, server):
     watcher = graph.create_node("watcher", namespace="/robot")
     handler = ParameterEventHandler(watcher)
     messages = []
-    rate = handler.add_parameter_callback("rate", "server", lambda p: messages.append(("rate", p.value.integer_value)))
-    handler.add_parameter_callback("rate", "/other", lambda p: messages.append(("other", p)))
-    own = handler.add_parameter_callback("mine", "", lambda p: messages.append(("mine", p.value.bool_value)))
-    event = handler.add_parameter_event_callback(lambda e: messages.append(e.node))
+    rate = handler.add_parameter_callback(
+        "rate", "server", lambda parameter: messages.append(("rate", parameter.value.integer_value))
+    )
+    handler.add_parameter_callback("rate", "/other", lambda parameter: messages.append(("other", parameter)))
+    own = handler.add_parameter_callback(
+        "mine", "", lambda parameter: messages.append(("mine", parameter.value.bool_value))
+    )
+    event = handler.add_parameter_event_callback(lambda parameter_event: messages.append(parameter_event.node))
     server.set_parameters([Parameter("rate", value=3)])
     watcher.declare_parameter("mine", True)
     await graph.settle()

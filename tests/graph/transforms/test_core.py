@@ -366,7 +366,12 @@ pose = (
         *([st.floats(-1, 1)] * 4),
     )
     .filter(lambda values: sum(value * value for value in values[3:]) > 0.1)
-    .map(lambda values: (*values[:3], *(value / sqrt(sum(q * q for q in values[3:])) for value in values[3:])))
+    .map(
+        lambda values: (
+            *values[:3],
+            *(value / sqrt(sum(component * component for component in values[3:])) for value in values[3:]),
+        )
+    )
 )
 
 

@@ -45,11 +45,11 @@ def prefixed(prefix: str, pattern: str) -> list[Any]:
 
 class TestProcessChoice:
     async def test_isolated_nodes_run_as_processes(self, launch) -> None:
-        started = RegisterEventHandler(
+        start_handler = RegisterEventHandler(
             OnProcessExit(on_exit=lambda event, _: LogInfo(msg=f"{event.process_name} {event.returncode}"))
         )
         speaks = ends_when(printed("] [tk]: Publishing: 'Hello World: 1'"))
-        result = await launch(talker(name="tk"), started, speaks, session_options={"isolate": True})
+        result = await launch(talker(name="tk"), start_handler, speaks, session_options={"isolate": True})
         assert "[INFO] [talker-1]: process started with pid [" in result.err
         assert "[talker-1] [INFO] [" in result.err
         assert "] [tk]: Publishing: 'Hello World: 1'" in result.err

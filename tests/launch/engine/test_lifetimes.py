@@ -185,10 +185,10 @@ class TestCounts:
         me = psutil.Process()
         await launch()  # what is made once and kept, is made
         threads, children = set(threading.enumerate()), {child.pid for child in me.children(recursive=True)}
-        seen: list[tuple[int, int]] = []
+        counts: list[tuple[int, int]] = []
 
         def look(_: Any) -> None:
-            seen.append((threading.active_count(), len(me.children(recursive=True))))
+            counts.append((threading.active_count(), len(me.children(recursive=True))))
 
         result = await launch(
             Node(package="demo_nodes_cpp", executable="talker"),
@@ -198,7 +198,7 @@ class TestCounts:
             TimerAction(period=1.5, actions=[OpaqueFunction(function=look), Shutdown()]),
         )
         assert result.succeeded, result.err
-        assert seen[0][1] >= len(children) + 2  # the process and the guardian
+        assert counts[0][1] >= len(children) + 2  # the process and the guardian
 
         def left() -> list[object]:
             ours = [thread for thread in threading.enumerate() if thread not in threads and not _is_pooled(thread)]

@@ -13,13 +13,13 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of user
 @pytest.fixture
 def previous_handler_calls():
     """Record the signals that are handled outside of the manager."""
-    seen = []
+    signals = []
 
     def note(number, _):
-        seen.append(number)
+        signals.append(number)
 
     saved = {number: signal.signal(number, note) for number in (signal.SIGUSR1, signal.SIGUSR2)}
-    yield seen
+    yield signals
     for number, handler in saved.items():
         assert signal.getsignal(number) is note
         signal.signal(number, handler)

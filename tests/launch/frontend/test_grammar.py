@@ -106,10 +106,10 @@ def test_eval_without_module_raises_name_error() -> None:
 
 def test_anon_returns_same_name_for_same_id() -> None:
     context = LaunchContext()
-    first, again, other = (
+    first, second, other = (
         parse_substitution(text)[0].perform(context) for text in ("$(anon a)", "$(anon a)", "$(anon b)")
     )
-    assert first == again != other
+    assert first == second != other
     assert first.startswith("a_")
 
 

@@ -141,21 +141,21 @@ def test_newer_yaml_shorthand_is_accepted() -> None:
 
 
 def test_custom_tag_reads_typed_attributes() -> None:
-    seen: dict[str, Any] = {}
+    attributes: dict[str, Any] = {}
 
     @expose_action("spin_around")
     class SpinAround(Action):
         @classmethod
         def parse(cls, entity: Entity, parser: Parser) -> Any:
             _, kwargs = super().parse(entity, parser)
-            seen["times"] = entity.get_attr("times", data_type=int, can_be_str=False)
-            seen["list"] = entity.get_attr("speeds", data_type=list[float], optional=True)
-            seen["axis"] = [axis.get_attr("name") for axis in entity.get_attr("axis", data_type=list[Entity])]
+            attributes["times"] = entity.get_attr("times", data_type=int, can_be_str=False)
+            attributes["list"] = entity.get_attr("speeds", data_type=list[float], optional=True)
+            attributes["axis"] = [axis.get_attr("name") for axis in entity.get_attr("axis", data_type=list[Entity])]
             return cls, kwargs
 
     inside = '<axis name="x"/><axis name="y"/>'
     parse(f'<launch><spin_around times="3" speeds="1.0;2.5" speeds-sep=";">{inside}</spin_around></launch>')
-    assert seen == {"times": 3, "list": [1.0, 2.5], "axis": ["x", "y"]}
+    assert attributes == {"times": 3, "list": [1.0, 2.5], "axis": ["x", "y"]}
     with pytest.raises(TypeError, match="times"):
         parse('<launch><spin_around times="$(var a)"><axis name="x"/></spin_around></launch>')
 

@@ -120,8 +120,8 @@ class TestProcessNodes:
         self, launch, ros: PackageFinder, write: Write
     ) -> None:
         path = write("p.yaml", "/**: {ros__parameters: {a: 1}}")
-        gone = path.with_name("q.yaml")
-        node = Node(package="arm", executable="tell", output="screen", parameters=[str(gone), str(path)])
+        missing = path.with_name("q.yaml")
+        node = Node(package="arm", executable="tell", output="screen", parameters=[str(missing), str(path)])
         result = await launch(node, finder=ros)
         assert "q.yaml' does not exist" in result.err
         assert "warning[LAUNCH133]" in result.err
@@ -267,11 +267,11 @@ class TestHostedNodes:
 
     async def test_parameter_file_reaches_hosted_node(self, launch, write: Write) -> None:
         path = write("p.yaml", "robot_state_publisher: {ros__parameters: {publish_frequency: 30.0}}")
-        seen: list[float] = []
+        values_seen: list[float] = []
 
         def look(context: LaunchContext) -> None:
             for _, running in context.session.host._running.values():
-                seen.append(running.node.get_parameter("publish_frequency").value)
+                values_seen.append(running.node.get_parameter("publish_frequency").value)
 
         await launch(
             Node(
@@ -281,7 +281,7 @@ class TestHostedNodes:
             ),
             TimerAction(period=0.02, actions=[OpaqueFunction(function=look), Shutdown()]),
         )
-        assert seen == [30.0]
+        assert values_seen == [30.0]
 
     async def test_source_positions_of_xacro_command_are_kept(self, launch, write: Write) -> None:
         path = write("r.urdf", "\n\n" + URDF)

@@ -250,12 +250,12 @@ listener:
     ],
 )
 def test_typed_lists_are_parsed_in_xml_and_yaml(context: LaunchContext, kind: str, text: str, items: list[Any]) -> None:
-    for named in (f"list_of_{kind}", f"list[{kind}]"):
-        xml = f'<param name="p" value="{text}" value-sep="," type="{named}"/>'
+    for type_name in (f"list_of_{kind}", f"list[{kind}]"):
+        xml = f'<param name="p" value="{text}" value-sep="," type="{type_name}"/>'
         assert values(context, *parsed(f'<launch><node pkg="a" exec="b">{xml}</node></launch>')) == {"p": items}
         parts = text.split(",")
-        shown = [f"'{part}'" for part in parts] if kind == "str" else parts
-        tag = f"{{name: p, value: [{', '.join(shown)}], type: '{named}'}}"
+        expected_parts = [f"'{part}'" for part in parts] if kind == "str" else parts
+        tag = f"{{name: p, value: [{', '.join(expected_parts)}], type: '{type_name}'}}"
         yaml = f"launch:\n- node: {{pkg: a, exec: b, param: [{tag}]}}\n"
         assert values(context, *parsed(yaml)) == {"p": items}
 
