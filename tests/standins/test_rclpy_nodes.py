@@ -336,15 +336,15 @@ class TestNode:
                 return "mine"
 
         assert Router("router").graph() == "mine"
-        heard = []
+        texts = []
         node = Planner()
         node.declare_parameter("speed", 1.0)
-        node.create_subscription(String, "topic", heard.append, 10)
+        node.create_subscription(String, "topic", texts.append, 10)
         publisher = node.create_publisher(String, "topic", 10)
         timer = node.create_timer(0.001, lambda: publisher.publish(String(data="hi")))
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        while not heard:
+        while not texts:
             executor.spin_once(timeout_sec=SECONDS)
         node.destroy_timer(timer)
         assert node.count_subscribers("topic") == 1
