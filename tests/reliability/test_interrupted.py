@@ -124,7 +124,7 @@ WATCHED = """
 import runpy, sys
 from linkwright.process import interruption
 def watch():
-    print(*(each for each in sys.modules if each.partition(".")[0] == "linkwright"))
+    print(*(module for module in sys.modules if module.partition(".")[0] == "linkwright"))
     raise SystemExit
 interruption.end_on_interrupt = watch
 sys.argv[:] = sys.argv[1:]

@@ -97,7 +97,8 @@ class TestMessageSnapshots:
         ActionServer(node, Fibonacci, "fibonacci", execute)
         client = ActionClient(node, Fibonacci, "fibonacci")
         sent = client.send_goal_async(
-            Fibonacci.Goal(order=4), feedback_callback=lambda message: sequences.append(message.feedback.sequence.tolist())
+            Fibonacci.Goal(order=4),
+            feedback_callback=lambda message: sequences.append(message.feedback.sequence.tolist()),
         )
         rclpy.spin_until_future_complete(node, sent, timeout_sec=60)
         result = sent.result().get_result_async()
