@@ -41,7 +41,7 @@ def test_program_of_page_drives_to_red_object(tmp_path: Path):
     (program,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "follow_color.py"]
     names: dict[str, Any] = {"__name__": "follow_color"}
     exec(compile(program.text, "follow_color.py", "exec"), names)
-    with SeekingRobot(tmp_path, (2.0, 0.6), thing="red") as test:
+    with SeekingRobot(tmp_path, (2.0, 0.6), object_name="red") as test:
         test.init_rclpy()
         names["FollowColor"]()
         test.advance(20.0)

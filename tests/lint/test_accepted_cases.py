@@ -460,9 +460,9 @@ def test_small_soft_limit_overrun_of_gripper_is_accepted(codes_of, lower, upper,
 def test_collision_apart_hint_names_center_of_offset_mesh(tmp_path, origin, hint):
     corners = "".join(f"vertex {corner}\n" for corner in ("1 2 3", "1.1 2 3", "1 2 3.1"))
     (tmp_path / "a.stl").write_text(f"solid a\nfacet normal 0 1 0\nouter loop\n{corners}endloop\nendfacet\nendsolid\n")
-    seen = '<visual><origin xyz="0 0 0.1"/><geometry><mesh filename="a.stl"/></geometry></visual>'
+    visual = '<visual><origin xyz="0 0 0.1"/><geometry><mesh filename="a.stl"/></geometry></visual>'
     felt = f'<collision><origin xyz="{origin}"/><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
-    (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{seen}{felt}</link>'))
+    (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{visual}{felt}</link>'))
     (finding,) = examine(tmp_path / "r.urdf", settings=Settings(select=("LW412",))).diagnostics
     assert str(finding.hint).startswith(hint)
 
@@ -470,18 +470,18 @@ def test_collision_apart_hint_names_center_of_offset_mesh(tmp_path, origin, hint
 @pytest.mark.parametrize(("size", "codes"), [(60, ["LW433"]), (40, ["LW412", "LW413"])])
 def test_mesh_in_millimeters_is_reported_once(codes_of, size, codes):
     facet = f"facet normal 0 0 1\nouter loop\nvertex 5 0 0\nvertex {5 + size} 0 0\nvertex 5 {size} 0\nendloop\nendfacet"
-    seen = '<visual><geometry><mesh filename="a.stl"/></geometry></visual>'
+    visual = '<visual><geometry><mesh filename="a.stl"/></geometry></visual>'
     felt = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
-    text = robot(f'<link name="a">{seen}{felt}</link>')
+    text = robot(f'<link name="a">{visual}{felt}</link>')
     finding_codes = codes_of(text, "LW412", "LW413", "LW433", a_dot_stl=f"solid a\n{facet}\nendsolid a\n")
     assert sorted(finding_codes) == codes
 
 
 @pytest.mark.parametrize(("far", "codes"), [(25, ["LW405"]), (2.5, ["LW412"])])
 def test_far_shape_is_reported_once(codes_of, far, codes):
-    seen = f'<visual><origin xyz="{far} 0 0"/><geometry><box size="1 1 1"/></geometry></visual>'
+    visual = f'<visual><origin xyz="{far} 0 0"/><geometry><box size="1 1 1"/></geometry></visual>'
     felt = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
-    assert codes_of(robot(f'<link name="a">{seen}{felt}</link>'), "LW405", "LW412") == codes
+    assert codes_of(robot(f'<link name="a">{visual}{felt}</link>'), "LW405", "LW412") == codes
 
 
 @pytest.mark.parametrize(

@@ -141,8 +141,8 @@ async def connected(
     editor = Editor(client, package)
 
     @client.feature(types.CLIENT_REGISTER_CAPABILITY)
-    def _(asked: types.RegistrationParams) -> None:
-        for registration in asked.registrations:
+    def _(parameters: types.RegistrationParams) -> None:
+        for registration in parameters.registrations:
             if registrations is not None:
                 registrations.put_nowait(registration)
 

@@ -39,8 +39,8 @@ async def actions(editor, name: str, text: str, place: str, only: Sequence[str] 
     start = text.index(place)
     selected = TextPositions(text).range(start, start + len(place))
     context = types.CodeActionContext(editor.diagnostics.get(editor.uri(name), ()), only)
-    asked = types.CodeActionParams(editor.document(name), selected, context)
-    return await editor.client.text_document_code_action_async(asked)
+    parameters = types.CodeActionParams(editor.document(name), selected, context)
+    return await editor.client.text_document_code_action_async(parameters)
 
 
 def applied(text: str, edit: types.WorkspaceEdit) -> str:

@@ -28,15 +28,15 @@ def test_expansion_uri_contains_description_and_arguments(tmp_path: Path):
 
 async def test_editor_without_virtual_documents_gets_no_expansion(editor):
     editor.open(FILE)
-    asked = types.ImplementationParams(editor.document(FILE), at(MAIN, '<link name="base"'))
-    assert not await editor.client.text_document_implementation_async(asked)
+    parameters = types.ImplementationParams(editor.document(FILE), at(MAIN, '<link name="base"'))
+    assert not await editor.client.text_document_implementation_async(parameters)
 
 
 async def test_manifest_has_no_expansion(editor_with_pages):
     editor = editor_with_pages
     editor.open("package.xml")
-    asked = types.ImplementationParams(editor.document("package.xml"), at(MANIFEST, "<export>"))
-    assert not await editor.client.text_document_implementation_async(asked)
+    parameters = types.ImplementationParams(editor.document("package.xml"), at(MANIFEST, "<export>"))
+    assert not await editor.client.text_document_implementation_async(parameters)
 
 
 async def test_implementation_request_links_element_and_expansions(editor_with_pages):

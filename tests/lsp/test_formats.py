@@ -38,9 +38,9 @@ def opened(editor, name: str, text: str) -> types.TextDocumentPositionParams:
     ],
 )
 async def test_best_completion_comes_first(editor, name, text, first):
-    asked = opened(editor, name, text)
+    parameters = opened(editor, name, text)
     completions = await editor.client.text_document_completion_async(
-        types.CompletionParams(asked.text_document, asked.position)
+        types.CompletionParams(parameters.text_document, parameters.position)
     )
     typed = "float" if name.endswith(".msg") else ""
     shown = [item for item in sorted(completions, key=lambda item: item.sort_text) if item.label.startswith(typed)]
@@ -48,11 +48,13 @@ async def test_best_completion_comes_first(editor, name, text, first):
 
 
 async def test_hover_and_definition_of_launch_argument_are_found(editor):
-    asked = opened(editor, "launch/a.launch.xml", XML)
-    hover = await editor.client.text_document_hover_async(types.HoverParams(asked.text_document, asked.position))
+    parameters = opened(editor, "launch/a.launch.xml", XML)
+    hover = await editor.client.text_document_hover_async(
+        types.HoverParams(parameters.text_document, parameters.position)
+    )
     assert "Show it" in hover.contents.value
     (definition,) = await editor.client.text_document_definition_async(
-        types.DefinitionParams(asked.text_document, asked.position)
+        types.DefinitionParams(parameters.text_document, parameters.position)
     )
     assert definition.range == types.Range(types.Position(1, 13), types.Position(1, 14))
 
@@ -61,21 +63,25 @@ async def test_links_and_symbols_of_launch_files_are_found(editor):
     launch = editor.folder / "launch"
     launch.mkdir()
     (launch / "other.launch.py").write_text("")
-    asked = opened(editor, "launch/a.launch.xml", XML)
-    (link,) = await editor.client.text_document_document_link_async(types.DocumentLinkParams(asked.text_document))
+    parameters = opened(editor, "launch/a.launch.xml", XML)
+    (link,) = await editor.client.text_document_document_link_async(types.DocumentLinkParams(parameters.text_document))
     assert link.target == editor.uri("launch/other.launch.py")
-    asked = opened(editor, "launch/b.launch.py", PYTHON)
-    symbols = await editor.client.text_document_document_symbol_async(types.DocumentSymbolParams(asked.text_document))
+    parameters = opened(editor, "launch/b.launch.py", PYTHON)
+    symbols = await editor.client.text_document_document_symbol_async(
+        types.DocumentSymbolParams(parameters.text_document)
+    )
     assert [symbol.name for symbol in symbols] == ["arg speed", "Node arm"]
 
 
 async def test_references_and_highlights_of_launch_argument_are_found(editor):
-    asked = opened(editor, "launch/a.launch.xml", XML)
+    parameters = opened(editor, "launch/a.launch.xml", XML)
     references = await editor.client.text_document_references_async(
-        types.ReferenceParams(types.ReferenceContext(include_declaration=True), asked.text_document, asked.position)
+        types.ReferenceParams(
+            types.ReferenceContext(include_declaration=True), parameters.text_document, parameters.position
+        )
     )
     assert [place.range.start.line for place in references] == [1, 2]
     references = await editor.client.text_document_document_highlight_async(
-        types.DocumentHighlightParams(asked.text_document, asked.position)
+        types.DocumentHighlightParams(parameters.text_document, parameters.position)
     )
     assert [place.range.start.line for place in references] == [1, 2]

@@ -96,8 +96,8 @@ async def test_colors_are_found_and_written_in_file_notation(editor):
     editor.open(FILE, text)
     (color,) = await editor.client.text_document_document_color_async(types.DocumentColorParams(editor.document(FILE)))
     assert color.color == types.Color(1.0, 0.5, 0.0, 1.0)
-    asked = types.ColorPresentationParams(editor.document(FILE), types.Color(0.123456, 0.0, 1.0, 1.0), color.range)
-    (presented,) = await editor.client.text_document_color_presentation_async(asked)
+    parameters = types.ColorPresentationParams(editor.document(FILE), types.Color(0.123456, 0.0, 1.0, 1.0), color.range)
+    (presented,) = await editor.client.text_document_color_presentation_async(parameters)
     assert presented.text_edit == types.TextEdit(color.range, "0.1235 0 1 1")
 
 
@@ -182,8 +182,8 @@ async def test_macro_calls_have_hierarchy(editor):
 async def test_request_for_changing_text_is_rejected(editor):
     calls = "".join(f'<xacro:bar name="b{number}" length="${{{number} + 1}}"/>\n' for number in range(3000))
     editor.open(FILE, MAIN.replace("</robot>", calls + "</robot>"))
-    asked = editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), ALL))
-    task = asyncio.ensure_future(asked)
+    parameters = editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), ALL))
+    task = asyncio.ensure_future(parameters)
     await asyncio.sleep(0)  # the request is sent, then the change; the expansion takes much longer
     editor.change(FILE, MAIN)
     with pytest.raises(JsonRpcException, match="changed meanwhile"):

@@ -75,10 +75,10 @@ async def test_hover_explains_elements_attributes_and_names(editor):
 
 async def test_definition_is_found_in_included_file(editor):
     async def define(at: types.Position):
-        asked = types.DefinitionParams(editor.document(FILE), at)
+        parameters = types.DefinitionParams(editor.document(FILE), at)
         return [
             (definition.uri.rpartition("/")[2], definition.range.start.line)
-            for definition in await editor.client.text_document_definition_async(asked)
+            for definition in await editor.client.text_document_definition_async(parameters)
         ]
 
     assert await look(editor, "<xacro:ba", define) == [("parts.xacro", 1)]
@@ -138,8 +138,8 @@ async def test_hover_of_link_uses_facts_of_its_own_file(package):
         for name, mass in masses.items():
             editor.open(f"urdf/{name}.xacro")
             at = types.Position(0, arm.format(name, mass).index('"elbow"') + 2)
-            asked = types.HoverParams(editor.document(f"urdf/{name}.xacro"), at)
-            shown[name] = (await editor.client.text_document_hover_async(asked)).contents.value
+            parameters = types.HoverParams(editor.document(f"urdf/{name}.xacro"), at)
+            shown[name] = (await editor.client.text_document_hover_async(parameters)).contents.value
     assert "- mass 1.5 kg" in shown["first"]
     assert "- mass 2.5 kg" in shown["second"]
     assert "**link elbow**" not in shown["third"]
@@ -159,8 +159,8 @@ async def test_hover_of_material_shows_color(editor):
 async def test_completion_items_have_filter_text(editor):
     """Neovim offers an item with an edit and without a filter text whatever is typed."""
     editor.open(FILE, MAIN.replace("<link", "<li"))
-    asked = types.CompletionParams(editor.document(FILE), types.Position(2, 5))
-    completions = await editor.client.text_document_completion_async(asked)
+    parameters = types.CompletionParams(editor.document(FILE), types.Position(2, 5))
+    completions = await editor.client.text_document_completion_async(parameters)
     assert {item.filter_text for item in completions} >= {"link", "xacro:bar"}
 
 

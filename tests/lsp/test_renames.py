@@ -21,8 +21,8 @@ def at(text: str) -> types.Position:
 
 async def test_references_are_found_in_all_files(editor):
     editor.open(FILE)
-    asked = types.ReferenceParams(types.ReferenceContext(True), editor.document(FILE), at('<link name="b'))
-    references = await editor.client.text_document_references_async(asked)
+    parameters = types.ReferenceParams(types.ReferenceContext(True), editor.document(FILE), at('<link name="b'))
+    references = await editor.client.text_document_references_async(parameters)
     assert sorted(place.uri.rpartition("/")[2] for place in references) == ["arm.urdf.xacro", "parts.xacro"]
 
 
@@ -49,8 +49,8 @@ async def test_rename_to_existing_link_is_rejected_with_reason(editor):
 
 async def test_rename_during_change_is_rejected_or_uses_old_version(editor):
     editor.open(FILE)
-    asked = types.RenameParams(editor.document(FILE), at('<link name="b'), "trunk")
-    renaming = asyncio.ensure_future(editor.client.text_document_rename_async(asked))
+    parameters = types.RenameParams(editor.document(FILE), at('<link name="b'), "trunk")
+    renaming = asyncio.ensure_future(editor.client.text_document_rename_async(parameters))
     await asyncio.sleep(0)  # the request is sent before the change
     editor.change(FILE, "<!-- typed meanwhile -->\n" + MAIN)
     [outcome] = await asyncio.gather(renaming, return_exceptions=True)

@@ -31,8 +31,8 @@ async def showing_editor(package, tmp_path, monkeypatch) -> AsyncIterator[Editor
 
 async def address(editor: Editor, name: str, *, opens: bool = False) -> str:
     arguments = [editor.uri(name), opens]
-    asked = types.ExecuteCommandParams("linkwright.showRobot", arguments=arguments)
-    return await editor.client.workspace_execute_command_async(asked)
+    parameters = types.ExecuteCommandParams("linkwright.showRobot", arguments=arguments)
+    return await editor.client.workspace_execute_command_async(parameters)
 
 
 async def message(socket, kind: str, **wanted) -> dict:
@@ -58,8 +58,8 @@ async def test_page_follows_editor_and_opens_source_lines(showing_editor):
     shown: asyncio.Queue[types.ShowDocumentParams] = asyncio.Queue()
 
     @editor.client.feature(types.WINDOW_SHOW_DOCUMENT)
-    def _(asked: types.ShowDocumentParams) -> types.ShowDocumentResult:
-        shown.put_nowait(asked)
+    def _(parameters: types.ShowDocumentParams) -> types.ShowDocumentResult:
+        shown.put_nowait(parameters)
         return types.ShowDocumentResult(success=True)
 
     editor.open(FILE)
@@ -81,8 +81,8 @@ async def test_page_follows_editor_and_opens_source_lines(showing_editor):
         display = scene["display"]
         await socket.send_json({"type": "element_selected", "display": display, "kind": "joint", "name": "lower_joint"})
         async with asyncio.timeout(SECONDS):
-            asked = await shown.get()
-        assert (asked.uri, asked.selection.start.line) == (editor.uri(PARTS_FILE), 3)
+            request = await shown.get()
+        assert (request.uri, request.selection.start.line) == (editor.uri(PARTS_FILE), 3)
 
 
 @pytest.mark.slow
@@ -93,8 +93,8 @@ async def test_robot_edit_changes_unsaved_editor_text(showing_editor):
     edits: asyncio.Queue[types.WorkspaceEdit] = asyncio.Queue()
 
     @editor.client.feature(types.WORKSPACE_APPLY_EDIT)
-    def _(asked: types.ApplyWorkspaceEditParams) -> types.ApplyWorkspaceEditResult:
-        edits.put_nowait(asked.edit)
+    def _(parameters: types.ApplyWorkspaceEditParams) -> types.ApplyWorkspaceEditResult:
+        edits.put_nowait(parameters.edit)
         return types.ApplyWorkspaceEditResult(applied=True)
 
     text = PARTS.replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0 1"/><origin xyz="0 0 0.1"/>')

@@ -15,8 +15,8 @@ async def test_finding_code_links_to_rule_page(package):
     async with connected(package, OPENS_PAGES) as editor:
         editor.open(FILE, BROKEN)
         (finding,) = await editor.until(FILE, "XAC401")
-        asked = types.TextDocumentContentParams(finding.code_description.href)
-        page = await editor.client.workspace_text_document_content_async(asked)
+        parameters = types.TextDocumentContentParams(finding.code_description.href)
+        page = await editor.client.workspace_text_document_content_async(parameters)
         assert page.text.startswith("# XAC401: ")
 
 

@@ -44,8 +44,8 @@ async def test_formatting_matches_format_command(editor):
 
 async def test_malformed_xml_is_not_formatted(editor):
     editor.open(FILE, "<robot>")
-    asked = types.DocumentFormattingParams(editor.document(FILE), OPTIONS)
-    assert await editor.client.text_document_formatting_async(asked) is None
+    parameters = types.DocumentFormattingParams(editor.document(FILE), OPTIONS)
+    assert await editor.client.text_document_formatting_async(parameters) is None
 
 
 async def test_symbols_are_named_elements(editor):
@@ -86,8 +86,8 @@ async def test_code_action_fixes_finding(editor):
     editor.open("urdf/parts.xacro", text)
     (finding,) = await editor.until("urdf/parts.xacro", "LW221")
     context = types.CodeActionContext([finding], only=["quickfix", "source"])
-    asked = types.CodeActionParams(editor.document("urdf/parts.xacro"), finding.range, context)
-    fix, everything, ignoring = await editor.client.text_document_code_action_async(asked)
+    parameters = types.CodeActionParams(editor.document("urdf/parts.xacro"), finding.range, context)
+    fix, everything, ignoring = await editor.client.text_document_code_action_async(parameters)
     for action in (fix, everything):
         (change,) = action.edit.document_changes
         assert [edit.new_text for edit in change.edits] == ["0 0 1"]
@@ -98,12 +98,12 @@ async def test_code_action_fixes_finding(editor):
 
 async def test_build_files_have_no_symbols(editor):
     editor.open("CMakeLists.txt")
-    asked = types.DocumentSymbolParams(editor.document("CMakeLists.txt"))
-    assert await editor.client.text_document_document_symbol_async(asked) == []
+    parameters = types.DocumentSymbolParams(editor.document("CMakeLists.txt"))
+    assert await editor.client.text_document_document_symbol_async(parameters) == []
     (editor.folder / "notes.txt").write_text("")
     editor.open("notes.txt")
-    asked = types.DocumentSymbolParams(editor.document("notes.txt"))
-    assert await editor.client.text_document_document_symbol_async(asked) is None
+    parameters = types.DocumentSymbolParams(editor.document("notes.txt"))
+    assert await editor.client.text_document_document_symbol_async(parameters) is None
 
 
 async def test_unsupported_file_has_empty_list_of_colors(editor):
@@ -113,11 +113,11 @@ async def test_unsupported_file_has_empty_list_of_colors(editor):
     colors = editor.client.text_document_document_color_async(types.DocumentColorParams(document))
     assert [*await asyncio.wait_for(colors, SECONDS)] == []
     place = types.Range(types.Position(0, 0), types.Position(0, 3))
-    asked = types.ColorPresentationParams(document, types.Color(1.0, 0.0, 0.0, 1.0), place)
-    assert [*await asyncio.wait_for(editor.client.text_document_color_presentation_async(asked), SECONDS)] == []
+    parameters = types.ColorPresentationParams(document, types.Color(1.0, 0.0, 0.0, 1.0), place)
+    assert [*await asyncio.wait_for(editor.client.text_document_color_presentation_async(parameters), SECONDS)] == []
 
 
 async def test_single_line_file_has_no_folds(editor):
     editor.open("urdf/line.urdf", '<robot name="r"><!-- a --><link name="a"></link></robot>')
-    asked = types.FoldingRangeParams(editor.document("urdf/line.urdf"))
-    assert not await editor.client.text_document_folding_range_async(asked)
+    parameters = types.FoldingRangeParams(editor.document("urdf/line.urdf"))
+    assert not await editor.client.text_document_folding_range_async(parameters)

@@ -22,8 +22,8 @@ drive:
 async def test_parameter_file_is_completed_with_snippets(editor):
     editor.open(FILE, TEXT)
     where = place(TEXT, "    wheel_\n", len("    wheel_"))
-    asked = types.CompletionParams(editor.document(FILE), where)
-    items = await editor.client.text_document_completion_async(asked)
+    parameters = types.CompletionParams(editor.document(FILE), where)
+    items = await editor.client.text_document_completion_async(parameters)
     assert items[0].label == "wheel_separation"
     assert (items[0].detail, items[0].sort_text) == ("double = 0.0", "00000")
     assert items[0].text_edit.range == types.Range(types.Position(8, 4), types.Position(8, 10))
@@ -43,8 +43,8 @@ async def test_rviz_configuration_has_frame_completions_and_symbols(editor):
     text = "Visualization Manager:\n  Global Options:\n    Fixed Frame: \n"
     editor.open("a.rviz", text)
     document = editor.document("a.rviz")
-    asked = types.CompletionParams(document, place(text, "Frame: ", len("Frame: ")))
-    items = await editor.client.text_document_completion_async(asked)
+    parameters = types.CompletionParams(document, place(text, "Frame: ", len("Frame: ")))
+    items = await editor.client.text_document_completion_async(parameters)
     assert [item.label for item in items][:2] == ["base", "upper"]
     (manager,) = await editor.client.text_document_document_symbol_async(types.DocumentSymbolParams(document))
     assert manager.children[0].children[0].name == "Fixed Frame"

@@ -327,8 +327,8 @@ def test_threads_get_same_class(interface_package):
         interface_package.write("msg", f"Shared{number}", "std_msgs/Header header\nfloat64[] values\n")
     names = [f"{interface_package.name}/msg/Shared{number}" for number in range(20)] * 4
     with ThreadPoolExecutor(8) as pool:
-        asked = [pool.submit(copy_context().run, get_message, name) for name in names]
-        classes = [future.result() for future in asked]
+        futures = [pool.submit(copy_context().run, get_message, name) for name in names]
+        classes = [future.result() for future in futures]
     assert len(set(classes)) == 20
     assert all(issubclass(cls, Message) for cls in classes)
 

@@ -216,7 +216,7 @@ async def test_buffer_server_waits_until_goal_timeout(stage, send_lookup_goal, s
 
 async def test_buffer_server_goal_can_be_canceled(stage, send_lookup_goal):
     handle = await send_lookup_goal(60.0, target_frame="map", source_frame="base")
-    asked = handle.get_result_async()
+    future = handle.get_result_async()
     handle.cancel_goal_async()
     await stage.clock.advance(0.1)
-    assert (await asked).status == GoalStatus.CANCELED
+    assert (await future).status == GoalStatus.CANCELED

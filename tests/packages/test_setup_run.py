@@ -63,10 +63,10 @@ setup(data_files=generate())
 def tree(folder):
     for_all = []
     for root, folders, files in os.walk(folder):
-        folders[:] = [each for each in folders if each != '__pycache__']
-        kept = [os.path.join(root, each) for each in files if not each.endswith(('.pyc', '.txt'))]
-        if kept:
-            for_all.append((os.path.join('share', name, root), kept))
+        folders[:] = [entry for entry in folders if entry != '__pycache__']
+        paths = [os.path.join(root, entry) for entry in files if not entry.endswith(('.pyc', '.txt'))]
+        if paths:
+            for_all.append((os.path.join('share', name, root), paths))
     return for_all
 data = []
 for folder in ('launch', 'models'):
@@ -78,11 +78,11 @@ data = []
 folders = globbing.glob('models/*')
 for folder in folders:
     files = []
-    for each in globbing.glob(folder + '/*'):
-        if os.path.isdir(each):
-            folders.append(each)
+    for path in globbing.glob(folder + '/*'):
+        if os.path.isdir(path):
+            folders.append(path)
         else:
-            files.append(each)
+            files.append(path)
     data.append(('share/arm/' + folder, files))
 setup(data_files=[('share/arm', ['package.xml'])] + data)
 """,
@@ -94,8 +94,8 @@ def all_of(data, folder):
     if below == []:
         return
     else:
-        for each in below:
-            all_of(data, each)
+        for subfolder in below:
+            all_of(data, subfolder)
 for folder in ['launch/', 'none/', 'models/']:
     all_of(data, folder)
 setup(data_files=data)
@@ -113,7 +113,7 @@ with open(os.path.join(here, 'package.xml')) as file:
     text = file.read()
 folders = {'config': 'params', 'description/urdf': 'urdf'}
 setup(long_description=text, data_files=[
-    (f'share/{name}/{to}', [os.path.join(here, of, each) for each in os.listdir(os.path.join(here, of))])
+    (f'share/{name}/{to}', [os.path.join(here, of, entry) for entry in os.listdir(os.path.join(here, of))])
     for of, to in folders.items()
 ])
 """,
@@ -191,7 +191,7 @@ def test_data_files_match_python_run(style: str, package: Path, monkeypatch: pyt
     [
         "[os.path.join(r, f) for r, _, fs in os.walk('/etc') for f in fs]",
         "[os.path.join('..', f) for f in os.listdir('..')]",
-        "glob('../*') + glob('/etc/*') + [each for each in ()]",
+        "glob('../*') + glob('/etc/*') + [path for path in ()]",
         "[str(p) for p in Path('..').glob('*')]",
         "[str(p) for p in Path('models').glob('../../*')]",
         "[().__class__.__base__.__subclasses__()]",

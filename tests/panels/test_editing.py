@@ -71,9 +71,9 @@ async def parts(client: Any, link: str) -> dict[str, Any]:
 
 
 async def preview(client: Any, number: int, part: str, name: str, **fields: Any) -> dict[str, Any]:
-    asked = {"index": 0, "xyz": None, "rpy": None, "together": False, **fields}
+    question = {"index": 0, "xyz": None, "rpy": None, "together": False, **fields}
     return await ask(
-        client, "preview_edit", "edit_preview", number=number, display=DISPLAY, part=part, name=name, **asked
+        client, "preview_edit", "edit_preview", number=number, display=DISPLAY, part=part, name=name, **question
     )
 
 

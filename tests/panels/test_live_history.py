@@ -71,7 +71,7 @@ async def test_playback_of_history_reaches_live():
 async def test_subscription_during_pause_receives_past_latched_message():
     async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
         world.describe("<robot name='early'/>")
-        heard: list[str] = []
+        texts: list[str] = []
         node = world.viewer.context.node
         node.create_subscription("std_msgs/msg/String", "robot_description", lambda _: None, DESCRIPTION_QOS)
         await world.settle()
@@ -79,15 +79,15 @@ async def test_subscription_during_pause_receives_past_latched_message():
         await client.until("playhead", live=False)
         world.describe("<robot name='late'/>")
         node.create_subscription(
-            "std_msgs/msg/String", "robot_description", lambda message: heard.append(message.data), DESCRIPTION_QOS
+            "std_msgs/msg/String", "robot_description", lambda message: texts.append(message.data), DESCRIPTION_QOS
         )
         await asyncio.sleep(1.0)
         await world.settle()
-        assert heard == ["<robot name='early'/>"]
+        assert texts == ["<robot name='early'/>"]
         await client.send("go_live")
         await client.until("playhead", live=True)
         await world.settle()
-        assert heard[-1] == "<robot name='late'/>"
+        assert texts[-1] == "<robot name='late'/>"
 
 
 async def test_pending_messages_are_stored_when_history_is_read():

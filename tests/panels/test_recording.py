@@ -112,13 +112,13 @@ async def test_pages_share_recording_that_outlives_its_page():
         async with page(world.viewer) as other:
             async with page(world.viewer) as client:
                 state = await start_recording(client)
-                while (seen := await other.until("recording_state"))["path"] != state["path"]:
+                while (recording_state := await other.until("recording_state"))["path"] != state["path"]:
                     pass
                 await other.send("record_topics", topics=[])
             world.move_arm(1.0)
             await world.settle()
             await asyncio.sleep(2.0)
-            assert (await other.until("recording_state"))["path"] == seen["path"]
+            assert (await other.until("recording_state"))["path"] == recording_state["path"]
         async with page(world.viewer) as late:
             assert (await late.until("recording_state"))["path"] == state["path"]
             world.move_arm(2.0)

@@ -90,10 +90,10 @@ def config() -> RvizConfig:
 
 
 def listen(world, kind: str, topic: str) -> list:
-    heard: list = []
+    messages: list = []
     node = world.graph.create_node("listener")
-    node.create_subscription(kind, topic, heard.append, 10)
-    return heard
+    node.create_subscription(kind, topic, messages.append, 10)
+    return messages
 
 
 async def test_tools_publish_poses_and_points_in_fixed_frame(config):
@@ -133,11 +133,11 @@ async def test_tool_topic_can_be_changed_and_invalid_topic_is_rejected(config):
         assert (await second.until("tool_property_changed"))["value"] == "/elsewhere"
         await first.send("set_tool_property", id=topic, value="not a name!")
         assert (await first.until("tool_property_changed", value="/elsewhere"))["id"] == topic
-        heard = listen(world, "geometry_msgs/msg/PoseStamped", "/elsewhere")
+        poses = listen(world, "geometry_msgs/msg/PoseStamped", "/elsewhere")
         await first.send("pose_chosen", tool=goal["id"], x=3.0, y=4.0, yaw=0.0)
-        await eventually(lambda: heard)
+        await eventually(lambda: poses)
         await world.settle()
-    assert len(heard) == 1
+    assert len(poses) == 1
     assert tools_of(config)[1]["Topic"] == "/elsewhere"
 
 

@@ -76,8 +76,8 @@ def test_ctrl_c_after_last_await_is_raised() -> None:
 
 
 def test_existing_sigint_handler_is_kept() -> None:
-    heard = []
-    before = signal.signal(signal.SIGINT, lambda *_: heard.append("mine"))
+    texts = []
+    before = signal.signal(signal.SIGINT, lambda *_: texts.append("mine"))
     try:
 
         async def work() -> str:
@@ -88,7 +88,7 @@ def test_existing_sigint_handler_is_kept() -> None:
         assert run_coroutine(work, lambda: None) == "went on"
     finally:
         signal.signal(signal.SIGINT, before)
-    assert heard == ["mine"]
+    assert texts == ["mine"]
 
 
 def test_remaining_tasks_are_canceled_before_loop_closes() -> None:

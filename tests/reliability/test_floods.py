@@ -104,8 +104,8 @@ def test_blocking_subscriber_does_not_delay_others(machine: Machine) -> None:
     awake.wait_for("number", times=first[0] + 400)
     awake.wait_for("other", times=first[1] + 400)
     for word in ("number", "other"):
-        heard = [int(line.split()[1]) for line in tuple(awake.lines) if line.startswith(word + " ")]
-        assert heard == list(range(heard[0], heard[0] + len(heard)))
+        numbers = [int(line.split()[1]) for line in tuple(awake.lines) if line.startswith(word + " ")]
+        assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
     assert not talker.count("held up")
     assert sleeper.count("asleep") == 1
 

@@ -88,19 +88,19 @@ def test_interrupt_restores_terminal_settings(machine: Machine, delay: float) ->
             cwd=machine.folder,
             start_new_session=True,
         )
-        heard: list[bytes] = []
-        reader = threading.Thread(target=_drain, args=(main, heard), daemon=True)
+        chunks: list[bytes] = []
+        reader = threading.Thread(target=_drain, args=(main, chunks), daemon=True)
         reader.start()
         try:
             # Until it is in the foreground, nobody gets the Ctrl-C.
             wait_until(lambda main=main, process=process: os.tcgetpgrp(main) == process.pid)
-            wait_until(lambda heard=heard: BEGUN.encode() in b"".join(heard))
+            wait_until(lambda heard=chunks: BEGUN.encode() in b"".join(heard))
             time.sleep(delay)
             os.write(main, b"\x03")
             status = process.wait(SECONDS)
         finally:
             process.kill()
-        text = b"".join(heard).decode(errors="replace")
+        text = b"".join(chunks).decode(errors="replace")
         assert status in (130, 0), text
         after = termios.tcgetattr(terminal)
         assert after[:4] == before[:4], text
@@ -124,7 +124,7 @@ WATCHED = """
 import runpy, sys
 from linkwright.process import interruption
 def watch():
-    print(*(each for each in sys.modules if each.partition(".")[0] == "linkwright"))
+    print(*(module for module in sys.modules if module.partition(".")[0] == "linkwright"))
     raise SystemExit
 interruption.end_on_interrupt = watch
 sys.argv[:] = sys.argv[1:]
@@ -159,10 +159,10 @@ def test_interrupt_during_imports_prints_no_traceback(machine: Machine, words: t
         assert not traceback_in(running.text), running.text
 
 
-def _drain(main: int, heard: list[bytes]) -> None:
+def _drain(main: int, chunks: list[bytes]) -> None:
     with suppress(OSError):
         while data := os.read(main, 4096):
-            heard.append(data)
+            chunks.append(data)
 
 
 @pytest.mark.parametrize(

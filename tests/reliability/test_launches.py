@@ -61,7 +61,7 @@ def test_launch_starts_five_hundred_nodes(machine: Machine) -> None:
                 self.create_subscription(TFMessage, "/tf_static", self.hear, lasting)
 
             def hear(self, message):
-                self.frames.update(each.child_frame_id for each in message.transforms)
+                self.frames.update(transform.child_frame_id for transform in message.transforms)
                 say("frames", len(self.frames))
         """
     )

@@ -270,7 +270,7 @@ PARAMETERS = [{"name": "rate", "default": "10"}, {"name": "port", "default": "tt
 
 
 def declare(parameters):
-    return [DeclareLaunchArgument(each["name"], default_value=each["default"]) for each in parameters]
+    return [DeclareLaunchArgument(parameter["name"], default_value=parameter["default"]) for parameter in parameters]
 
 
 def generate_launch_description():

@@ -21,8 +21,8 @@ from linkwright.rviz.config.schema import PropertySpec
 for package in (displays, config):
     for module in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
         importlib.import_module(module.name)
-found = [each for each in gc.get_objects() if isinstance(each, PropertySpec) and each.kind == "enum"]
-print(json.dumps([option for spec in found for option in spec.options]))
+specs = [spec for spec in gc.get_objects() if isinstance(spec, PropertySpec) and spec.kind == "enum"]
+print(json.dumps([option for spec in specs for option in spec.options]))
 """
 """Some rows are made by functions, and only the interpreter knows them all, where nothing is frozen."""
 

@@ -147,11 +147,11 @@ async def test_world_poses_are_computed_only_for_subscribers(plugin, monkeypatch
         monkeypatch.setattr(server.simulation, "refresh", lambda: (computed.append(server.simulation.time), refresh()))
         server.advance(SECOND // 10)
         assert not computed
-        heard = Recording(graph, server.node, "/odom")
+        recording = Recording(graph, server.node, "/odom")
         await graph.settle()
         server.advance(SECOND // 10)
         await graph.settle()
-        assert heard.last.header.stamp.nanosec == 300_000_000
+        assert recording.last.header.stamp.nanosec == 300_000_000
 
 
 async def test_world_with_many_drives_is_compiled_once():

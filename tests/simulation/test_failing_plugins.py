@@ -106,9 +106,9 @@ async def test_failing_plugin_stops_without_affecting_others(where):
         transport = RemoteTransport(graph)
         commander = RemotePublisher(transport, "/told", msg_type=STRING)
         commander.send(get_message(STRING)())
-        asked = server.node.create_client(get_service(TRIGGER), "/asked")
-        if asked.service_is_ready():
-            asked.call_async(get_service(TRIGGER).Request())
+        client = server.node.create_client(get_service(TRIGGER), "/asked")
+        if client.service_is_ready():
+            client.call_async(get_service(TRIGGER).Request())
         await _pass(server, graph)
         if transport.lose is not None:
             commander.be_lost()
@@ -139,12 +139,12 @@ async def _pass(server, graph) -> None:
 
 async def test_pending_command_of_removed_plugin_is_dropped():
     async with served(GROUND, robot(failing(""))) as (server, graph, log):
-        heard: list = []
+        messages: list = []
         (faulty,) = server.plugins("mbot")
-        faulty.node.post(lambda: heard.append(1))
+        faulty.node.post(lambda: messages.append(1))
         server.delete("mbot")
         await _pass(server, graph)
-        assert not heard
+        assert not messages
         assert not log
 
 

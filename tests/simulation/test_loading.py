@@ -146,9 +146,9 @@ async def test_plugins_restart_only_with_changed_models(tmp_path):
         await load(session, tmp_path, robot(joint_states(more="<ros><namespace>/new</namespace></ros>")))
         (plugin,) = server.plugins("mbot")
         assert plugin not in before
-        heard = session.hear("sensor_msgs/msg/JointState", "/new/joint_states")
+        messages = session.hear("sensor_msgs/msg/JointState", "/new/joint_states")
         await steps(session, 1000)
-        await eventually(lambda: bool(heard))
+        await eventually(lambda: bool(messages))
 
 
 @pytest.mark.parametrize(
@@ -235,7 +235,7 @@ async def test_unchanged_drive_keeps_odometry_and_command(tmp_path, drive):
     async with simulator(tmp_path, robot(drive)) as session:
         simulation = session.simulator.server.simulation
         command = session.node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
-        heard = session.hear("nav_msgs/msg/Odometry", "/odom")
+        messages = session.hear("nav_msgs/msg/Odometry", "/odom")
         twist = get_message("geometry_msgs/msg/Twist")()
         twist.linear.x = 0.5
         command.publish(twist)
@@ -243,11 +243,11 @@ async def test_unchanged_drive_keeps_odometry_and_command(tmp_path, drive):
         before = simulation.model_pose("mbot")[0]
         assert before > 0.5
         await load(session, tmp_path, robot(drive, MAST))
-        heard.clear()
+        messages.clear()
         await steps(session, 1000)
-        await eventually(lambda: bool(heard))
+        await eventually(lambda: bool(messages))
         assert simulation.model_pose("mbot")[0] > before + 0.3
-        assert heard[-1].pose.pose.position.x == pytest.approx(simulation.model_pose("mbot")[0], abs=0.05)
+        assert messages[-1].pose.pose.position.x == pytest.approx(simulation.model_pose("mbot")[0], abs=0.05)
 
 
 async def test_changed_drive_starts_again(tmp_path):
@@ -257,9 +257,9 @@ async def test_changed_drive_starts_again(tmp_path):
         twist.linear.x = 0.5
         command.publish(twist)
         await steps(session, 2000)
-        heard = session.hear("nav_msgs/msg/Odometry", "/odom")
+        messages = session.hear("nav_msgs/msg/Odometry", "/odom")
         await load(session, tmp_path, robot(CLASSIC.replace("0.38", "0.4"), MAST))
-        heard.clear()
+        messages.clear()
         await steps(session, 1000)
-        await eventually(lambda: bool(heard))
-        assert abs(heard[-1].pose.pose.position.x) < 0.1
+        await eventually(lambda: bool(messages))
+        assert abs(messages[-1].pose.pose.position.x) < 0.1

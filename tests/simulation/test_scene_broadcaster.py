@@ -47,8 +47,10 @@ async def test_dynamic_poses_list_models_before_links():
 async def test_all_poses_include_visuals_and_lights():
     light = '<light name="sun" type="directional"><pose>0 0 10 0 0 0</pose></light>'
     crate = box("crate", "3 0 0.5 0 0 0", "1 1 1")
-    seen = '<visual name="lid"><pose>0 0 0.5 0 0 0</pose><geometry><box><size>1 1 0.1</size></box></geometry></visual>'
-    async with served(GROUND, crate.replace("</link>", f"{seen}</link>"), light, BROADCASTER) as (server, graph, log):
+    visual = (
+        '<visual name="lid"><pose>0 0 0.5 0 0 0</pose><geometry><box><size>1 1 0.1</size></box></geometry></visual>'
+    )
+    async with served(GROUND, crate.replace("</link>", f"{visual}</link>"), light, BROADCASTER) as (server, graph, log):
         recording = Recording(graph, server.node, ALL)
         server.advance(SECOND // 10)
         await graph.settle()

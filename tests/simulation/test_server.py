@@ -41,9 +41,9 @@ class Simulated:
 
     def hear(self, kind: str, topic: str, qos: QoSProfile | int = 100):
         """The messages of a topic, as they come."""
-        heard: list = []
-        self.node.create_subscription(get_message(kind), topic, heard.append, qos)
-        return heard
+        messages: list = []
+        self.node.create_subscription(get_message(kind), topic, messages.append, qos)
+        return messages
 
 
 @asynccontextmanager
@@ -150,11 +150,11 @@ async def test_paused_start_logs_how_to_unpause(tmp_path, pause):
 async def test_simulation_runs_in_thread_and_ends_after_duration(tmp_path):
     async with simulator(tmp_path, robot(joint_states()), pause=False, seconds=1.0) as session:
         states = session.hear("simulation_interfaces/msg/SimulationState", "/simulation_state", LATCHED)
-        heard = session.hear("sensor_msgs/msg/JointState", "/joint_states")
+        messages = session.hear("sensor_msgs/msg/JointState", "/joint_states")
         await eventually(session.simulator.finished.done)
         assert session.simulator.server.simulation.time == 1_000_000_000
         await eventually(lambda: bool(states) and states[-1].state == states[-1].STATE_PAUSED)
-        await eventually(lambda: bool(heard) and heard[-1].header.stamp.sec == 1)
+        await eventually(lambda: bool(messages) and messages[-1].header.stamp.sec == 1)
         answer = await session.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
         assert answer.result.result == answer.result.RESULT_OK
 
@@ -326,18 +326,18 @@ async def test_robot_can_be_spawned_at_start(tmp_path):
 
 
 async def test_findings_of_model_last_while_it_is_in_world(tmp_path):
-    seen = URDF.replace("collision>", "visual>")
-    async with simulator(tmp_path, robot_description=seen, robot_name="first", pause=False) as session:
+    description = URDF.replace("collision>", "visual>")
+    async with simulator(tmp_path, robot_description=description, robot_name="first", pause=False) as session:
         server = session.simulator.server
         messages: list[list[str]] = []
         server.on_findings.append(lambda: messages.append([finding.code for finding in server.findings]))
         [finding] = server.findings
         assert (finding.code, finding.span.line) == ("SIM143", 1)
-        session.simulator.services.replace_model(seen.replace('mass value="1"', 'mass value="2"'), "first")
+        session.simulator.services.replace_model(description.replace('mass value="1"', 'mass value="2"'), "first")
         await eventually(lambda: messages == [[], ["SIM143"]])
         session.simulator.services.replace_model(URDF, "first")
         await eventually(lambda: messages[2:] == [[]])
-        await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="second", xml=seen)
+        await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="second", xml=description)
         assert [finding.code for finding in server.findings] == ["SIM143"]
         await session.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="second")
         assert server.findings == []

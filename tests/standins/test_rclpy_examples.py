@@ -41,22 +41,22 @@ class TestMessageSnapshots:
     """Nothing that is done to a message after it was sent, or after it came, is seen by others."""
 
     def test_reused_message_is_published_as_snapshot(self, node):
-        heard, message = [], String()
-        node.create_subscription(String, "topic", lambda message: heard.append(message.data), 10)
+        texts, message = [], String()
+        node.create_subscription(String, "topic", lambda message: texts.append(message.data), 10)
         publisher = node.create_publisher(String, "topic", 10)
         for word in ("one", "two", "three"):
             message.data = word
             publisher.publish(message)
         for _ in range(3):
             rclpy.spin_once(node, timeout_sec=SECONDS)
-        assert heard == ["one", "two", "three"]
+        assert texts == ["one", "two", "three"]
 
     def test_subscription_callbacks_receive_separate_copies(self, node):
-        heard = []
+        sequences = []
 
         def callback(message):
             message.data.append(len(message.data))
-            heard.append(message.data.tolist())
+            sequences.append(message.data.tolist())
 
         for _ in range(2):
             node.create_subscription(Int64MultiArray, "topic", callback, 10)
@@ -64,7 +64,7 @@ class TestMessageSnapshots:
         node.create_publisher(Int64MultiArray, "topic", 10).publish(sent)
         for _ in range(2):
             rclpy.spin_once(node, timeout_sec=SECONDS)
-        assert heard == [[7, 1], [7, 1]]
+        assert sequences == [[7, 1], [7, 1]]
         assert sent.data.tolist() == [7]
 
     def test_reused_request_is_sent_as_snapshot(self, node):
@@ -83,7 +83,7 @@ class TestMessageSnapshots:
         assert [future.result().sum for future in futures] == [0, 1, 2]
 
     def test_growing_feedback_is_sent_as_snapshot(self, node):
-        heard = []
+        sequences = []
 
         def execute(goal_handle):
             feedback = Fibonacci.Feedback()
@@ -97,13 +97,14 @@ class TestMessageSnapshots:
         ActionServer(node, Fibonacci, "fibonacci", execute)
         client = ActionClient(node, Fibonacci, "fibonacci")
         sent = client.send_goal_async(
-            Fibonacci.Goal(order=4), feedback_callback=lambda message: heard.append(message.feedback.sequence.tolist())
+            Fibonacci.Goal(order=4),
+            feedback_callback=lambda message: sequences.append(message.feedback.sequence.tolist()),
         )
         rclpy.spin_until_future_complete(node, sent, timeout_sec=60)
         result = sent.result().get_result_async()
         rclpy.spin_until_future_complete(node, result, timeout_sec=60)
         assert result.result().result.sequence.tolist() == [0, 1, 1, 2, 3]
-        assert heard == [[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]]
+        assert sequences == [[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]]
 
 
 class PriorityExecutor(Executor):
@@ -280,10 +281,10 @@ class TestNodeBasics:
         assert Parameter[bool].__args__ == (bool,)
 
     def test_content_filter_selects_messages(self, node):
-        heard = []
+        texts = []
         options = ContentFilterOptions(filter_expression="data = %0", expression_parameters=["'yes'"])
         subscription = node.create_subscription(
-            String, "topic", lambda message: heard.append(message.data), 10, content_filter_options=options
+            String, "topic", lambda message: texts.append(message.data), 10, content_filter_options=options
         )
         publisher = node.create_publisher(String, "topic", 10)
         assert subscription.is_cft_enabled
@@ -292,9 +293,9 @@ class TestNodeBasics:
             publisher.publish(String(data=text))
         subscription.set_content_filter("", [])
         publisher.publish(String(data="all"))
-        while len(heard) < 2:
+        while len(texts) < 2:
             rclpy.spin_once(node, timeout_sec=60.0)
-        assert heard == ["yes", "all"]
+        assert texts == ["yes", "all"]
         assert not subscription.is_cft_enabled
 
     def test_context_manager_initializes_context(self):

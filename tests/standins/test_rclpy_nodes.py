@@ -56,13 +56,13 @@ class Counter(Node):
 class Listener(Node):
     def __init__(self, wanted):
         super().__init__("listener")
-        self.heard, self.wanted, self.done = [], wanted, Future()
+        self.heard, self.wanted, self.finished = [], wanted, Future()
         self.subscription = self.create_subscription(String, "topic", self.listener_callback, 10)
 
     def listener_callback(self, msg):
         self.heard.append(msg.data)
         if len(self.heard) == self.wanted:
-            self.done.set_result(None)
+            self.finished.set_result(None)
 
 
 @pytest.fixture(autouse=True)
@@ -90,7 +90,7 @@ class TestMinimal:
         talker, listener = Counter(), Listener(5)
         executor.add_node(talker)
         executor.add_node(listener)
-        executor.spin_until_future_complete(listener.done, timeout_sec=SECONDS)
+        executor.spin_until_future_complete(listener.finished, timeout_sec=SECONDS)
         assert listener.heard == [f"Hello {number}" for number in range(5)]
         executor.shutdown()
         talker.destroy_node()
@@ -237,7 +237,7 @@ class TestMinimal:
         with MultiThreadedExecutor(num_threads=4) as executor:
             executor.add_node(talker)
             executor.add_node(listener)
-            executor.spin_until_future_complete(listener.done, timeout_sec=SECONDS)
+            executor.spin_until_future_complete(listener.finished, timeout_sec=SECONDS)
         assert len(listener.heard) >= 3
 
     def test_guard_condition_calls_callback(self, node):
@@ -336,15 +336,15 @@ class TestNode:
                 return "mine"
 
         assert Router("router").graph() == "mine"
-        heard = []
+        texts = []
         node = Planner()
         node.declare_parameter("speed", 1.0)
-        node.create_subscription(String, "topic", heard.append, 10)
+        node.create_subscription(String, "topic", texts.append, 10)
         publisher = node.create_publisher(String, "topic", 10)
         timer = node.create_timer(0.001, lambda: publisher.publish(String(data="hi")))
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        while not heard:
+        while not texts:
             executor.spin_once(timeout_sec=SECONDS)
         node.destroy_timer(timer)
         assert node.count_subscribers("topic") == 1

@@ -88,8 +88,8 @@ def test_recorder_canceled_before_start_ends_at_once(tmp_path) -> None:
 
 
 def test_player_plays_until_canceled(node, tmp_path) -> None:
-    heard: list[str] = []
-    node.create_subscription(String, "/other_words", lambda message: heard.append(message.data), 10)
+    texts: list[str] = []
+    node.create_subscription(String, "/other_words", lambda message: texts.append(message.data), 10)
     options = rosbag2_py.PlayOptions()
     options.loop = True
     options.topic_remapping_options = ["--ros-args", "--remap", "/words:=/other_words"]
@@ -99,7 +99,7 @@ def test_player_plays_until_canceled(node, tmp_path) -> None:
 
     def has_heard_all() -> bool:
         rclpy.spin_once(node, timeout_sec=0.01)
-        return set(heard) >= set(WORDS)
+        return set(texts) >= set(WORDS)
 
     try:
         wait_until(has_heard_all)

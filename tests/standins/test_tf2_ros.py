@@ -75,7 +75,7 @@ class FrameListener(Node):
         self.target_frame = self.declare_parameter("target_frame", "turtle").get_parameter_value().string_value
         self.tf_buffer = Buffer()
         self.tf_listener = TransformListener(self.tf_buffer, self)
-        self.commands, self.misses, self.done = [], [], rclpy.task.Future()
+        self.commands, self.misses, self.finished = [], [], rclpy.task.Future()
         self.timer = self.create_timer(0.01, self.on_timer)
 
     def on_timer(self):
@@ -89,7 +89,7 @@ class FrameListener(Node):
         rotation = transform.transform.rotation
         command.angular.z = euler_from_quaternion([rotation.x, rotation.y, rotation.z, rotation.w])[2]
         self.commands.append(command)
-        self.done.set_result(None)
+        self.finished.set_result(None)
 
 
 class TestTopics:
@@ -98,7 +98,7 @@ class TestTopics:
         listener, publisher = FrameListener(), FramePublisher()
         executor.add_node(listener)
         executor.add_node(publisher)
-        executor.spin_until_future_complete(listener.done, timeout_sec=60.0)
+        executor.spin_until_future_complete(listener.finished, timeout_sec=60.0)
         assert listener.commands[0].linear.x == pytest.approx(2.0)
         assert listener.commands[0].angular.z == pytest.approx(math.pi / 2)
         assert all('"world" passed to lookupTransform' in miss for miss in listener.misses)

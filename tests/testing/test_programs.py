@@ -176,7 +176,7 @@ ACTION = """
     threading.Thread(target=executor.spin, daemon=True).start()
     client = ActionClient(node, Fibonacci, "fibonacci")
     client.wait_for_server()
-    done = threading.Event()
+    finished = threading.Event()
 
     def say(text):
         publisher.publish(String(data=f"{time.monotonic():.1f} {text}"))
@@ -186,12 +186,12 @@ ACTION = """
 
     def on_result(future):
         say(list(future.result().result.sequence))
-        done.set()
+        finished.set()
 
     client.send_goal_async(
         Fibonacci.Goal(order=4), feedback_callback=lambda feedback: say(len(feedback.feedback.sequence))
     ).add_done_callback(on_goal)
-    done.wait()
+    finished.wait()
     say("end")
 """
 

@@ -11,7 +11,7 @@ import asyncio, sys
 from tests.viewer.scene import open_world, page
 
 async def main():
-    async with open_world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.opened()
         print(*sys.modules)
         await client.send("watch_node_graph", watched=True)

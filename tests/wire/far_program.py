@@ -39,8 +39,8 @@ class FarProgram:
 
     def hear(self, topic: str, qos: str) -> None:
         """Take down the numbers of messages."""
-        heard = self.heard.setdefault(topic, [])
-        self.node.create_subscription(Image, topic, lambda message: heard.append(message.width), QOS[qos])
+        texts = self.heard.setdefault(topic, [])
+        self.node.create_subscription(Image, topic, lambda message: texts.append(message.width), QOS[qos])
 
     def offer(self, topic: str, qos: str) -> None:
         """Have a publisher."""

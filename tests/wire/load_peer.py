@@ -82,14 +82,16 @@ class LoadPeer(Node):
         assert client.wait_for_server(SECONDS)
         results = []
         for number in range(count):
-            heard = threading.Event()
+            feedback_event = threading.Event()
             order = LONG if number < count - 1 else 5
-            sent = client.send_goal_async(Fibonacci.Goal(order=order), feedback_callback=lambda _, on=heard: on.set())
+            sent = client.send_goal_async(
+                Fibonacci.Goal(order=order), feedback_callback=lambda _, on=feedback_event: on.set()
+            )
             goal = result_of(sent)
             assert goal.accepted
             results.append(goal.get_result_async())
             if order == LONG:
-                assert heard.wait(SECONDS)
+                assert feedback_event.wait(SECONDS)
             if number % 3 == 2 and order == LONG:
                 assert len(result_of(goal.cancel_goal_async()).goals_canceling) == 1
         names = {getattr(GoalStatus, f"STATUS_{name}"): name for name in ("SUCCEEDED", "ABORTED", "CANCELED")}
@@ -145,18 +147,18 @@ def is_right(number: int, tag: str, answer: Any) -> bool:
     return [value.integer_value for value in answer.values] == [number % 10]
 
 
-def flip(asked: Any, response: Any) -> Any:
-    response.success = not asked.data
+def flip(request: Any, response: Any) -> Any:
+    response.success = not request.data
     return response
 
 
-def basic(asked: Any, response: Any) -> Any:
-    response.int64_value, response.string_value = -asked.int64_value, f"{asked.string_value} {asked.int64_value}"
+def basic(request: Any, response: Any) -> Any:
+    response.int64_value, response.string_value = -request.int64_value, f"{request.string_value} {request.int64_value}"
     return response
 
 
-def camera(asked: Any, response: Any) -> Any:
-    response.success, response.status_message = True, asked.camera_info.distortion_model
+def camera(request: Any, response: Any) -> Any:
+    response.success, response.status_message = True, request.camera_info.distortion_model
     return response
 
 

@@ -39,11 +39,11 @@ class QosPeer(Node):
         self._out[topic] = self.create_publisher(String, topic, profile(qos), event_callbacks=callbacks)
 
     def subscription(self, topic: str, qos: dict[str, Any]) -> None:
-        heard = self._heard.setdefault(topic, [])
+        texts = self._heard.setdefault(topic, [])
         self.create_subscription(
             String,
             topic,
-            lambda text: heard.append(text.data),
+            lambda text: texts.append(text.data),
             profile(qos),
             event_callbacks=self._callbacks(SubscriptionEventCallbacks, topic),
         )

@@ -51,12 +51,12 @@ class RealPeer:
             incompatible_qos=lambda _: self.mismatched.append("subscription")
         )
         for kind, (message_type, qos) in KINDS.items():
-            heard = self.heard.setdefault(f"{kind}to_ros", [])
+            texts = self.heard.setdefault(f"{kind}to_ros", [])
             self.publishers[kind] = self.node.create_publisher(
                 message_type, f"{kind}from_ros", qos, event_callbacks=publisher_events
             )
             self.node.create_subscription(
-                message_type, f"{kind}to_ros", heard.append, qos, event_callbacks=subscription_events
+                message_type, f"{kind}to_ros", texts.append, qos, event_callbacks=subscription_events
             )
         self.node.create_service(SetBool, "flip", flip)
         self.node.create_service(SetCameraInfo, "echo", echo)

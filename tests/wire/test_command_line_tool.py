@@ -35,8 +35,8 @@ def tool(domain, monkeypatch):
 
 
 def test_cyclonedds_ps_shows_participant(processes, tool, domain):
-    us = processes("ours")
-    us.node.create_publisher(JointState, "joint_states", 10)
+    process = processes("ours")
+    process.node.create_publisher(JointState, "joint_states", 10)
     shown = tool("ps", "-i", str(domain))
     assert "linkwright/" in shown
     assert str(os.getpid()) in shown
@@ -45,8 +45,8 @@ def test_cyclonedds_ps_shows_participant(processes, tool, domain):
 
 
 def test_cyclonedds_ls_shows_endpoints_and_qos(processes, tool, domain):
-    us = processes("ours")
-    us.node.create_publisher(JointState, "joint_states", 7)
+    process = processes("ours")
+    process.node.create_publisher(JointState, "joint_states", 7)
     shown = tool("ls", "-i", str(domain), "-q", "-t", "rt/joint_states")
     assert "sensor_msgs::msg::dds_::JointState_" in shown
     assert "History.KeepLast(depth=7)" in shown
@@ -57,6 +57,6 @@ def test_cyclonedds_ls_shows_endpoints_and_qos(processes, tool, domain):
 
 def test_cyclonedds_typeof_shows_no_type_description(processes, tool, domain):
     """Descriptions of types are not sent: rmw_fastrtps_cpp and Humble's Cyclone DDS do not get on with ours."""
-    us = processes("ours")
-    us.node.create_publisher(JointState, "joint_states", 10)
+    process = processes("ours")
+    process.node.create_publisher(JointState, "joint_states", 10)
     assert "struct" not in tool("typeof", "rt/joint_states", "-i", str(domain))

@@ -105,34 +105,34 @@ def test_departures_are_not_polled_without_watchers():
 
 
 def test_destroyed_publisher_and_leaving_process_are_not_lost(processes, programs):
-    us = processes("ours")
+    process = processes("ours")
     lost: list[EndpointInfo] = []
-    us.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
+    process.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
     peer, marker = processes("theirs"), programs("our_program", "marker")
     publisher = peer.node.create_publisher(String, "/other", 10)
     peer.node.create_publisher(String, "/other", 10)
-    us.spin_until(lambda: us.node.count_publishers("/other") == 2)
+    process.spin_until(lambda: process.node.count_publishers("/other") == 2)
     publisher.destroy()
-    us.spin_until(lambda: us.node.count_publishers("/other") == 1)
+    process.spin_until(lambda: process.node.count_publishers("/other") == 1)
     peer.close()
-    us.spin_until(lambda: us.node.count_publishers("/other") == 0)
-    us.node.create_subscription("rcl_interfaces/msg/Log", "/rosout", lambda _: None, 10).watch_lost(lost.append)
-    us.spin_until(lambda: us.node.count_publishers("/rosout") == 2)
+    process.spin_until(lambda: process.node.count_publishers("/other") == 0)
+    process.node.create_subscription("rcl_interfaces/msg/Log", "/rosout", lambda _: None, 10).watch_lost(lost.append)
+    process.spin_until(lambda: process.node.count_publishers("/rosout") == 2)
     marker.kill()
-    us.spin_until(lambda: lost)  # after those that left, if these were told, too
+    process.spin_until(lambda: lost)  # after those that left, if these were told, too
     assert {endpoint.node.name for endpoint in lost} == {"marker"}, lost
 
 
 def test_program_that_ends_with_uncaught_exception_is_lost(processes, monkeypatch):
-    us = processes("ours")
+    process = processes("ours")
     lost: list[EndpointInfo] = []
-    us.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
+    process.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
     peer = processes("theirs")
     peer.node.create_publisher(String, "/other", 10)
-    us.spin_until(lambda: us.node.count_publishers("/other") == 1)
+    process.spin_until(lambda: process.node.count_publishers("/other") == 1)
     monkeypatch.setattr(sys, "last_value", ValueError("nobody caught it"), raising=False)
     peer.transport.close()  # as at the end of the program
-    us.spin_until(lambda: lost)
+    process.spin_until(lambda: lost)
     assert [endpoint.node.name for endpoint in lost] == ["theirs"]
 
 

@@ -59,9 +59,9 @@ def test_endpoints_of_nodes_are_discovered(processes):
 def test_wait_for_discovery_ends_when_all_nodes_are_discovered(processes, programs):
     programs("our_program", "one")
     programs("our_program", "two")
-    us = processes("ours")
-    assert us.transport.wait_for_discovery(SECONDS)
-    assert {node.name for node in us.transport.remote_nodes()} == {"one", "two"}
+    process = processes("ours")
+    assert process.transport.wait_for_discovery(SECONDS)
+    assert {node.name for node in process.transport.remote_nodes()} == {"one", "two"}
 
 
 def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeypatch):
@@ -83,9 +83,9 @@ def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeyp
     monkeypatch.setattr(other.transport._remote, "entities_announced", listen)
     monkeypatch.setattr(engine, "Engine", Late)
     monkeypatch.setattr(engine, "_FIRST_ANNOUNCE_SPAN", float("inf"))
-    us = processes("ours", join_now=False)
-    publishers = [us.node.create_publisher(String, f"topic_{number}", 10) for number in range(50)]
-    transport = join(us.graph)  # everything to be made is asked for now
+    process = processes("ours", join_now=False)
+    publishers = [process.node.create_publisher(String, f"topic_{number}", 10) for number in range(50)]
+    transport = join(process.graph)  # everything to be made is asked for now
     may_join.set()
     assert transport.wait_until_ready(SECONDS)
     wait_until(lambda: announced)
@@ -93,18 +93,18 @@ def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeyp
 
 
 def test_wait_for_discovery_ends_soon_without_peers(processes):
-    us = processes("ours")
-    assert us.transport.wait_for_discovery(SECONDS)
+    process = processes("ours")
+    assert process.transport.wait_for_discovery(SECONDS)
 
 
 def test_killed_process_and_its_successor_are_listed_once(processes, programs):
-    us = processes("ours")
+    process = processes("ours")
     first = programs("our_program", "worker")
-    us.spin_until(lambda: names(us) == ["ours", "worker"])
+    process.spin_until(lambda: names(process) == ["ours", "worker"])
     first.kill()
-    us.spin_until(lambda: names(us) == ["ours"], 2)
+    process.spin_until(lambda: names(process) == ["ours"], 2)
     programs("our_program", "worker")
-    us.spin_until(lambda: names(us) == ["ours", "worker"])
+    process.spin_until(lambda: names(process) == ["ours", "worker"])
 
 
 def test_local_process_is_recognized_by_host_name_and_machine_id(monkeypatch):
@@ -119,9 +119,9 @@ def test_local_process_is_recognized_by_host_name_and_machine_id(monkeypatch):
 
 
 def test_fifty_nodes_with_services_are_discovered(processes, programs):
-    us = processes("ours")
+    process = processes("ours")
     for number in range(50):
-        us.graph.create_node(f"node_{number}")
+        process.graph.create_node(f"node_{number}")
     other = programs("our_program", "other")
     names = other.ask_until(lambda names: len(names) == 52, "nodes", seconds=20)
     assert "node_49" in names

@@ -35,31 +35,31 @@ def camera_request(text):
 
 @pytest.mark.parametrize("text", ["hej", LARGE])
 def test_client_takes_response_with_its_identity(processes, programs, text):
-    us = processes("ours")
-    client = us.node.create_client(SetCameraInfo, "/fast_echo")
+    process = processes("ours")
+    client = process.node.create_client(SetCameraInfo, "/fast_echo")
     peer = programs("fast_peer")
-    us.spin_until(client.service_is_ready)
+    process.spin_until(client.service_is_ready)
     future = client.call_async(camera_request(text))
-    us.spin_until(future.done)
+    process.spin_until(future.done)
     assert future.result().status_message == text
-    assert not us.warnings()
+    assert not process.warnings()
     peer.end()
-    us.spin_until(lambda: not client.service_is_ready(), 5.0)  # it said so: its lease of 10 s need not run out
+    process.spin_until(lambda: not client.service_is_ready(), 5.0)  # it said so: its lease of 10 s need not run out
 
 
 @pytest.mark.parametrize("text", ["hej", LARGE])
 def test_service_responds_with_identity_of_request(processes, programs, text):
-    us = processes("ours")
-    us.node.create_service(SetCameraInfo, "/our_echo", echo)
+    process = processes("ours")
+    process.node.create_service(SetCameraInfo, "/our_echo", echo)
     peer = programs("fast_peer")
-    us.spin_until(lambda: peer.ask("is_matched"))
+    process.spin_until(lambda: peer.ask("is_matched"))
     answers = []
     thread = threading.Thread(target=lambda: answers.append(peer.ask("ask", text)))
     thread.start()
-    us.spin_until(lambda: answers)
+    process.spin_until(lambda: answers)
     thread.join()
     assert answers == [text]
-    assert not us.warnings()
+    assert not process.warnings()
 
 
 def test_no_rtps_participant_is_created_with_cyclone_peers_only(processes):
@@ -75,11 +75,11 @@ def test_missing_socket_is_reported_once_and_other_services_work(processes, prog
         raise OSError("no sockets today")
 
     monkeypatch.setattr("linkwright.wire.dds.rtps.participant.Network", refuse)
-    us = processes("ours")
-    us.node.create_service(SetCameraInfo, "/our_echo", echo)
+    process = processes("ours")
+    process.node.create_service(SetCameraInfo, "/our_echo", echo)
     programs("fast_peer")
-    us.spin_until(us.warnings)
-    assert us.warnings() == ["Services and clients of nodes on Fast DDS are out of reach: no sockets today"]
+    process.spin_until(process.warnings)
+    assert process.warnings() == ["Services and clients of nodes on Fast DDS are out of reach: no sockets today"]
 
 
 class _Heard:
@@ -173,24 +173,24 @@ def test_replies_to_others_during_client_creation_are_ignored():
 
 
 def test_error_in_participant_thread_is_reported_and_next_call_answered(processes, programs, monkeypatch):
-    us = processes("ours")
-    client = us.node.create_client(SetCameraInfo, "/fast_echo")
+    process = processes("ours")
+    client = process.node.create_client(SetCameraInfo, "/fast_echo")
     peer = programs("fast_peer")
-    us.spin_until(client.service_is_ready)
+    process.spin_until(client.service_is_ready)
     client.announce = Once(client.announce)
     futures = [client.call_async(camera_request(text)) for text in ("one", "two")]
-    us.spin_until(lambda: all(future.done() for future in futures))
-    assert warnings_of(us, "client of service '/fast_echo' failed:")
+    process.spin_until(lambda: all(future.done() for future in futures))
+    assert warnings_of(process, "client of service '/fast_echo' failed:")
     seen = []
     monkeypatch.setattr(threading, "excepthook", lambda hook: seen.append((hook.thread.name, str(hook.exc_value))))
-    participant = us.transport._engine._fast
+    participant = process.transport._engine._fast
     participant.changed = Once(participant.changed)
     peer.end()
-    us.spin_until(lambda: seen)
+    process.spin_until(lambda: seen)
     assert seen == [("linkwright-rtps", "the user's own mistake")]
     programs("fast_peer")
-    us.spin_until(lambda: participant.changed.calls > 2)
-    us.spin_until(client.service_is_ready)
+    process.spin_until(lambda: participant.changed.calls > 2)
+    process.spin_until(client.service_is_ready)
     again = client.call_async(camera_request("again"))
-    us.spin_until(again.done)
+    process.spin_until(again.done)
     assert again.result().status_message == "again"

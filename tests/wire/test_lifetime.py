@@ -42,20 +42,20 @@ def test_close_leaves_no_threads_or_sockets(processes):
         {descriptor for descriptor in descriptors() if descriptor.startswith("socket")},
     )
     tasks = kernel_threads()
-    us = processes("ours")
-    us.node.create_publisher(String, "chatter", 10)
+    process = processes("ours")
+    process.node.create_publisher(String, "chatter", 10)
     assert kernel_threads() > tasks
-    us.close()
+    process.close()
     assert threading.active_count() == threads
     assert {descriptor for descriptor in descriptors() if descriptor.startswith("socket")} == sockets
     wait_until(lambda: kernel_threads() <= tasks)  # a thread that was joined is listed a moment longer
 
 
 def test_close_twice_and_before_ready_is_allowed(processes):
-    us = processes("ours", join_now=False)
+    process = processes("ours", join_now=False)
     from linkwright.wire.dds import join
 
-    transport = join(us.graph)
+    transport = join(process.graph)
     transport.close()
     transport.close()
     assert transport.remote_nodes() == []
@@ -75,8 +75,8 @@ def test_domain_joined_after_close_is_left_again(processes, monkeypatch):
 
     monkeypatch.setattr(engine, "Engine", Late)
     monkeypatch.setattr(background, "_JOINED_WITHIN", 0.0)
-    us = processes("ours", join_now=False)
-    joining = join(us.graph)
+    process = processes("ours", join_now=False)
+    joining = join(process.graph)
     joining.close()
     assert not engines
     may_join.set()
@@ -105,18 +105,18 @@ def test_program_that_ends_while_joining_prints_nothing(seconds):
 
 
 def test_close_ends_wait_for_discovery(processes):
-    us = processes("ours")
+    process = processes("ours")
     ended = threading.Event()
 
     def wait() -> None:
-        us.transport._joined_at = time.monotonic() + 10_000.0  # discovery does not settle
-        us.transport.wait_for_discovery(10_000.0)
-        us.transport.wait_until_ready(10_000.0)
+        process.transport._joined_at = time.monotonic() + 10_000.0  # discovery does not settle
+        process.transport.wait_for_discovery(10_000.0)
+        process.transport.wait_until_ready(10_000.0)
         ended.set()
 
     waiting = threading.Thread(target=wait, daemon=True)
     waiting.start()
-    us.close()
+    process.close()
     assert ended.wait(SECONDS)
 
 
@@ -186,8 +186,8 @@ def test_packets_that_are_not_dds_print_nothing_to_stderr(domain):
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
 def test_forked_child_does_not_participate(processes, programs):
-    us = processes("ours")
-    us.node.create_subscription("std_msgs/msg/Int32", "/flood", print, 10)
+    process = processes("ours")
+    process.node.create_subscription("std_msgs/msg/Int32", "/flood", print, 10)
     other = programs("our_program", "forking")
     other.ask_until(bool, "subscribers", "/flood")
     assert other.ask("fork")[0] == 7
@@ -195,13 +195,13 @@ def test_forked_child_does_not_participate(processes, programs):
 
 
 def test_killed_peer_does_not_block_publisher(processes, programs):
-    us = processes("ours")
-    publisher = us.node.create_publisher(String, "/to_ros", 10)
+    process = processes("ours")
+    publisher = process.node.create_publisher(String, "/to_ros", 10)
     peer = programs("ros_peer", "humble", "victim", "localhost")
-    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    process.spin_until(lambda: publisher.get_subscription_count() == 1)
     peer.kill()
     begin = time.monotonic()
     for _ in range(2000):
         publisher.publish(String(data="x" * 1000))
-    us.close()
+    process.close()
     assert time.monotonic() - begin < SECONDS, "each of them would wait"

@@ -169,11 +169,13 @@ def test_image_is_sent_packet_by_packet_before_cyclone(processes, monkeypatch):
         listening.settimeout(60)
         monkeypatch.setattr("linkwright.wire.dds.remote._FAST_DDS", b"\x01\x10")
         monkeypatch.setattr(Engine, "_fast_address", lambda *_: listening.getsockname())
-        us, peer = processes("ours"), processes("theirs")
+        process, peer = processes("ours"), processes("theirs")
         messages = []
         subscription = peer.node.create_subscription(Image, "/picture", messages.append, QoSProfile(depth=10))
-        publisher = us.node.create_publisher(Image, "/picture", QoSProfile(depth=10))
-        us.spin_until(lambda: publisher.get_subscription_count() == us.node.count_subscribers("/picture") == 1)
+        publisher = process.node.create_publisher(Image, "/picture", QoSProfile(depth=10))
+        process.spin_until(
+            lambda: publisher.get_subscription_count() == process.node.count_subscribers("/picture") == 1
+        )
         peer.spin_until(lambda: subscription.get_publisher_count() == 1)
         images = [Image(data=os.urandom(100_000)), Image(data=b"small"), Image(data=os.urandom(70_000))]
         fragments = []

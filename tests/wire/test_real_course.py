@@ -68,12 +68,12 @@ def run(workspace):
 @pytest.fixture
 def velocities(processes):
     """Our node, and what it hears on /cmd_vel."""
-    us = processes("ours")
-    heard: list[tuple[float, float]] = []
-    us.node.create_subscription(
-        Twist, "/cmd_vel", lambda message: heard.append((message.linear.x, message.angular.z)), 10
+    process = processes("ours")
+    commands: list[tuple[float, float]] = []
+    process.node.create_subscription(
+        Twist, "/cmd_vel", lambda message: commands.append((message.linear.x, message.angular.z)), 10
     )
-    return us, heard
+    return process, commands
 
 
 def interrupt(process: subprocess.Popen[str]) -> str:
@@ -87,30 +87,32 @@ def interrupt(process: subprocess.Popen[str]) -> str:
 
 
 def test_first_move_follows_parameters_and_stops_on_ctrl_c(velocities, run):
-    us, heard = velocities
+    process, commands = velocities
     program = run("my_control", "first_move", "speed:=0.4", "duration:=60.0")
-    us.spin_until(lambda: (0.4, 0.5) in heard, SECONDS)
+    process.spin_until(lambda: (0.4, 0.5) in commands, SECONDS)
     assert "Traceback" not in interrupt(program)
-    us.spin_until(lambda: heard[-1] == (0.0, 0.0), SECONDS)
+    process.spin_until(lambda: commands[-1] == (0.0, 0.0), SECONDS)
 
 
 def test_odometer_accumulates_distance_and_resets(processes, run):
-    us = processes("ours")
+    process = processes("ours")
     distances: list[float] = []
-    us.node.create_subscription(Float64, "/distance", lambda message: distances.append(message.data), 10)
-    publisher = us.node.create_publisher(Odometry, "/odom", 10)
+    process.node.create_subscription(Float64, "/distance", lambda message: distances.append(message.data), 10)
+    publisher = process.node.create_publisher(Odometry, "/odom", 10)
     trigger = get_service("std_srvs/srv/Trigger")
-    client = us.node.create_client(trigger, "/reset_distance")
+    client = process.node.create_client(trigger, "/reset_distance")
     run("my_control", "odometer")
-    us.spin_until(lambda: publisher.get_subscription_count() and us.node.count_publishers("/distance"), SECONDS)
+    process.spin_until(
+        lambda: publisher.get_subscription_count() and process.node.count_publishers("/distance"), SECONDS
+    )
     for x in (0.0, 1.0, 0.0):
         message = Odometry()
         message.pose.pose.position.x = x
         publisher.publish(message)
-    us.spin_until(lambda: distances and distances[-1] == 2.0, SECONDS)
-    us.spin_until(client.service_is_ready, SECONDS)
+    process.spin_until(lambda: distances and distances[-1] == 2.0, SECONDS)
+    process.spin_until(client.service_is_ready, SECONDS)
     answer = client.call_async(trigger.Request())
-    us.spin_until(answer.done, SECONDS)
+    process.spin_until(answer.done, SECONDS)
     assert answer.result().success
 
 
@@ -137,28 +139,32 @@ def scan(distance):
     ],
 )
 def test_course_nodes_drive_by_measurements(velocities, run, executable, topic, drives, does_not_drive):
-    us, heard = velocities
-    publisher = us.node.create_publisher(type(drives), topic, 10)
+    process, commands = velocities
+    publisher = process.node.create_publisher(type(drives), topic, 10)
     program = run("my_control", executable)
-    us.spin_until(lambda: publisher.get_subscription_count() and us.node.count_publishers("/cmd_vel"), SECONDS)
+    process.spin_until(
+        lambda: publisher.get_subscription_count() and process.node.count_publishers("/cmd_vel"), SECONDS
+    )
 
     def tell(message, condition):
         publisher.publish(message)
-        return heard and condition(heard[-1][0])
+        return commands and condition(commands[-1][0])
 
-    us.spin_until(lambda: tell(drives, lambda speed: speed > 0.0), SECONDS)
+    process.spin_until(lambda: tell(drives, lambda speed: speed > 0.0), SECONDS)
     if does_not_drive is not None:
-        us.spin_until(lambda: tell(does_not_drive, lambda speed: speed == 0.0), SECONDS)
+        process.spin_until(lambda: tell(does_not_drive, lambda speed: speed == 0.0), SECONDS)
     assert "Traceback" not in interrupt(program)
 
 
 def test_word_driver_ends_on_ctrl_c(velocities, run):
-    us, heard = velocities
-    publisher = us.node.create_publisher(String, "/voice/text", 10)
+    process, commands = velocities
+    publisher = process.node.create_publisher(String, "/voice/text", 10)
     program = run("my_voice", "word_driver")
-    us.spin_until(lambda: publisher.get_subscription_count() and us.node.count_publishers("/cmd_vel"), SECONDS)
+    process.spin_until(
+        lambda: publisher.get_subscription_count() and process.node.count_publishers("/cmd_vel"), SECONDS
+    )
     assert "Traceback" not in interrupt(program)
-    us.spin_until(lambda: heard and heard[-1] == (0.0, 0.0), SECONDS)
+    process.spin_until(lambda: commands and commands[-1] == (0.0, 0.0), SECONDS)
 
 
 @pytest.mark.extra("sim")
@@ -170,17 +176,17 @@ def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, run):
     "Inconsistent TypeObject", and does not try again. When the nodes started at the same time, 3 of 26 runs with
     Kilted failed; now that they start one after another, 1 of 20, whose reason was not looked at.
     """
-    us = processes("ours")
+    process = processes("ours")
     states: list[str] = []
     places: list[tuple[float, float]] = []
-    us.node.create_subscription(String, "/state", lambda message: states.append(message.data), 10)
-    us.node.create_subscription(
+    process.node.create_subscription(String, "/state", lambda message: states.append(message.data), 10)
+    process.node.create_subscription(
         Odometry,
         "/odom",
         lambda message: places.append((message.pose.pose.position.x, message.pose.pose.position.y)),
         10,
     )
-    commands = us.node.create_publisher(String, "/command", 10)
+    commands = process.node.create_publisher(String, "/command", 10)
     words = [sys.executable, "-m", "linkwright", "launch", "my_playroom", "playroom.launch.py"]
     with subprocess.Popen(
         words, cwd=workspace, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
@@ -189,12 +195,12 @@ def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, run):
             programs = []
             for package, name, is_there in (
                 ("my_senses", "command_listener", commands.get_subscription_count),
-                ("my_senses", "color_finder", lambda: us.node.count_subscribers("/camera/image_raw")),
-                ("my_mission", "go_to_ball", lambda: states and us.node.count_subscribers("/ball")),
+                ("my_senses", "color_finder", lambda: process.node.count_subscribers("/camera/image_raw")),
+                ("my_mission", "go_to_ball", lambda: states and process.node.count_subscribers("/ball")),
             ):
                 programs.append(run(package, name, "use_sim_time:=true"))
-                us.spin_until(is_there, SECONDS)
-            us.spin_until(lambda: places and us.node.count_publishers("/camera/image_raw"), SECONDS)
+                process.spin_until(is_there, SECONDS)
+            process.spin_until(lambda: places and process.node.count_publishers("/camera/image_raw"), SECONDS)
 
             told = -inf
 
@@ -206,8 +212,8 @@ def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, run):
                     told = time.monotonic()
                 return "driving" in states
 
-            us.spin_until(is_driving, SECONDS)
-            us.spin_until(lambda: states[-1] == "arrived", SECONDS)
+            process.spin_until(is_driving, SECONDS)
+            process.spin_until(lambda: states[-1] == "arrived", SECONDS)
             x, y = places[-1]
             assert 0.4 < ((x - RED_BALL[0]) ** 2 + (y - RED_BALL[1]) ** 2) ** 0.5 < 1.0
             assert not any("Traceback" in interrupt(program) for program in programs)

@@ -35,19 +35,19 @@ def real_node(programs):
     return lambda **variables: programs("real_peer", "real_node", python=PYTHON, **variables)
 
 
-def has(us, name):
-    return NodeIdentity(name, "/") in us.transport.remote_nodes()
+def has(process, name):
+    return NodeIdentity(name, "/") in process.transport.remote_nodes()
 
 
 @pytest.mark.parametrize("we_are_first", [True, False])
 def test_nodes_discover_each_other(processes, real_node, we_are_first):
     if we_are_first:
-        us = processes("ours")
+        process = processes("ours")
         real = real_node()
     else:
         real = real_node()
-        us = processes("ours")
-    us.spin_until(lambda: has(us, "real_node"), 2.5)
+        process = processes("ours")
+    process.spin_until(lambda: has(process, "real_node"), 2.5)
     real.ask_until(lambda nodes: nodes == [["/", "ours"], ["/", "real_node"]], "nodes")
 
 
@@ -62,79 +62,81 @@ def test_nodes_discover_each_other_for_any_discovery_range(processes, real_node,
     real = real_node(**theirs)
     for name, value in ours.items():
         monkeypatch.setenv(name, value)
-    us = processes("ours")
-    us.spin_until(lambda: has(us, "real_node"), 5.0)
+    process = processes("ours")
+    process.spin_until(lambda: has(process, "real_node"), 5.0)
     real.ask_until(lambda nodes: ["/", "ours"] in nodes, "nodes")
 
 
 def test_localhost_node_is_discovered_by_earlier_subnet_node(processes, real_node, monkeypatch):
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")
-    us = processes("ours")
+    process = processes("ours")
     real = real_node(**LOCALHOST)
-    us.spin_until(lambda: has(us, "real_node"), 10.0)
+    process.spin_until(lambda: has(process, "real_node"), 10.0)
     real.ask_until(lambda nodes: ["/", "ours"] in nodes, "nodes")
 
 
 def test_domains_are_isolated(processes, real_node, domain):
     real = real_node(ROS_DOMAIN_ID=str(own_domain(2)))
-    us = processes("ours")
+    process = processes("ours")
     time.sleep(1.5)
-    assert not has(us, "real_node")
+    assert not has(process, "real_node")
     assert real.ask("nodes") == [["/", "real_node"]]
 
 
 def test_late_node_sees_everything_after_wait_for_discovery(processes, real_node):
     """Down to the last service, which Fast DDS tells some time after the first topic."""
     real_node()
-    us = processes("ours")
-    assert us.transport.wait_for_discovery(60)
-    assert has(us, "real_node")
-    assert us.node.count_publishers("/from_ros") == 1
-    services = dict(us.node.get_service_names_and_types_by_node("real_node", "/"))
+    process = processes("ours")
+    assert process.transport.wait_for_discovery(60)
+    assert has(process, "real_node")
+    assert process.node.count_publishers("/from_ros") == 1
+    services = dict(process.node.get_service_names_and_types_by_node("real_node", "/"))
     assert services["/flip"] == ["std_srvs/srv/SetBool"]
     assert len([name for name in services if "parameter" in name]) == 6
 
 
 def test_topics_work_in_both_directions(processes, real_node):
-    us = processes("ours")
+    process = processes("ours")
     texts: list[str] = []
-    us.node.create_subscription(String, "/from_ros", lambda message: texts.append(message.data), 10)
-    publisher = us.node.create_publisher(String, "/to_ros", 10)
+    process.node.create_subscription(String, "/from_ros", lambda message: texts.append(message.data), 10)
+    publisher = process.node.create_publisher(String, "/to_ros", 10)
     real = real_node()
-    us.spin_until(lambda: publisher.get_subscription_count() == 1)
-    us.spin_until(lambda: us.node.count_publishers("/from_ros") == 1)
+    process.spin_until(lambda: publisher.get_subscription_count() == 1)
+    process.spin_until(lambda: process.node.count_publishers("/from_ros") == 1)
     publisher.publish(String(data="hej"))
     assert real.ask_until(bool, "received", "to_ros") == ["hej"]
     for number in range(3):
         real.ask("publish", f"från {number}")
-    us.spin_until(lambda: len(texts) == 3)
+    process.spin_until(lambda: len(texts) == 3)
     assert texts == ["från 0", "från 1", "från 2"]
 
 
 def test_types_with_sequences_work_in_both_directions(processes, real_node):
     """Cyclone cannot read what Fast DDS 3 says of these."""
-    us = processes("ours")
+    process = processes("ours")
     real = real_node()
     messages = []
-    us.node.create_subscription(JointState, "/states_from_ros", messages.append, 10)
-    publisher = us.node.create_publisher(JointState, "/states_to_ros", 10)
-    us.spin_until(lambda: publisher.get_subscription_count() == 1)
-    us.spin_until(lambda: us.node.count_publishers("/states_from_ros") == 1)
+    process.node.create_subscription(JointState, "/states_from_ros", messages.append, 10)
+    publisher = process.node.create_publisher(JointState, "/states_to_ros", 10)
+    process.spin_until(lambda: publisher.get_subscription_count() == 1)
+    process.spin_until(lambda: process.node.count_publishers("/states_from_ros") == 1)
     publisher.publish(JointState(name=["a", "b"], position=[0.5, 1.5]))
     assert real.ask_until(bool, "received_states") == [[["a", "b"], [0.5, 1.5]]]
     real.ask("publish_state", ["left", "right"], [0.25])
-    us.spin_until(lambda: messages)
+    process.spin_until(lambda: messages)
     assert (messages[0].name, list(messages[0].position), list(messages[0].velocity)) == (["left", "right"], [0.25], [])
 
 
 def test_images_at_30_hz_arrive_complete_in_both_directions(processes, real_node):
-    us = processes("ours")
+    process = processes("ours")
     real = real_node()
     numbers: list[int] = []
-    us.node.create_subscription(Image, "/images_from_ros", lambda image: numbers.append(int(image.header.frame_id)), 50)
-    publisher = us.node.create_publisher(Image, "/images_to_ros", 50)
-    us.spin_until(lambda: publisher.get_subscription_count() == 1)
-    us.spin_until(lambda: us.node.count_publishers("/images_from_ros") == 1)
+    process.node.create_subscription(
+        Image, "/images_from_ros", lambda image: numbers.append(int(image.header.frame_id)), 50
+    )
+    publisher = process.node.create_publisher(Image, "/images_to_ros", 50)
+    process.spin_until(lambda: publisher.get_subscription_count() == 1)
+    process.spin_until(lambda: process.node.count_publishers("/images_from_ros") == 1)
     time.sleep(0.5)
     real.ask("publish_images", IMAGES, 30.0)
     picture = Image(height=480, width=640, encoding="rgb8", step=1920, data=bytes(640 * 480 * 3))
@@ -144,36 +146,36 @@ def test_images_at_30_hz_arrive_complete_in_both_directions(processes, real_node
         publisher.publish(picture)
         due += 1 / 30
         while time.monotonic() < due:
-            us.executor.spin_once(timeout_sec=max(0.0, due - time.monotonic()))
-    us.spin_until(lambda: len(numbers) == IMAGES)
+            process.executor.spin_once(timeout_sec=max(0.0, due - time.monotonic()))
+    process.spin_until(lambda: len(numbers) == IMAGES)
     assert numbers == list(range(IMAGES))
     assert real.ask_until(lambda images: len(images) == IMAGES, "received_images") == list(range(IMAGES))
 
 
 def test_images_replaced_in_transit_do_not_stop_reader(processes, real_node):
     """Fast DDS keeps reading a sample that it has freed when a GAP replaces the rest of an image."""
-    us = processes("ours")
+    process = processes("ours")
     real = real_node()
-    publisher = us.node.create_publisher(Image, "/images_to_ros", 1)
-    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    publisher = process.node.create_publisher(Image, "/images_to_ros", 1)
+    process.spin_until(lambda: publisher.get_subscription_count() == 1)
     image = Image(height=1, width=1_000_000, encoding="mono8", step=1_000_000, data=bytes(1_000_000))
     for number in range(FLOOD):
         image.header.frame_id = str(number)
         publisher.publish(image)
-        us.executor.spin_once(timeout_sec=0.01)
+        process.executor.spin_once(timeout_sec=0.01)
     assert real.ask_until(lambda images: images and images[-1] == FLOOD - 1, "received_images")
 
 
 def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_node):
     """Most packets of an image sent at once are lost, and nobody sends them again."""
-    us = processes("ours")
-    us.node.create_client(
+    process = processes("ours")
+    process.node.create_client(
         get_service("std_srvs/srv/SetBool"), "/flip"
     )  # as every node of rclpy has one: with it we learn where Fast DDS listens
     real = real_node()
     profile = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
-    publisher = us.node.create_publisher(Image, "/frames_to_ros", profile)
-    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    publisher = process.node.create_publisher(Image, "/frames_to_ros", profile)
+    process.spin_until(lambda: publisher.get_subscription_count() == 1)
     image = Image(height=1, width=1_000_000, encoding="mono8", step=1_000_000, data=bytes(1_000_000))
     came: list[int] = []
     for number in range(FRAMES):
@@ -181,14 +183,14 @@ def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_nod
         publisher.publish(image)
         until = time.monotonic() + 1.0
         while number not in came and time.monotonic() < until:
-            us.executor.spin_once(timeout_sec=0.01)
+            process.executor.spin_once(timeout_sec=0.01)
             came = real.ask("received_images", "frames_to_ros")
     assert len([number for number in came if number >= FRAMES // 2]) >= 0.9 * FRAMES / 2  # it was known by then
 
 
 def test_late_subscriber_gets_latched_message(processes, real_node):
-    us = processes("ours")
-    us.node.create_publisher(String, "/lasting_to_ros", LASTING).publish(String(data="said before"))
+    process = processes("ours")
+    process.node.create_publisher(String, "/lasting_to_ros", LASTING).publish(String(data="said before"))
     real = real_node()
     assert real.ask_until(bool, "received", "lasting_to_ros") == ["said before"]
     late = processes("late")
@@ -198,55 +200,57 @@ def test_late_subscriber_gets_latched_message(processes, real_node):
 
 
 def test_endpoints_have_node_and_type_hash(processes, real_node):
-    us = processes("ours")
-    us.node.create_publisher(String, "/named", 10)
+    process = processes("ours")
+    process.node.create_publisher(String, "/named", 10)
     real = real_node()
     published = real.ask_until(lambda publishers: "/named" in publishers, "published_by", "ours")
     assert published["/named"] == ["std_msgs/msg/String"]
     (message,) = real.ask("hashes", "/named")
     assert type_hash(String).removeprefix("RIHS01_") in message
     # Whose an endpoint is comes in another message than the endpoint itself.
-    publishers = us.node.get_publishers_info_by_topic
-    us.spin_until(lambda: [info.node_name for info in publishers("/from_ros")] == ["real_node"])
+    publishers = process.node.get_publishers_info_by_topic
+    process.spin_until(lambda: [info.node_name for info in publishers("/from_ros")] == ["real_node"])
 
 
 def test_incompatible_qos_is_reported_on_both_sides(processes, real_node):
-    us = processes("ours")
+    process = processes("ours")
     real = real_node()
-    us.node.create_publisher(String, "/to_ros", QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT))
-    us.node.create_subscription(String, "/from_ros", print, LASTING)
-    us.spin_until(lambda: len([text for text in us.warnings() if "incompatible QoS" in text]) == 2)
-    assert any("RELIABILITY" in text and "'/real_node'" in text for text in us.warnings())
-    assert any("DURABILITY" in text and "'/real_node'" in text for text in us.warnings())
+    process.node.create_publisher(String, "/to_ros", QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT))
+    process.node.create_subscription(String, "/from_ros", print, LASTING)
+    process.spin_until(lambda: len([text for text in process.warnings() if "incompatible QoS" in text]) == 2)
+    assert any("RELIABILITY" in text and "'/real_node'" in text for text in process.warnings())
+    assert any("DURABILITY" in text and "'/real_node'" in text for text in process.warnings())
     answer = real.ask_until(lambda answer: len(answer) == 2, "mismatches")
     assert sorted(answer) == ["publisher", "subscription"]
 
 
 def test_killed_real_node_disappears_before_lease_expires(processes, real_node):
-    us = processes("ours")
+    process = processes("ours")
     real = real_node()
-    us.spin_until(lambda: has(us, "real_node"))
+    process.spin_until(lambda: has(process, "real_node"))
     real.kill()
-    us.spin_until(lambda: not has(us, "real_node"), 5.0)
+    process.spin_until(lambda: not has(process, "real_node"), 5.0)
 
 
 def test_killed_real_node_is_received_again_after_restart(processes, real_node):
-    us = processes("ours")
+    process = processes("ours")
     texts: list[str] = []
-    us.node.create_subscription(String, "/from_ros", lambda message: texts.append(message.data), 10)
-    publisher = us.node.create_publisher(String, "/to_ros", 10)
+    process.node.create_subscription(String, "/from_ros", lambda message: texts.append(message.data), 10)
+    publisher = process.node.create_publisher(String, "/to_ros", 10)
     first = real_node()
-    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    process.spin_until(lambda: publisher.get_subscription_count() == 1)
     first.kill()
     again = real_node()
-    us.spin_until(lambda: publisher.get_subscription_count() == 2)  # the first one's lease of 20 s is still running
+    process.spin_until(
+        lambda: publisher.get_subscription_count() == 2
+    )  # the first one's lease of 20 s is still running
     began = time.monotonic()
     for number in range(8):
         publisher.publish(String(data=str(number)))
     assert time.monotonic() - began < 1.0
     assert again.ask_until(lambda heard: len(heard) == 8, "received", "to_ros") == list("01234567")
     again.ask("publish", "back")
-    us.spin_until(lambda: texts == ["back"])
+    process.spin_until(lambda: texts == ["back"])
 
 
 def test_killed_linkwright_node_disappears_and_successor_is_received(processes, programs, real_node):
@@ -263,15 +267,15 @@ def test_killed_linkwright_node_disappears_and_successor_is_received(processes, 
 
 
 def test_fifty_real_nodes_appear_and_disappear_with_their_process(processes, real_node):
-    us = processes("ours")
+    process = processes("ours")
     real = real_node()
     real.ask("make_nodes", NODES)
     names = {f"extra_{number}" for number in range(NODES)}
-    us.spin_until(lambda: names <= {node.name for node in us.transport.remote_nodes()})
-    us.spin_until(lambda: us.node.count_publishers("/rosout") == NODES + 2)
+    process.spin_until(lambda: names <= {node.name for node in process.transport.remote_nodes()})
+    process.spin_until(lambda: process.node.count_publishers("/rosout") == NODES + 2)
     assert len(linkwright("node", "list")[0].splitlines()) == NODES + 2
     real.end()
-    us.spin_until(lambda: not us.transport.remote_nodes())
+    process.spin_until(lambda: not process.transport.remote_nodes())
 
 
 def test_verbs_measure_describe_and_dump_real_node(real_node):

@@ -40,55 +40,56 @@ def camera_request(text):
     return request
 
 
-def wait_for_result(us, future):
-    us.spin_until(future.done, 30)
+def wait_for_result(process, future):
+    process.spin_until(future.done, 30)
     return future.result()
 
 
-def ask_while_spinning(us, peer, *question):
+def ask_while_spinning(process, peer, *question):
     """The answer to a question, for which our callbacks have to run meanwhile."""
     answers = []
     thread = threading.Thread(target=lambda: answers.append(peer.ask(*question)))
     thread.start()
-    us.spin_until(lambda: answers, 120)
+    process.spin_until(lambda: answers, 120)
     thread.join()
     return answers[0]
 
 
 @pytest.mark.parametrize("we_are_first", [True, False])
 def test_thousand_calls_to_real_service_get_their_own_responses(processes, real_node, we_are_first):
-    us = processes("ours") if we_are_first else None
+    process = processes("ours") if we_are_first else None
     real_node()
-    us = us or processes("ours")
-    client = us.node.create_client(SetCameraInfo, "/echo")
-    us.spin_until(client.service_is_ready)
+    process = process or processes("ours")
+    client = process.node.create_client(SetCameraInfo, "/echo")
+    process.spin_until(client.service_is_ready)
     for number in range(CALLS):
         assert (
-            wait_for_result(us, client.call_async(camera_request(f"call {number}"))).status_message == f"call {number}"
+            wait_for_result(process, client.call_async(camera_request(f"call {number}"))).status_message
+            == f"call {number}"
         )
 
 
 def test_thousand_calls_from_real_client_get_their_own_responses(processes, real_node):
-    us = processes("ours")
-    us.node.create_service(SetCameraInfo, "/our_echo", echo)
+    process = processes("ours")
+    process.node.create_service(SetCameraInfo, "/our_echo", echo)
     peer = real_node()
-    assert ask_while_spinning(us, peer, "echoes_are_right", "/our_echo", "call", CALLS) == CALLS
+    assert ask_while_spinning(process, peer, "echoes_are_right", "/our_echo", "call", CALLS) == CALLS
 
 
 def test_first_call_of_first_real_node_is_answered(processes, real_node):
     """It takes the service for ready as soon as it knows what Cyclone tells, so it asks before we know who it is."""
-    us = processes("ours")
-    us.node.create_service(SetCameraInfo, "/our_echo", echo)
+    process = processes("ours")
+    process.node.create_service(SetCameraInfo, "/our_echo", echo)
     for attempt in range(3):
         peer = real_node(f"real_node_{attempt}")
-        assert ask_while_spinning(us, peer, "echoes", "/our_echo", ["one", "two"]) == ["one", "two"]
+        assert ask_while_spinning(process, peer, "echoes", "/our_echo", ["one", "two"]) == ["one", "two"]
         peer.end()
 
 
 def test_simultaneous_real_and_linkwright_clients_are_answered(processes, real_node):
-    us = processes("ours")
-    us.node.create_service(SetCameraInfo, "/our_echo", echo)
-    client = us.node.create_client(SetCameraInfo, "/echo")
+    process = processes("ours")
+    process.node.create_service(SetCameraInfo, "/our_echo", echo)
+    client = process.node.create_client(SetCameraInfo, "/echo")
     peers = [real_node(f"real_node_{number}") for number in range(3)]
     counts = []
     threads = [
@@ -101,11 +102,12 @@ def test_simultaneous_real_and_linkwright_clients_are_answered(processes, real_n
     ]
     for thread in threads:
         thread.start()
-    us.spin_until(client.service_is_ready)
+    process.spin_until(client.service_is_ready)
     mine = [
-        wait_for_result(us, client.call_async(camera_request(f"mine {number}"))).status_message for number in range(20)
+        wait_for_result(process, client.call_async(camera_request(f"mine {number}"))).status_message
+        for number in range(20)
     ]
-    us.spin_until(lambda: len(counts) == 3, 120)
+    process.spin_until(lambda: len(counts) == 3, 120)
     for thread in threads:
         thread.join()
     assert counts == [CALLS // 5] * 3
@@ -113,10 +115,10 @@ def test_simultaneous_real_and_linkwright_clients_are_answered(processes, real_n
 
 
 def test_history_of_real_publisher_is_unknown(processes, real_node):
-    us = processes("ours")
+    process = processes("ours")
     real_node()
-    us.spin_until(lambda: us.node.get_publishers_info_by_topic("/from_ros"))
-    (info,) = us.node.get_publishers_info_by_topic("/from_ros")
+    process.spin_until(lambda: process.node.get_publishers_info_by_topic("/from_ros"))
+    (info,) = process.node.get_publishers_info_by_topic("/from_ros")
     assert info.qos_profile.history is HistoryPolicy.UNKNOWN
 
 
@@ -126,36 +128,38 @@ def test_calls_work_in_both_directions_on_localhost(processes, real_node, monkey
     peer = None if we_are_first else real_node(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
     for name, value in ours.items():
         monkeypatch.setenv(name, value)
-    us = processes("ours")
-    us.node.create_service(SetCameraInfo, "/our_echo", echo)
-    client = us.node.create_client(SetCameraInfo, "/echo")
+    process = processes("ours")
+    process.node.create_service(SetCameraInfo, "/our_echo", echo)
+    client = process.node.create_client(SetCameraInfo, "/echo")
     peer = peer or real_node(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
-    us.spin_until(client.service_is_ready)
-    assert wait_for_result(us, client.call_async(camera_request("hej"))).status_message == "hej"
-    assert ask_while_spinning(us, peer, "echoes", "/our_echo", ["hej"]) == ["hej"]
+    process.spin_until(client.service_is_ready)
+    assert wait_for_result(process, client.call_async(camera_request("hej"))).status_message == "hej"
+    assert ask_while_spinning(process, peer, "echoes", "/our_echo", ["hej"]) == ["hej"]
 
 
 def test_calls_larger_than_packet_work_in_both_directions(processes, real_node):
-    us = processes("ours")
-    us.node.create_service(SetCameraInfo, "/our_echo", echo)
-    client = us.node.create_client(SetCameraInfo, "/echo")
+    process = processes("ours")
+    process.node.create_service(SetCameraInfo, "/our_echo", echo)
+    client = process.node.create_client(SetCameraInfo, "/echo")
     peer = real_node()
-    us.spin_until(client.service_is_ready)
+    process.spin_until(client.service_is_ready)
     large = "".join(chr(ord("a") + number % 26) for number in range(LARGE))
-    assert wait_for_result(us, client.call_async(camera_request(large))).status_message == large
-    assert ask_while_spinning(us, peer, "echoes", "/our_echo", [large, "small"]) == [large, "small"]
+    assert wait_for_result(process, client.call_async(camera_request(large))).status_message == large
+    assert ask_while_spinning(process, peer, "echoes", "/our_echo", [large, "small"]) == [large, "small"]
 
 
 def test_killed_real_server_disappears_and_successor_is_called(processes, real_node):
-    us = processes("ours")
-    client = us.node.create_client(SetCameraInfo, "/echo")
+    process = processes("ours")
+    client = process.node.create_client(SetCameraInfo, "/echo")
     first = real_node()
-    us.spin_until(client.service_is_ready)
-    assert wait_for_result(us, client.call_async(camera_request("first"))).status_message == "first"
+    process.spin_until(client.service_is_ready)
+    assert wait_for_result(process, client.call_async(camera_request("first"))).status_message == "first"
     first.kill()
     real_node()
-    us.spin_until(client.service_is_ready)
-    us.spin_until(lambda: wait_for_result(us, client.call_async(camera_request("again"))).status_message == "again")
+    process.spin_until(client.service_is_ready)
+    process.spin_until(
+        lambda: wait_for_result(process, client.call_async(camera_request("again"))).status_message == "again"
+    )
 
 
 def test_successor_of_killed_linkwright_server_answers(processes, programs, real_node):
@@ -163,23 +167,23 @@ def test_successor_of_killed_linkwright_server_answers(processes, programs, real
     peer = real_node()
     assert "use_sim_time" in peer.ask("parameters_of", "ours")
     ours.kill()
-    us = processes("ours")
-    us.node.declare_parameter("second", 1.0)
+    process = processes("ours")
+    process.node.declare_parameter("second", 1.0)
     # What is asked before the new one is known there was asked of the one that was killed.
-    while "second" not in ask_while_spinning(us, peer, "parameters_of", "ours"):
+    while "second" not in ask_while_spinning(process, peer, "parameters_of", "ours"):
         pass
 
 
 def test_parameters_are_read_and_set_in_both_directions(processes, real_node):
-    us = processes("ours")
-    us.node.declare_parameter("speed", 1.5)
+    process = processes("ours")
+    process.node.declare_parameter("speed", 1.5)
     peer = real_node()
-    assert "speed" in ask_while_spinning(us, peer, "parameters_of", "ours")
-    assert ask_while_spinning(us, peer, "set_parameter_of", "ours", "speed", 2.5) == [True, 2.5]
-    assert us.node.get_parameter("speed").value == 2.5
-    parameters = AsyncParameterClient(us.node, "/real_node")
-    us.spin_until(parameters.services_are_ready)
-    assert wait_for_result(us, parameters.get_parameters(["speed"])).values[0].double_value == 1.5
+    assert "speed" in ask_while_spinning(process, peer, "parameters_of", "ours")
+    assert ask_while_spinning(process, peer, "set_parameter_of", "ours", "speed", 2.5) == [True, 2.5]
+    assert process.node.get_parameter("speed").value == 2.5
+    parameters = AsyncParameterClient(process.node, "/real_node")
+    process.spin_until(parameters.services_are_ready)
+    assert wait_for_result(process, parameters.get_parameters(["speed"])).values[0].double_value == 1.5
 
 
 def test_verbs_use_services_and_parameters_of_real_node(real_node):

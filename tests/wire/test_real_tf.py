@@ -47,23 +47,25 @@ def test_transform_chain_of_real_node_is_looked_up(processes, theirs):
     """Fixed and moving transforms; the fixed ones also by who comes late."""
     peer = theirs("tf_peer")
     peer.ask("tell", "/tf_static", "map", "odom", 1.0)
-    us = processes("ours")
+    process = processes("ours")
     buffer = Buffer()
-    TransformListener(buffer, us.node)
+    TransformListener(buffer, process.node)
     peer.ask("keep_telling", "odom", "base_link", 0.5)
-    us.spin_until(lambda: buffer.can_transform("map", "base_link", Time()))
+    process.spin_until(lambda: buffer.can_transform("map", "base_link", Time()))
     assert buffer.lookup_transform("map", "base_link", Time()).transform.translation.x == 1.5
-    assert us.node.get_publishers_info_by_topic("/tf")[0].qos_profile.durability.name == "VOLATILE"
+    assert process.node.get_publishers_info_by_topic("/tf")[0].qos_profile.durability.name == "VOLATILE"
 
 
 def test_linkwright_transforms_are_received_by_real_node(processes, theirs):
-    us = processes("ours")
-    StaticTransformBroadcaster(us.node).sendTransform([transform("map", "odom", 1.0), transform("base", "arm", 2.0)])
-    moving = TransformBroadcaster(us.node)
+    process = processes("ours")
+    StaticTransformBroadcaster(process.node).sendTransform(
+        [transform("map", "odom", 1.0), transform("base", "arm", 2.0)]
+    )
+    moving = TransformBroadcaster(process.node)
     peer = theirs("tf_peer")
     fixed = peer.ask_until(lambda heard: len(heard) == 2, "heard", "/tf_static")
     assert fixed == {"odom": ["map", 1.0], "arm": ["base", 2.0]}
-    us.spin_until(lambda: moving.pub_tf.get_subscription_count() == 1)
+    process.spin_until(lambda: moving.pub_tf.get_subscription_count() == 1)
     moving.sendTransform(transform("odom", "base", 0.25))
     assert peer.ask_until(bool, "heard", "/tf") == {"base": ["odom", 0.25]}
     assert all(

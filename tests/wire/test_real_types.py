@@ -96,5 +96,5 @@ def test_arrays_of_eight_megabytes_arrive_complete(peers, says, hears):
     for number in range(LARGE_ONES):
         both[says].ask("say_large", "/large", number, LARGE)
         both[hears].ask_until(lambda heard, number=number: heard[-1][0] == number, "heard_large")
-    heard = [sample for sample in both[hears].ask("heard_large") if sample[0] < LARGE_ONES]
-    assert heard == [[number, LARGE, digest(large(number, LARGE))] for number in range(LARGE_ONES)]
+    samples = [sample for sample in both[hears].ask("heard_large") if sample[0] < LARGE_ONES]
+    assert samples == [[number, LARGE, digest(large(number, LARGE))] for number in range(LARGE_ONES)]

@@ -23,12 +23,12 @@ def distribution(request):
 
 def test_ros_node_and_endpoints_are_discovered(processes, programs, distribution):
     programs("ros_peer", distribution, "real_node", "localhost")
-    us = processes("ours")
-    us.spin_until(lambda: NodeIdentity("real_node", "/") in us.transport.remote_nodes())
-    us.spin_until(lambda: len(us.transport.remote_endpoints()) >= 4)
+    process = processes("ours")
+    process.spin_until(lambda: NodeIdentity("real_node", "/") in process.transport.remote_nodes())
+    process.spin_until(lambda: len(process.transport.remote_endpoints()) >= 4)
     seen = {
         (remote_endpoint.kind, remote_endpoint.name): remote_endpoint
-        for remote_endpoint in us.transport.remote_endpoints()
+        for remote_endpoint in process.transport.remote_endpoints()
     }
     assert seen[EndpointKind.PUBLISHER, "/from_ros"].type_name == "std_msgs/msg/String"
     assert seen[EndpointKind.SUBSCRIPTION, "/to_ros"].node == NodeIdentity("real_node", "/")
@@ -42,8 +42,8 @@ def test_ros_node_and_endpoints_are_discovered(processes, programs, distribution
 def test_ros_node_sees_gids_of_its_own_size(processes, programs, distribution, other, monkeypatch):
     """Whatever ROS_DISTRO says: what is heard counts."""
     monkeypatch.setenv("ROS_DISTRO", other)
-    us = processes("ours")
-    publisher = us.node.create_publisher(String, "/to_ros", 10)
+    process = processes("ours")
+    publisher = process.node.create_publisher(String, "/to_ros", 10)
     peer = programs("ros_peer", distribution, "real_node", "localhost")
     nodes = peer.ask_until(lambda nodes: any(node[1] == "ours" for node in nodes), "nodes")
     namespace, name, readers, writers = next(node for node in nodes if node[1] == "ours")
@@ -54,61 +54,61 @@ def test_ros_node_sees_gids_of_its_own_size(processes, programs, distribution, o
 
 
 def test_older_gid_size_is_used_with_mixed_distributions(processes, programs):
-    us = processes("ours")
+    process = processes("ours")
     programs("ros_peer", "jazzy", "new_node", "localhost")
-    us.spin_until(lambda: NodeIdentity("new_node", "/") in us.transport.remote_nodes())
+    process.spin_until(lambda: NodeIdentity("new_node", "/") in process.transport.remote_nodes())
     old = programs("ros_peer", "humble", "old_node", "localhost")
-    us.spin_until(lambda: NodeIdentity("old_node", "/") in us.transport.remote_nodes())
+    process.spin_until(lambda: NodeIdentity("old_node", "/") in process.transport.remote_nodes())
     old.ask_until(lambda nodes: any(node[1] == "ours" for node in nodes), "nodes")
 
 
 def test_topics_work_in_both_directions(processes, programs, distribution):
-    us = processes("ours")
+    process = processes("ours")
     texts: list[str] = []
-    us.node.create_subscription(String, "/from_ros", lambda message: texts.append(message.data), 10)
-    publisher = us.node.create_publisher(String, "/to_ros", 10)
+    process.node.create_subscription(String, "/from_ros", lambda message: texts.append(message.data), 10)
+    publisher = process.node.create_publisher(String, "/to_ros", 10)
     peer = programs("ros_peer", distribution, "real_node", "localhost")
-    us.spin_until(lambda: publisher.get_subscription_count() == 1)
-    us.spin_until(lambda: us.node.count_publishers("/from_ros") == 1)
+    process.spin_until(lambda: publisher.get_subscription_count() == 1)
+    process.spin_until(lambda: process.node.count_publishers("/from_ros") == 1)
     publisher.publish(String(data="hej"))
     assert peer.ask_until(bool, "received") == ["hej"]
     for number in range(3):
         peer.ask("publish", f"från {number}")
-    us.spin_until(lambda: len(texts) == 3)
+    process.spin_until(lambda: len(texts) == 3)
     assert texts == ["från 0", "från 1", "från 2"]
 
 
 def test_service_answers_ros_client(processes, programs, distribution):
-    us = processes("ours")
+    process = processes("ours")
 
     def flip(request, response):
         response.success, response.message = not request.data, "by us"
         return response
 
-    us.node.create_service(SetBool, "/our_flip", flip)
+    process.node.create_service(SetBool, "/our_flip", flip)
     peer = programs("ros_peer", distribution, "real_node", "localhost")
-    us.spin_until(lambda: us.node.count_clients("/our_flip") == 1)
+    process.spin_until(lambda: process.node.count_clients("/our_flip") == 1)
     peer.ask("call", False, 41)
-    us.spin_until(lambda: peer.ask("replies") == [[0x0123456789ABCDEF, 41, True, "by us"]])
+    process.spin_until(lambda: peer.ask("replies") == [[0x0123456789ABCDEF, 41, True, "by us"]])
 
 
 def test_client_is_answered_by_ros_service(processes, programs, distribution):
-    us = processes("ours")
-    client = us.node.create_client(SetBool, "/ros_flip")
+    process = processes("ours")
+    client = process.node.create_client(SetBool, "/ros_flip")
     future = client.call_async(SetBool.Request(data=False))
     peer = programs("ros_peer", distribution, "real_node", "localhost")
-    us.spin_until(lambda: peer.ask("answer") or future.done())
-    us.spin_until(future.done)
+    process.spin_until(lambda: peer.ask("answer") or future.done())
+    process.spin_until(future.done)
     assert future.result() == SetBool.Response(success=True, message="by ROS")
     assert client.service_is_ready()
     peer.kill()
 
 
 def test_endpoints_announce_type_hashes_and_client_ids(processes, programs):
-    us = processes("ours")
-    us.node.create_publisher(String, "/named", 10)
-    us.node.create_service(SetBool, "/asked", lambda _request, response: response)
-    us.node.create_client(SetBool, "/asking")
+    process = processes("ours")
+    process.node.create_publisher(String, "/named", 10)
+    process.node.create_service(SetBool, "/asked", lambda _request, response: response)
+    process.node.create_client(SetBool, "/asking")
     peer = programs("ros_peer", "jazzy", "real_node", "localhost")
     wanted = {"rt/named", "rq/askedRequest", "rr/askedReply", "rq/askingRequest", "rr/askingReply"}
     seen = peer.ask_until(lambda seen: wanted <= {endpoint[0] for endpoint in seen.values()}, "seen")
@@ -136,9 +136,9 @@ def test_ros_nodes_are_discovered_for_any_network_settings(
     if name:
         monkeypatch.setenv(name, value)
     if we_are_first:
-        us = processes("ours")
+        process = processes("ours")
         programs("ros_peer", network.split()[0].replace("localhost", "humble"), "real_node", network)
     else:
         programs("ros_peer", network.split()[0].replace("localhost", "humble"), "real_node", network)
-        us = processes("ours")
-    us.spin_until(lambda: NodeIdentity("real_node", "/") in us.transport.remote_nodes())
+        process = processes("ours")
+    process.spin_until(lambda: NodeIdentity("real_node", "/") in process.transport.remote_nodes())

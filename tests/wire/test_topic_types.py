@@ -132,11 +132,11 @@ def test_type_outlives_its_last_topic(shared, processes):
 
 
 def test_closed_domain_frees_types(processes, domain):
-    us = processes("alone")
-    us.node.create_publisher(String, "chatter", 10)
-    us.spin_until(lambda: domain in opened._opened and len(opened._opened[domain].types._type_addresses) > 1)
+    process = processes("alone")
+    process.node.create_publisher(String, "chatter", 10)
+    process.spin_until(lambda: domain in opened._opened and len(opened._opened[domain].types._type_addresses) > 1)
     types = opened._opened[domain].types
-    us.close()
+    process.close()
     assert domain not in opened._opened
     assert types._type_addresses == {}
 
@@ -156,8 +156,8 @@ def test_function_table_of_other_version_is_kept():
 
 
 def test_topic_rejected_by_cyclone_raises_error(processes):
-    us = processes("ours")
-    participant = us.transport._engine._participant
+    process = processes("ours")
+    participant = process.transport._engine._participant
     with pytest.raises(CycloneError, match="topic 'not a name'"):
         participant.create_topic("not a name", participant.types.message(String))
 

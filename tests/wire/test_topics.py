@@ -132,8 +132,8 @@ def test_callbacks_get_message_info(processes, wire):
     assert info.publisher_gid == publisher.gid
     assert info.publication_sequence_number == (1 if wire == "zenoh" else None)  # Cyclone does not hand it on
     assert before <= info.source_timestamp <= info.received_timestamp <= time.time_ns()
-    (seen,) = b.node.get_publishers_info_by_topic("/chatter")
-    assert bytes(seen.endpoint_gid[:16]) == publisher.gid
+    (endpoint,) = b.node.get_publishers_info_by_topic("/chatter")
+    assert bytes(endpoint.endpoint_gid[:16]) == publisher.gid
 
 
 def test_raw_subscription_gets_serialized_bytes(processes):
@@ -182,10 +182,10 @@ def test_qos_of_remote_endpoints_is_available(processes):
     a.node.create_publisher(String, "chatter", offered)
     a.node.create_publisher(String, "all", EVERYTHING)
     b.spin_until(lambda: b.node.count_publishers("chatter") and b.node.count_publishers("all"))
-    (seen,) = b.node.get_publishers_info_by_topic("/chatter")
-    assert seen.qos_profile == offered
-    (seen,) = b.node.get_publishers_info_by_topic("/all")
-    assert seen.qos_profile.history is HistoryPolicy.KEEP_ALL
+    (endpoint,) = b.node.get_publishers_info_by_topic("/chatter")
+    assert endpoint.qos_profile == offered
+    (endpoint,) = b.node.get_publishers_info_by_topic("/all")
+    assert endpoint.qos_profile.history is HistoryPolicy.KEEP_ALL
 
 
 def test_topic_can_avoid_ros_namespace_conventions(processes):
@@ -202,20 +202,20 @@ def test_topic_can_avoid_ros_namespace_conventions(processes):
 
 
 def test_malformed_samples_are_dropped_counted_and_reported_once(processes, programs):
-    us = processes("ours")
+    process = processes("ours")
     texts: list[str] = []
-    subscription = us.node.create_subscription(String, "/from_ros", lambda message: texts.append(message.data), 10)
+    subscription = process.node.create_subscription(String, "/from_ros", lambda message: texts.append(message.data), 10)
     peer = programs("ros_peer", "humble", "real_node", "localhost")
-    us.spin_until(lambda: us.node.count_publishers("/from_ros") == 1)
-    us.spin_until(lambda: subscription.get_publisher_count() == 1)
+    process.spin_until(lambda: process.node.count_publishers("/from_ros") == 1)
+    process.spin_until(lambda: subscription.get_publisher_count() == 1)
     not_utf8 = (b"\0\1\0\0" + b"\2\0\0\0\xff\0\0\0").hex()
     for _ in range(3):
         assert peer.ask("publish_bytes", not_utf8) == "written"
     peer.ask("publish", "fine")
-    us.spin_until(lambda: texts)
+    process.spin_until(lambda: texts)
     assert texts == ["fine"]
     assert subscription.malformed_count == 3
-    (warning,) = us.warnings()
+    (warning,) = process.warnings()
     assert "Dropped a malformed message of topic '/from_ros'" in warning
 
 
@@ -255,14 +255,16 @@ def test_image_publisher_reuses_memory(processes):
 
 
 def test_reliable_flood_loses_no_messages(processes, programs):
-    us = processes("ours")
+    process = processes("ours")
     numbers: list[int] = []
-    us.node.create_subscription("std_msgs/msg/Int32", "flood", lambda message: numbers.append(message.data), EVERYTHING)
+    process.node.create_subscription(
+        "std_msgs/msg/Int32", "flood", lambda message: numbers.append(message.data), EVERYTHING
+    )
     sender = programs("our_program", "sender")
     assert sender.ask_until(bool, "subscribers", "/flood")
     count = 20_000
     sender.ask("flood", "/flood", count)
-    us.spin_until(lambda: len(numbers) == count)
+    process.spin_until(lambda: len(numbers) == count)
     assert numbers == list(range(count))
 
 
@@ -287,16 +289,18 @@ def test_lost_liveliness_of_remote_publisher_is_reported(processes):
 
 
 def test_best_available_qos_considers_remote_endpoints(processes):
-    us, peer = processes("us"), processes("them")
+    process, peer = processes("us"), processes("them")
     best = QoSPresetProfiles.BEST_AVAILABLE.value
     peer.node.create_publisher(String, "/scan", QoSPresetProfiles.SENSOR_DATA.value)
     peer.node.create_subscription(String, "/command", print, QoSProfile(1, deadline=Duration(seconds=2)))
-    us.spin_until(lambda: us.node.count_publishers("/scan") == us.node.count_subscribers("/command") == 1)
-    us.node.create_subscription(String, "/scan", print, best)
-    us.node.create_publisher(String, "/command", best)
-    (asked,) = us.node.get_subscriptions_info_by_topic("/scan")
-    assert asked.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
-    (offered,) = us.node.get_publishers_info_by_topic("/command")
+    process.spin_until(
+        lambda: process.node.count_publishers("/scan") == process.node.count_subscribers("/command") == 1
+    )
+    process.node.create_subscription(String, "/scan", print, best)
+    process.node.create_publisher(String, "/command", best)
+    (endpoint,) = process.node.get_subscriptions_info_by_topic("/scan")
+    assert endpoint.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
+    (offered,) = process.node.get_publishers_info_by_topic("/command")
     assert offered.qos_profile.deadline == Duration(seconds=2)
 
 

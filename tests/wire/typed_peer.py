@@ -40,8 +40,8 @@ class TypedPeer(Node):
 
     def hear(self, types: list[str]) -> None:
         for name in types:
-            heard = self._heard.setdefault(name, [])
-            self.create_subscription(interface(name), _topic(name), heard.append, LASTING)
+            messages = self._heard.setdefault(name, [])
+            self.create_subscription(interface(name), _topic(name), messages.append, LASTING)
 
     def say(self, types: list[str], seeds: int) -> None:
         for name in types:
@@ -50,7 +50,7 @@ class TypedPeer(Node):
                 publisher.publish(message_from_seed(interface(name), seed))
 
     def counts(self) -> dict[str, int]:
-        return {name: len(heard) for name, heard in self._heard.items()}
+        return {name: len(messages) for name, messages in self._heard.items()}
 
     def heard(self, name: str) -> list[Any]:
         return [plain(message) for message in self._heard[name]]
@@ -143,11 +143,11 @@ class TypedPeer(Node):
         return self._said[topic]
 
     def _server(self, name: str) -> Any:
-        asked = self._asked.setdefault(name, [])
+        requests = self._asked.setdefault(name, [])
 
         def answer(request: Any, _: Any) -> Any:
-            asked.append(plain(request))
-            return message_from_seed(interface(name).Response, len(asked) - 1)
+            requests.append(plain(request))
+            return message_from_seed(interface(name).Response, len(requests) - 1)
 
         return answer
 

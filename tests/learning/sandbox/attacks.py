@@ -168,13 +168,13 @@ TRESPASS = """
 import ctypes, json, os, signal, socket, sys
 neighbor, grader, port, server = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
 libc = ctypes.CDLL(None, use_errno=True)
-done = {}
+outcomes = {}
 
 def attempt(name, action):
     try:
-        done[name] = action() is not False
+        outcomes[name] = action() is not False
     except OSError:
-        done[name] = False
+        outcomes[name] = False
 
 def connect(family, address):
     with socket.socket(family) as client:
@@ -215,7 +215,7 @@ for number in (signal.SIGTERM, signal.SIGINT, signal.SIGKILL):
         os.kill(os.getppid(), number)
     except OSError:
         pass
-print(json.dumps(done), flush=True)
+print(json.dumps(outcomes), flush=True)
 """
 
 KILL_ALL = """

@@ -178,8 +178,8 @@ async def test_ruff_formats_and_fixes(editor: Editor) -> None:
     findings = await editor.until(TALKER, "F401", "F401")
     unused = next(finding for finding in findings if finding.range.start.line == 0)
     context = types.CodeActionContext(findings)
-    asked = types.CodeActionParams(document, unused.range, context)
-    actions = await editor.client.text_document_code_action_async(asked)
+    parameters = types.CodeActionParams(document, unused.range, context)
+    actions = await editor.client.text_document_code_action_async(parameters)
     fixes = [action for action in actions or () if isinstance(action, types.CodeAction)]
     fix_all = next(fix for fix in fixes if str(fix.kind).startswith("source.fixAll"))
     resolved = await editor.client.code_action_resolve_async(fix_all)

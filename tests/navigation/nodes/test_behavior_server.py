@@ -119,13 +119,13 @@ async def test_assisted_teleop_stops_before_wall(scene):
     scene.costmap.grid.cells[:, 70:] = LETHAL  # from x = 3.5 m on
     scene.pose = (2.5, 2.5, 0.0)
     await scene.run(0.5)
-    asked = scene.node.create_publisher("geometry_msgs/msg/Twist", "/cmd_vel_teleop", 10)
+    teleop = scene.node.create_publisher("geometry_msgs/msg/Twist", "/cmd_vel_teleop", 10)
     goal = Asked(scene, "AssistedTeleop", "assisted_teleop")
     await goal.send(time_allowance=Duration(seconds=8.0).to_msg())
-    twist = asked.msg_type()
+    twist = teleop.msg_type()
     twist.linear.x = 0.4
     for _ in range(70):
-        asked.publish(twist)
+        teleop.publish(twist)
         await scene.run(0.1)
     assert 2.9 < scene.pose[0] < 3.31
     assert await goal.ends(3.0) == GoalStatus.ABORTED

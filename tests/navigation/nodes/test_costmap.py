@@ -94,8 +94,8 @@ async def test_costmap_inherits_tf_remappings_of_server(graph, scene):
     """The launch files of nav2 make the topics of transforms relative, for robots in namespaces."""
     options = NodeOptions(remappings=[("/tf", "tf"), ("/tf_static", "tf_static")])
     node = make_costmap(scene.node, graph, options, "global_costmap")
-    heard = {subscription.topic_name for subscription in node.subscriptions}
-    assert {"/tf", "/tf_static"} <= heard
+    topics = {subscription.topic_name for subscription in node.subscriptions}
+    assert {"/tf", "/tf_static"} <= topics
     node.shut_down()
     node.destroy_node()
 

@@ -29,8 +29,8 @@ async def measure(test, rpy=(0.0, 0.0, 0.0), rates=(0.0, 0.0, 0.0), magnetic=Fal
     back = quaternion_inverse(quaternion_from_rpy(rpy))
     if magnetic:
         field = get_message("sensor_msgs/msg/MagneticField")()
-        seen = field.magnetic_field
-        seen.x, seen.y, seen.z = rotate(back, (0.0, 2e-5, -4e-5))
+        magnetic_field = field.magnetic_field
+        magnetic_field.x, magnetic_field.y, magnetic_field.z = rotate(back, (0.0, 2e-5, -4e-5))
         test.publish("/imu/mag", field)
         await test.settle()
     message = get_message("sensor_msgs/msg/Imu")()

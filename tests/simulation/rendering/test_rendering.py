@@ -328,9 +328,9 @@ def test_round_shapes_match_mujoco(drawn, monkeypatch, light):
     apart = np.abs(ours.color.astype(int) - theirs.color).max(axis=-1)
     assert (theirs.color != theirs.color[0, 0]).any(axis=-1).mean() > 0.1
     assert (apart > 1).mean() < 1e-3
-    seen = np.isfinite(ours.depth) & np.isfinite(theirs.depth)
-    assert ours.depth[seen] == pytest.approx(theirs.depth[seen], abs=1e-3)
-    assert (np.isfinite(ours.depth) != seen).sum() < 20
+    is_visible = np.isfinite(ours.depth) & np.isfinite(theirs.depth)
+    assert ours.depth[is_visible] == pytest.approx(theirs.depth[is_visible], abs=1e-3)
+    assert (np.isfinite(ours.depth) != is_visible).sum() < 20
     assert few < many if not light else few != many  # squares of MuJoCo's, triangles of ours
 
 

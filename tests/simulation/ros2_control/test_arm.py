@@ -89,9 +89,11 @@ class Arm:
             ("ConfigureController", {"name": "arm"}),
             ("SwitchController", {"activate_controllers": ["arm"], "strictness": 2}),
         ):
-            asked = get_service(f"controller_manager_msgs/srv/{service}")
+            service_type = get_service(f"controller_manager_msgs/srv/{service}")
             name = service.replace("Controller", "_controller").lower()
-            future = self.node.create_client(asked, f"/controller_manager/{name}").call_async(asked.Request(**fields))
+            future = self.node.create_client(service_type, f"/controller_manager/{name}").call_async(
+                service_type.Request(**fields)
+            )
             await self.advance(wait)
             assert future.result().ok, service
 
@@ -131,9 +133,9 @@ async def test_arm_follows_trajectory_against_gravity(kind, tmp_path):
         await arm.begin(kind)
         states: list[Any] = []
         graph.create_node("listener").create_subscription(STATE, "/arm/controller_state", states.append, 10)
-        asked = arm.ask((2.0, [-0.6, 0.9], [0.0, 0.0]))
+        future = arm.ask((2.0, [-0.6, 0.9], [0.0, 0.0]))
         await arm.advance(2.5)
-        assert asked.status == SUCCEEDED, asked.result
+        assert future.status == SUCCEEDED, future.result
         assert arm.positions() == pytest.approx([-0.6, 0.9], abs=0.02)
         errors = [abs(error) for state in states for error in state.error.positions]
         assert max(errors) < 0.2
@@ -147,13 +149,13 @@ async def test_canceled_goal_stops_arm(tmp_path):
     async with served(model(parameters("position", tmp_path))) as (server, graph, _):
         arm = Arm(server, graph)
         await arm.begin("position")
-        asked = arm.ask((2.0, [-0.6, 0.9]))
+        future = arm.ask((2.0, [-0.6, 0.9]))
         await arm.advance(1.0)
-        asked.cancel()
+        future.cancel()
         await arm.advance(0.1)
         held = arm.positions()
         await arm.advance(1.0)
-        assert asked.status == CANCELED
+        assert future.status == CANCELED
         assert arm.positions() == pytest.approx(held, abs=0.01)
         assert held == pytest.approx([-0.3, 0.45], abs=0.05)
 

@@ -261,8 +261,8 @@ def test_degenerate_mesh_parts_do_not_omit_model(tmp_path):
     simulation = simulated(f'<model name="m"><static>true</static><link name="l">{visual}</link></model>')
     assert not simulation.scene.diagnostics
     model = simulation.model
-    seen = [model.mat_rgba[model.geom_matid[geom], :3].tolist() for geom in range(model.ngeom)]
-    assert sorted(seen) == [[0, 1, 0], [1, 0, 0]]
+    geometry_colors = [model.mat_rgba[model.geom_matid[geom], :3].tolist() for geom in range(model.ngeom)]
+    assert sorted(geometry_colors) == [[0, 1, 0], [1, 0, 0]]
 
 
 def test_meshes_with_same_image_share_texture(tmp_path):

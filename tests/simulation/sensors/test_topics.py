@@ -523,9 +523,9 @@ async def test_logical_camera_lists_models_in_view():
     ]
     async with served(carrier(sensor("logical_camera", looks)), *boxes) as (server, graph, log):
         (image,) = await last_messages(server, graph, "/seen")
-        (seen,) = image.model
-        assert seen.name == "ahead"
-        assert (seen.pose.position.x, seen.pose.position.y) == pytest.approx((2.0, -0.5))
+        (image_model,) = image.model
+        assert image_model.name == "ahead"
+        assert (image_model.pose.position.x, image_model.pose.position.y) == pytest.approx((2.0, -0.5))
         assert image.pose.position.z == pytest.approx(1.0)
         assert image.header.frame_id == "robot/head/eye"
         assert not log

@@ -55,14 +55,14 @@ def engine(request, monkeypatch):
 def test_engine_recognizes_utterances(engine):
     WhisperModel.texts[:] = [" Turn left.", " Nothing of that kind.", " Stop!"]
     WhisperModel.sounds.clear()
-    heard = []
+    results = []
     for phones in (WORDS["turn left"], "mumi", WORDS["stop"]):
         sound = say(phones, silence=0.8)
         for at in range(0, len(sound), BLOCK):
-            heard += engine.hear(sound[at : at + BLOCK])
-    assert [(result.text, result.final) for result in heard] == [("turn left", True), ("", True), ("stop", True)]
-    assert heard[0].confidence == pytest.approx(np.exp(-0.1))
-    assert all(result.start < result.end for result in heard)
+            results += engine.hear(sound[at : at + BLOCK])
+    assert [(result.text, result.final) for result in results] == [("turn left", True), ("", True), ("stop", True)]
+    assert results[0].confidence == pytest.approx(np.exp(-0.1))
+    assert all(result.start < result.end for result in results)
     assert all(np.abs(sound).max() > 0.1 for sound in WhisperModel.sounds)
 
 

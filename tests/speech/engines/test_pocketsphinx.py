@@ -80,8 +80,8 @@ class Decoder:
         return 3 * self.frames
 
     def hyp(self):
-        heard = " ".join(self.says[: self.frames])
-        return SimpleNamespace(hypstr=heard, prob=0.06) if heard else None
+        text = " ".join(self.says[: self.frames])
+        return SimpleNamespace(hypstr=text, prob=0.06) if text else None
 
     def seg(self):
         scores = {"<sil>": -1.0}
@@ -117,35 +117,35 @@ def test_utterance_is_recognized_in_blocks_of_any_length(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("go to the kitchen", "Stop")))
     assert "public <said> = go to the kitchen | stop;" in Decoder.decoders[0].grammar
     sound = np.concatenate([QUIET, QUIET, *[SPEECH] * 5, QUIET, QUIET])
-    heard = [result for at in range(0, len(sound), 700) for result in engine.hear(sound[at : at + 700])]
-    assert [(result.text, result.final) for result in heard] == [
+    results = [result for at in range(0, len(sound), 700) for result in engine.hear(sound[at : at + 700])]
+    assert [(result.text, result.final) for result in results] == [
         ("go to the kitchen", False),
         ("go to the kitchen", True),
     ]
-    assert heard[-1].confidence == pytest.approx(1 / (1 + math.exp(-1)))
-    assert (heard[-1].start, heard[-1].end) == pytest.approx((0.06, 0.24))
+    assert results[-1].confidence == pytest.approx(1 / (1 + math.exp(-1)))
+    assert (results[-1].start, results[-1].end) == pytest.approx((0.06, 0.24))
 
 
 @pytest.mark.parametrize(("fit", "confidence"), [(-4.0, 0.982), (-8.0, 0.5), (-11.0, 0.047), (-900.0, 0.0)])
 def test_acoustic_fit_sets_confidence(fake_decoder, monkeypatch, fit, confidence):
     monkeypatch.setattr(Decoder, "fit", fit)
     engine = PocketsphinxEngine(EngineOptions(("go to",)))
-    (heard,) = [*engine.hear(SPEECH), *engine.finish()]
-    assert (heard.text, heard.final) == ("go to", True)
-    assert heard.confidence == pytest.approx(confidence, abs=1e-3)
+    (result,) = [*engine.hear(SPEECH), *engine.finish()]
+    assert (result.text, result.final) == ("go to", True)
+    assert result.confidence == pytest.approx(confidence, abs=1e-3)
 
 
 def test_unknown_words_give_empty_text(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("stop",)))
-    (heard,) = engine.hear(np.concatenate([SPEECH, SPEECH, QUIET]))
-    assert (heard.text, heard.final) == ("", True)
+    (result,) = engine.hear(np.concatenate([SPEECH, SPEECH, QUIET]))
+    assert (result.text, result.final) == ("", True)
 
 
 def test_finish_ends_utterance(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("go", "stop")))
     assert [result.text for result in engine.hear(np.concatenate([SPEECH, SPEECH[:100]]))] == ["go"]
-    (heard,) = engine.finish()
-    assert heard.final
+    (final_result,) = engine.finish()
+    assert final_result.final
     assert list(engine.finish()) == []
     assert [result.text for result in engine.hear(SPEECH)] == ["go"]
     engine.close()
@@ -163,9 +163,9 @@ def test_finish_at_frame_end_works_with_real_library():
     sound = say(WORDS["forward"], silence=0.6)
     loud = 480 * (int(np.flatnonzero(np.abs(sound.astype(int)) > 500)[-1]) // 480)
     list(engine.hear(sound[:loud]))
-    (heard,) = engine.finish()
-    assert heard.final
-    assert 0.0 <= heard.confidence <= 1.0
+    (result,) = engine.finish()
+    assert result.final
+    assert 0.0 <= result.confidence <= 1.0
 
 
 def test_words_missing_from_real_dictionary_are_reported():

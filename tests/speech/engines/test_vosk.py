@@ -60,8 +60,8 @@ def test_grammar_has_phrases_and_unknown_token(model, vosk):
 
 def test_phrase_has_lowest_word_confidence_and_times(model):
     recognizer = engine(model)
-    heard = results_for(recognizer, "", "", "", "", "", "", "", [("turn", 0.8), ("left", 0.95)])
-    assert heard == [Heard("turn left", 0.8, True, pytest.approx(0.2), pytest.approx(0.8))]
+    results = results_for(recognizer, "", "", "", "", "", "", "", [("turn", 0.8), ("left", 0.95)])
+    assert results == [Heard("turn left", 0.8, True, pytest.approx(0.2), pytest.approx(0.8))]
 
 
 def test_silence_gives_no_result(model):
@@ -82,27 +82,27 @@ def test_silence_gives_no_result(model):
     ],
 )
 def test_unknown_speech_gives_empty_text_and_nearest_phrase(words, nearest, model):
-    (heard,) = results_for(engine(model), "", words)
-    assert (heard.text, heard.final, heard.nearest) == ("", True, nearest)
+    (result,) = results_for(engine(model), "", words)
+    assert (result.text, result.final, result.nearest) == ("", True, nearest)
 
 
 def test_consecutive_phrases_are_separated(model):
-    heard = results_for(engine(model), [("turn", 1.0), ("left", 0.9), ("now", 0.7), ("stop", 1.0)])
-    assert [(result.text, result.confidence) for result in heard] == [("turn left now", 0.7), ("stop", 1.0)]
+    results = results_for(engine(model), [("turn", 1.0), ("left", 0.9), ("now", 0.7), ("stop", 1.0)])
+    assert [(result.text, result.confidence) for result in results] == [("turn left now", 0.7), ("stop", 1.0)]
 
 
 def test_partials_are_reported_on_change_if_they_are_phrases(model):
     recognizer = engine(model)
-    heard = results_for(recognizer, "", "turn", "turn left", "turn left", "turn left now")
-    assert [(result.text, result.final) for result in heard] == [("turn left", False), ("turn left now", False)]
-    assert heard[0].start == pytest.approx(0.2)
-    assert heard[0].end == pytest.approx(0.3)
+    results = results_for(recognizer, "", "turn", "turn left", "turn left", "turn left now")
+    assert [(result.text, result.final) for result in results] == [("turn left", False), ("turn left now", False)]
+    assert results[0].start == pytest.approx(0.2)
+    assert results[0].end == pytest.approx(0.3)
     assert [result.text for result in results_for(recognizer, [("stop", 1.0)], "stop")] == ["stop", "stop"]
 
 
 def test_stop_within_other_speech_is_reported_as_partial(model):
-    heard = results_for(engine(model), "[unk]", "[unk] stop", [("[unk]", 1.0), ("stop", 1.0)])
-    assert [(result.text, result.final) for result in heard] == [("stop", False), ("", True)]
+    results = results_for(engine(model), "[unk]", "[unk] stop", [("[unk]", 1.0), ("stop", 1.0)])
+    assert [(result.text, result.final) for result in results] == [("stop", False), ("", True)]
 
 
 def test_finish_ends_utterance(model):
@@ -117,8 +117,8 @@ def test_chinese_phrases_are_segmented_into_model_words(model, vosk, monkeypatch
     monkeypatch.setattr(vosk, "WORDS", {"前进", "向", "左", "转", "左转", "停"})
     recognizer = engine(model, ("前进", "向左", "向左转", "停"), "zh")
     assert vosk.MADE[0].grammar == ["前进", "向 左", "向 左转", "停", "[unk]"]
-    heard = results_for(recognizer, [("向", 1.0), ("左", 1.0)], [("向", 1.0), ("左转", 1.0)])
-    assert [result.text for result in heard] == ["向左", "向左转"]
+    results = results_for(recognizer, [("向", 1.0), ("左", 1.0)], [("向", 1.0), ("左转", 1.0)])
+    assert [result.text for result in results] == ["向左", "向左转"]
 
 
 def test_phrase_matching_ignores_case(model):

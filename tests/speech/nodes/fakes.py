@@ -108,20 +108,20 @@ class Talk:
         ToldEngine.says_at_end.clear()
         await self.stage.graph.settle()
 
-    async def say(self, *heard: Heard, stamp: float | None = None) -> None:
+    async def say(self, *results: Heard, stamp: float | None = None) -> None:
         """Have the engine hear something, and wait until it was told; its thread takes its time.
 
         Args:
             heard: what it makes of a tenth of a second of sound.
             stamp: of that sound, seconds; now where it is not given.
         """
-        ToldEngine.says[len(ToldEngine.says) + 1] = list(heard)
+        ToldEngine.says[len(ToldEngine.says) + 1] = list(results)
         block = np.full(BLOCK, len(ToldEngine.says), np.int16)
         before = len(self.said["text"]) + len(self.said["partial_text"])
         now = self.stage.node.get_clock().now() if stamp is None else Time(nanoseconds=round(stamp * 1e9))
         self.sound.publish(audio_stamped(block.tobytes(), now.to_msg()))
         await self.stage.graph.settle()
-        if heard:
-            result = len(heard) + before
+        if results:
+            result = len(results) + before
             await eventually(lambda: len(self.said["text"]) + len(self.said["partial_text"]) >= result)
         await self.stage.graph.settle()

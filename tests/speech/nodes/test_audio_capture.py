@@ -60,16 +60,16 @@ async def test_file_is_published_at_clock_rate(test, wav):
 
 async def test_file_is_repeated_with_loop(test, wav):
     start(test, RobotAudioCapture, file=wav, loop=True, chunk=2_000)
-    heard = test.record("/audio/audio")
+    recording = test.record("/audio/audio")
     await test.advance(0.6)
-    assert np.array_equal(samples([message.data for message in heard])[:8_000], np.concatenate((TONE, TONE)))
+    assert np.array_equal(samples([message.data for message in recording])[:8_000], np.concatenate((TONE, TONE)))
 
 
 async def test_topics_are_in_node_namespace(test, wav):
     start(test, RobotAudioCapture, namespace="/ears", file=wav)
-    heard = test.record("/ears/audio_stamped")
+    recording = test.record("/ears/audio_stamped")
     await test.advance(0.2)
-    assert len(heard) == 2
+    assert len(recording) == 2
 
 
 async def test_unsupported_audio_parameters_are_reported(test, wav):
@@ -84,27 +84,27 @@ async def test_unsupported_audio_parameters_are_reported(test, wav):
 
 async def test_microphone_is_published(test, sounddevice):
     node = start(test)
-    heard = test.record("/audio_stamped")
+    recording = test.record("/audio_stamped")
     await test.settle()
     (stream,) = sounddevice.OPEN
     assert (stream.rate, stream.block, stream.started) == (16_000, 1_600, True)
     for first in (0, 1_600):
         stream.say(TONE[first : first + 1_600])
     await test.settle()
-    assert np.array_equal(samples([message.audio.data for message in heard]), TONE[:3_200])
+    assert np.array_equal(samples([message.audio.data for message in recording]), TONE[:3_200])
     node.close()
 
 
 async def test_microphone_with_other_rate_is_resampled(test, sounddevice, monkeypatch):
     monkeypatch.setattr(sounddevice, "RATES", {48_000})
     node = start(test, device="microphone")
-    heard = test.record("/audio")
+    recording = test.record("/audio")
     await test.settle()
     (stream,) = sounddevice.OPEN
     assert (stream.rate, stream.block) == (48_000, 4_800)
     stream.say(np.full(9_600, 1_000))
     await test.settle()
-    sound = samples([message.data for message in heard])
+    sound = samples([message.data for message in recording])
     assert 3_100 < len(sound) <= 3_200
     assert np.abs(sound[200:-200] - 1_000).max() <= 1
     node.close()

@@ -66,7 +66,7 @@ def test_full_boxes_of_balls_match_projected_outlines(stage):
     compared = 0
     for shot in shots(stage, 12):
         labels, _ = labeled(stage, shot)
-        seen = {label.full_box: label for label in labels}
+        label_by_box = {label.full_box: label for label in labels}
         axes = axes_of(shot.pose)
         for prop in (placed_prop for placed_prop in shot.placed_props if placed_prop.label == 0):
             center = (stage.simulation.data.geom_xpos[prop.geoms[0]] - np.array(shot.pose[:3])) @ axes
@@ -83,7 +83,7 @@ def test_full_boxes_of_balls_match_projected_outlines(stage):
             )
             if not ((expected > -100) & (expected < 340)).all():
                 continue
-            near = [box for box in seen if np.abs(np.array(box) - expected).max() <= 2.0]
+            near = [box for box in label_by_box if np.abs(np.array(box) - expected).max() <= 2.0]
             hidden = not any(label.label == 0 for label in labels)
             assert near or hidden or is_covered(stage, shot, prop)
             compared += bool(near)

@@ -26,10 +26,10 @@ def test_seeker_goes_to_ball(tmp_path, ball):
         place = test.robot_pose()
         test.advance(2.0)
         assert test.robot_pose()[:2] == pytest.approx(place[:2], abs=0.02), "it stands still"
-        seen = {name: test.call(f"/vision/describe{name}", TRIGGER.Request()).message for name in ("", "/en", "/zh")}
-        assert seen[""] == seen["/en"]
-        assert seen["/en"].startswith("I see a ball 0.")
-        assert "球" in seen["/zh"]
+        answers = {name: test.call(f"/vision/describe{name}", TRIGGER.Request()).message for name in ("", "/en", "/zh")}
+        assert answers[""] == answers["/en"]
+        assert answers["/en"].startswith("I see a ball 0.")
+        assert "球" in answers["/zh"]
 
 
 @pytest.mark.slow
@@ -59,8 +59,8 @@ def test_answers_are_in_language_of_request(tmp_path, language):
         test.tell_to_stop()
         test.settle()
         usual = "我在找球。" if language == "zh" else "I am looking for the ball."
-        asked = ["我在找球。", "I am looking for the ball."]
-        assert test.spoken() == [*asked, *asked, usual, "我在找球。", "我停下了。"]
+        answers = ["我在找球。", "I am looking for the ball."]
+        assert test.spoken() == [*answers, *answers, usual, "我在找球。", "我停下了。"]
 
 
 def test_seeker_follows_moving_ball_until_stopped(tmp_path):

@@ -68,10 +68,10 @@ def test_card_names_evaluation_worlds_also_used_for_training(tmp_path):
     assert describe_origin(write_card(tmp_path / "unseen", "maze", "line_track"), training_folder) == (
         "Worlds: line_track, maze. Options: seed 3, most 10. It was trained on none of them."
     )
-    seen = describe_origin(write_card(tmp_path / "seen", "maze", "house"), training_folder)
-    assert seen.endswith(" It was trained on other images of house.")
-    text = make_card("eye", {}, [EvaluationReport("Rooms", figures([0, 1]), seen)])
-    assert f"## Rooms\n\n{seen}\n\n1 images." in text
+    description = describe_origin(write_card(tmp_path / "seen", "maze", "house"), training_folder)
+    assert description.endswith(" It was trained on other images of house.")
+    text = make_card("eye", {}, [EvaluationReport("Rooms", figures([0, 1]), description)])
+    assert f"## Rooms\n\n{description}\n\n1 images." in text
     assert describe_origin(tmp_path, training_folder) == ""
     assert describe_origin(write_card(tmp_path / "unseen", "maze"), tmp_path).endswith(" Options: seed 3, most 10.")
 

@@ -44,11 +44,11 @@ def test_graph_is_restored_after_router_restart(processes, start_router, monkeyp
     monkeypatch.setenv(OVERRIDES, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
     router = start_router()
     a, b = processes("a"), processes("b")
-    heard: list[str] = []
+    chatter_texts: list[str] = []
     described: list[str] = []
     chatter = a.node.create_publisher(String, "chatter", EVERYTHING)
     a.node.create_publisher(String, "described", LASTING).publish(String(data="robot"))
-    b.node.create_subscription(String, "chatter", lambda message: heard.append(message.data), EVERYTHING)
+    b.node.create_subscription(String, "chatter", lambda message: chatter_texts.append(message.data), EVERYTHING)
     b.node.create_subscription(String, "described", lambda message: described.append(message.data), LASTING)
 
     def add(request, response):
@@ -78,7 +78,7 @@ def test_graph_is_restored_after_router_restart(processes, start_router, monkeyp
             router = start_router()
         spin_both(sees_all)
         chatter.publish(String(data=word))
-        spin_both(lambda word=word: word in heard)
+        spin_both(lambda word=word: word in chatter_texts)
         future = client.call_async(AddTwoInts.Request(a=first, b=10))
         spin_both(future.done)
         assert future.result().sum == first + 10
@@ -90,7 +90,7 @@ def test_graph_is_restored_after_router_restart(processes, start_router, monkeyp
         late.spin_until(lambda texts=texts: texts)
         assert texts == ["robot"]
         late.close()
-    assert heard == ["before", "after", "and again"]
+    assert chatter_texts == ["before", "after", "and again"]
     assert described == ["robot"]
 
 
@@ -105,9 +105,9 @@ def test_late_router_is_found(processes, start_router, by_router_alone, monkeypa
 
 def test_missing_router_is_reported(processes, by_router_alone, monkeypatch):
     monkeypatch.setenv(ATTEMPTS, "1")
-    us = processes("ours")
-    us.spin_until(us.warnings)
-    (text,) = us.warnings()
+    process = processes("ours")
+    process.spin_until(process.warnings)
+    (text,) = process.warnings()
     assert "There is no Zenoh router" in text
     assert "linkwright run rmw_zenoh_cpp rmw_zenohd" in text
 

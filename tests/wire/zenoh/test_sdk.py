@@ -36,46 +36,46 @@ def peer(programs, router_port, monkeypatch):
     )
 
 
-def ask_while_spinning(us, question):
+def ask_while_spinning(process, question):
     """The answer to something asked of the peer, for which our callbacks have to run."""
     answers = []
     thread = threading.Thread(target=lambda: answers.append(question()))
     thread.start()
-    us.spin_until(lambda: answers, 300)
+    process.spin_until(lambda: answers, 300)
     thread.join()
     return answers[0]
 
 
 def test_messages_work_in_both_directions(processes, peer):
-    us = processes("ours")
+    process = processes("ours")
     texts = []
-    us.node.create_subscription(String, "from_sdk", lambda message: texts.append(message.data), EVERYTHING)
-    publisher = us.node.create_publisher(String, "to_sdk", EVERYTHING)
+    process.node.create_subscription(String, "from_sdk", lambda message: texts.append(message.data), EVERYTHING)
+    publisher = process.node.create_publisher(String, "to_sdk", EVERYTHING)
     sdk_peer = peer()
-    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    process.spin_until(lambda: publisher.get_subscription_count() == 1)
     sdk_peer.ask_until(bool, "listeners")
     sdk_peer.ask("say", 0, 100)
     for number in range(1000):
         publisher.publish(String(data=str(number)))
-    us.spin_until(lambda: len(texts) == 100)
+    process.spin_until(lambda: len(texts) == 100)
     assert texts == [str(number) for number in range(100)]
     assert sdk_peer.ask_until(lambda heard: len(heard) == 1000, "heard") == [str(number) for number in range(1000)]
 
 
 def test_sdk_and_linkwright_discover_endpoints(processes, peer):
-    us = processes("ours")
+    process = processes("ours")
     sdk_peer = peer()
-    us.spin_until(lambda: "sdk" in us.node.get_node_names())
-    us.spin_until(lambda: ("/flip_sdk", ["std_srvs/srv/SetBool"]) in us.node.get_service_names_and_types())
-    (seen,) = us.node.get_publishers_info_by_topic("/from_sdk")
-    assert (seen.node_name, seen.topic_type) == ("sdk", "std_msgs/msg/String")
+    process.spin_until(lambda: "sdk" in process.node.get_node_names())
+    process.spin_until(lambda: ("/flip_sdk", ["std_srvs/srv/SetBool"]) in process.node.get_service_names_and_types())
+    (endpoint,) = process.node.get_publishers_info_by_topic("/from_sdk")
+    assert (endpoint.node_name, endpoint.topic_type) == ("sdk", "std_msgs/msg/String")
     sdk_peer.end()
-    us.spin_until(lambda: "sdk" not in us.node.get_node_names())
-    assert not us.node.count_publishers("/from_sdk")
+    process.spin_until(lambda: "sdk" not in process.node.get_node_names())
+    assert not process.node.count_publishers("/from_sdk")
 
 
 def test_thousand_calls_of_sdk_clients_get_their_own_responses(processes, peer):
-    us = processes("ours")
+    process = processes("ours")
     served = []
 
     def flip(request, response):
@@ -83,18 +83,18 @@ def test_thousand_calls_of_sdk_clients_get_their_own_responses(processes, peer):
         response.success, response.message = not request.data, "flipped"
         return response
 
-    us.node.create_service(SetBool, "flip", flip)
+    process.node.create_service(SetBool, "flip", flip)
     sdk_peer = peer()
-    message = ask_while_spinning(us, lambda: sdk_peer.ask("call", CLIENTS, CALLS // CLIENTS))
+    message = ask_while_spinning(process, lambda: sdk_peer.ask("call", CLIENTS, CALLS // CLIENTS))
     assert message == [[f"{number % 2 == 0} flipped" for number in range(CALLS // CLIENTS)]] * CLIENTS
     assert len(served) == CALLS
 
 
 def test_thousand_calls_of_linkwright_clients_get_their_own_responses(processes, peer):
-    us = processes("ours")
-    clients = [us.node.create_client(SetBool, "flip_sdk") for _ in range(CLIENTS)]
+    process = processes("ours")
+    clients = [process.node.create_client(SetBool, "flip_sdk") for _ in range(CLIENTS)]
     sdk_peer = peer()
-    us.spin_until(lambda: all(client.service_is_ready() for client in clients))
+    process.spin_until(lambda: all(client.service_is_ready() for client in clients))
     answers = [[] for _ in clients]
     waiting = [None for _ in clients]
 
@@ -107,6 +107,6 @@ def test_thousand_calls_of_linkwright_clients_get_their_own_responses(processes,
                 waiting[which] = client.call_async(SetBool.Request(data=len(answers[which]) % 2 == 1))
         return all(len(answer) == CALLS // CLIENTS for answer in answers)
 
-    us.spin_until(all_answered, 300)
+    process.spin_until(all_answered, 300)
     assert answers == [[number % 2 == 0 for number in range(CALLS // CLIENTS)]] * CLIENTS
     assert sdk_peer.ask("served") == CALLS

@@ -115,13 +115,13 @@ def test_request_in_transit_ends_when_service_closes(processes):
 
 
 def test_request_without_attachment_is_rejected(processes):
-    us = processes("ours")
+    process = processes("ours")
     asked = []
-    us.node.create_service(SetBool, "flip", lambda request, response: asked.append(request) or response)
+    process.node.create_service(SetBool, "flip", lambda request, response: asked.append(request) or response)
     with open_with(configuration(read_settings())) as session:
         key = f"{read_settings().domain_id}/flip/std_srvs::srv::dds_::SetBool_/{type_hash(SetBool)}"
         asking = session.declare_querier(key)
-        us.spin_until(lambda: asking.matching_status.matching)
+        process.spin_until(lambda: asking.matching_status.matching)
         body = b"\0\1\0\0\1"
         assert list(asking.get(payload=body)) == []
         assert list(asking.get(payload=body, attachment=b"nonsense")) == []

@@ -39,25 +39,27 @@ def silent_port() -> Iterator[int]:
 
 def test_client_reports_missing_router_and_joins_when_it_starts(processes, start_router, monkeypatch, router_port):
     monkeypatch.setenv(OVERRIDES, client_of(router_port))
-    us = processes("ours", join_now=False)
-    joining = threading.Thread(target=us.join)
+    process = processes("ours", join_now=False)
+    joining = threading.Thread(target=process.join)
     joining.start()
-    us.spin_until(us.warnings)
-    assert us.warnings()[0].startswith(f"Waiting for a Zenoh router: nothing listens at tcp/localhost:{router_port}")
+    process.spin_until(process.warnings)
+    assert process.warnings()[0].startswith(
+        f"Waiting for a Zenoh router: nothing listens at tcp/localhost:{router_port}"
+    )
     start_router()
     joining.join()
     other = processes("other")
-    us.spin_until(lambda: "other" in us.node.get_node_names())
+    process.spin_until(lambda: "other" in process.node.get_node_names())
     other.close()
 
 
 def test_wait_for_router_ends_after_timeout(processes, monkeypatch, router_port):
     monkeypatch.setenv(OVERRIDES, client_of(router_port, 1500))
-    us = processes("ours", join_now=False)
+    process = processes("ours", join_now=False)
     with pytest.raises(AssertionError):
-        us.join()
-    assert f"nothing listens at tcp/localhost:{router_port}" in us.warnings()[-1]
-    assert "DDS112" in us.warnings()[-1]
+        process.join()
+    assert f"nothing listens at tcp/localhost:{router_port}" in process.warnings()[-1]
+    assert "DDS112" in process.warnings()[-1]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="processes are not interrupted so on Windows")

@@ -42,8 +42,8 @@ def test_qos_of_remote_endpoints_is_available_and_always_matches(processes):
     b.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     b.spin_until(lambda: b.node.count_publishers("chatter"))
-    (seen,) = b.node.get_publishers_info_by_topic("/chatter")
-    assert seen.qos_profile == offered
+    (endpoint,) = b.node.get_publishers_info_by_topic("/chatter")
+    assert endpoint.qos_profile == offered
     publisher.publish(String(data="hej"))
     b.spin_until(lambda: texts == ["hej"])
     assert not [text for text in (*a.warnings(), *b.warnings()) if "incompatible" in text]
@@ -84,8 +84,8 @@ def test_remote_nodes_and_topics_appear_and_disappear(processes):
     b.node.create_publisher(String, "/far/chatter", 10)
     a.spin_until(lambda: "b" in a.node.get_node_names())
     a.spin_until(lambda: ("/far/chatter", ["std_msgs/msg/String"]) in a.node.get_topic_names_and_types())
-    (seen,) = a.node.get_publishers_info_by_topic("/far/chatter")
-    assert seen.node_name == "b"
+    (endpoint,) = a.node.get_publishers_info_by_topic("/far/chatter")
+    assert endpoint.node_name == "b"
     b.close()
     a.spin_until(lambda: "b" not in a.node.get_node_names())
     assert a.node.count_publishers("/far/chatter") == 0
@@ -128,55 +128,55 @@ def test_humble_has_no_type_hashes(processes, monkeypatch):
 
 
 def test_sample_without_attachment_is_dropped_and_reported_once(processes):
-    us = processes("ours")
+    process = processes("ours")
     texts: list[str] = []
-    us.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
+    process.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
     with open_with(configuration(read_settings())) as session:
         key = f"{read_settings().domain_id}/chatter/std_msgs::msg::dds_::String_/{type_hash(String)}"
         stranger = session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
-        us.spin_until(lambda: stranger.matching_status.matching)
+        process.spin_until(lambda: stranger.matching_status.matching)
         for _ in range(3):
             stranger.put(serialize(String(data="who am I")))
-        us.spin_until(us.warnings)
+        process.spin_until(process.warnings)
     assert not texts
-    (text,) = us.warnings()
+    (text,) = process.warnings()
     assert "it lacks the sender" in text
 
 
 def test_raw_subscription_accepts_unknown_type(processes):
-    us = processes("ours")
+    process = processes("ours")
     payloads: list[bytes] = []
-    us.node.create_subscription("strange_msgs/msg/Odd", "odd", payloads.append, 10, raw=True)
+    process.node.create_subscription("strange_msgs/msg/Odd", "odd", payloads.append, 10, raw=True)
     with open_with(configuration(read_settings())) as session:
         from linkwright.wire.zenoh import attachment
 
         stranger = session.declare_publisher(f"{read_settings().domain_id}/odd/strange_msgs::msg::dds_::Odd_/RIHS01_00")
-        us.spin_until(lambda: stranger.matching_status.matching)
+        process.spin_until(lambda: stranger.matching_status.matching)
         stranger.put(b"\0\1\0\0abcd", attachment=attachment.write(1, 2, bytes(16)))
-        us.spin_until(lambda: payloads)
+        process.spin_until(lambda: payloads)
     assert payloads == [b"\0\1\0\0abcd"]
 
 
 def test_closed_publisher_is_not_lost_and_killed_one_is(processes, programs):
-    us = processes("ours")
+    process = processes("ours")
     lost: list[EndpointInfo] = []
-    us.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
+    process.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
     peer, marker = processes("theirs"), programs("our_program", "marker")
     publisher = peer.node.create_publisher(String, "/other", 10)
     peer.node.create_publisher(String, "/other", 10)
-    us.spin_until(lambda: us.node.count_publishers("/other") == 2)
+    process.spin_until(lambda: process.node.count_publishers("/other") == 2)
     publisher.destroy()
-    us.spin_until(lambda: us.node.count_publishers("/other") == 1)
+    process.spin_until(lambda: process.node.count_publishers("/other") == 1)
     peer.close()
-    us.spin_until(lambda: us.node.count_publishers("/other") == 0)
-    us.node.create_subscription("rcl_interfaces/msg/Log", "/rosout", lambda _: None, 10).watch_lost(lost.append)
-    us.spin_until(lambda: "marker" in us.node.get_node_names())
-    us.spin_until(lambda: us.node.count_publishers("/rosout") == 2)
+    process.spin_until(lambda: process.node.count_publishers("/other") == 0)
+    process.node.create_subscription("rcl_interfaces/msg/Log", "/rosout", lambda _: None, 10).watch_lost(lost.append)
+    process.spin_until(lambda: "marker" in process.node.get_node_names())
+    process.spin_until(lambda: process.node.count_publishers("/rosout") == 2)
     marker.kill()
-    us.spin_until(lambda: lost)  # after those that left, if these were told, too
+    process.spin_until(lambda: lost)  # after those that left, if these were told, too
     assert {endpoint.node.name for endpoint in lost} == {"marker"}, lost
     again = programs("our_program", "marker")
-    us.spin_until(lambda: us.node.get_node_names().count("marker") == 1)
+    process.spin_until(lambda: process.node.get_node_names().count("marker") == 1)
     again.ask_until(lambda nodes: nodes == ["marker", "ours"], "nodes")  # who is heard need not have heard
 
 

@@ -232,10 +232,10 @@ async def test_full_scene_is_requested_when_move_group_appears():
         world.describe(ARM)
         await world.settle()
         node = world.graph.create_node("move_group")
-        asked = []
+        requests = []
 
         def give(request, response):
-            asked.append(request.components.components)
+            requests.append(request.components.components)
             response.scene = scene(collision_object("shelf"), robot=state(shoulder=1.0), name="kitchen")
             return response
 
@@ -243,7 +243,7 @@ async def test_full_scene_is_requested_when_move_group_appears():
         display = world.display("PlanningScene")
         await eventually(lambda: "Scene Geometry/shelf" in shown_markers(display))
         assert "Scene Robot/hand" in shown_markers(display)
-        (components,) = asked
+        (components,) = requests
         assert components & 16
         rows = {row.name: row for row in display.row().properties}
         assert rows["Scene Geometry"].children[0].value == "kitchen"
