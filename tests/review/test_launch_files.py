@@ -560,3 +560,42 @@ def test_include_of_renamed_file_is_replaced(repository, compare):
     assert sentences(subject(compare(repository), "arm/launch/arm.launch.py")) == [
         "include of '$(dirname)/part.launch.py' replaced by include of '$(dirname)/joints.launch.py'"
     ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('FindPackageShare("arm"), "a.yaml"])', 'PathSubstitution(FindPackageShare("arm")) / "a.yaml")'),
+        ('FindExecutable(name="xacro"), " arm.urdf"', '"xacro arm.urdf"'),
+    ],
+)
+def test_other_notation_of_a_path_or_command_is_no_change(changes_of, old, new):
+    text = """def generate_launch_description():
+    return LaunchDescription([
+        Node(package="arm", executable="driver", parameters=[
+            {"file": PathJoinSubstitution([FindPackageShare("arm"), "a.yaml"])},
+            {"robot_description": Command([FindExecutable(name="xacro"), " arm.urdf"])},
+        ]),
+    ])
+"""
+    before = "PathJoinSubstitution([" if "yaml" in old else ""
+    assert changes_of("arm.launch.py", text, before + old, ("(" if before else "") + new) == ([], [])
+
+
+def test_action_that_is_appended_to_a_list_is_no_other_code(changes_of):
+    text = """def generate_launch_description():
+    actions = [Node(package="arm", executable="driver")]
+    actions.append(Node(package="arm", executable="hand"))
+    return LaunchDescription(actions)
+"""
+    found, _ = changes_of(
+        "arm.launch.py", text, "    return", "    actions.append(Node(package='a', executable='b'))\n    return"
+    )
+    assert found == ["node 'a/b' added"]
+
+
+def test_removed_include_stops_its_nodes(changes_with_reasons):
+    line = '        IncludeLaunchDescription(PathJoinSubstitution([ThisLaunchFileDir(), "part.launch.py"])),\n'
+    assert changes_with_reasons(READING.replace(line, "")) == {
+        "include of '$(dirname)/part.launch.py' removed": "its nodes do not start any more"
+    }

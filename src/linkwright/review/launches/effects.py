@@ -25,6 +25,9 @@ from linkwright.review.list_changes import list_items
 
 _USER_INTERFACE = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
 """Programs that offer nothing to other programs."""
+_USER_INTERFACE_FILE = re.compile(r"rviz|rqt|[^/]*gui[^/]*$")
+_JOINT_STATES = "joint_state_publisher"
+"""The beginning of the names of two packages that publish the same."""
 _SPAWNING = re.compile(
     r"(ros_gz_sim|ros_ign_gazebo)/(create|remove)|(gazebo_ros|gazebo)/(spawn_entity\.py|spawn_model)|webots_ros2\w*/.*spawn.*"
 )
@@ -36,6 +39,8 @@ _NAME_ARGUMENT = re.compile(
 )
 """The arguments whose values are, by their names, names that other programs use."""
 _TRUTH = ("true", "false")
+_CODE = re.compile(r"\w\(")
+"""A call in a name, whose result is unknown."""
 _FRAME_PREFIX = f"{PARAMETER}frame_prefix"
 _NEVER = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
@@ -64,7 +69,13 @@ def removal_reason(entry: Entry, outline: LaunchOutline, new: LaunchOutline) -> 
         return phrase("a value that a user sets for '{name}' has no effect", name=entry.name)
     if entry.kind == "remapping":
         return _remapping_reason(entry.name, entry.settings.get("to"), None, outline, outline)
-    if entry.kind != "node" or offers_nothing(entry) or condition_holds(_condition(entry, outline)) is False:
+    if entry.kind not in ("node", "include") or offers_nothing(entry):
+        return None
+    if condition_holds(_condition(entry, outline)) is False:
+        return None
+    if entry.kind == "include":
+        return None if _USER_INTERFACE_FILE.search(entry.name) else phrase("its nodes do not start any more")
+    if entry.name.startswith(_JOINT_STATES) and any(other.name.startswith(_JOINT_STATES) for other in new.entries):
         return None
     names = _served_names(entry, outline)
     if not names:
@@ -256,6 +267,8 @@ def _remapping_reason(
     new_name = new_outline.resolved(source if new is None else new)
     if old_name.lstrip("/") == new_name.lstrip("/"):  # the same name in the empty namespace
         return None
+    if _CODE.search(new_name):
+        return None  # the name may be the same
     return name_reason(old_name)
 
 

@@ -12,6 +12,8 @@ from linkwright.review.launches.text import shortened_text
 
 _TRANSPARENT = frozenset({"add_action", "add_entity", "GroupAction", "LaunchDescription", "LoadComposableNodes"})
 """The calls that only put actions together."""
+_ADDITIONS = ("append", "extend")
+"""The methods that put actions into lists."""
 _CONTENTS = ("actions", "composable_node_descriptions", None)
 """The arguments of these calls that contain actions."""
 _BODIES = ("body", "orelse", "finalbody", "handlers", "cases")
@@ -81,6 +83,8 @@ class _Rest:
             return ""
         if isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _TRANSPARENT:
             return self._group(node)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _ADDITIONS:
+            return self._other(node) if self._items(node.args) else ""
         if isinstance(node, (ast.List, ast.Tuple)):
             return self._items(node.elts)
         if isinstance(node, ast.Return):

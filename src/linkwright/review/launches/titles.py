@@ -61,6 +61,8 @@ def served_names(entry: Entry) -> list[str]:
     """Return the controllers that a spawner starts, or the frame that a static transform places; empty if unknown."""
     text = entry.settings.get("arguments", "")
     words = list_items(text) if text.startswith("[") else text.split()
+    if words == [text] and text.startswith("["):
+        return []  # an expression that is not known
     if _SPAWNER.fullmatch(entry.name):
         return list(_controllers(words))
     if not entry.name.startswith(TRANSFORM_PUBLISHERS):
