@@ -16,7 +16,7 @@ from linkwright.rviz.displays import catalog
 from tests.docs.pages import DOCS, blocks
 from tests.toml_files import read_toml
 from tests.viewer.contents import shown_markers
-from tests.viewer.scene import page, open_world
+from tests.viewer.scene import open_world, page
 
 PAGES = (DOCS / "own-displays.md", DOCS / "zh" / "own-displays.md")
 CLASS = "street_displays/TrackedObjects"

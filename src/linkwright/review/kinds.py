@@ -21,8 +21,10 @@ from linkwright.review.files.rviz_files import compare_rviz_files
 from linkwright.review.files.semantics import compare_semantics
 from linkwright.review.files.setup_files import SETUP_FILE, compare_setup_files
 from linkwright.review.files.worlds import compare_worlds
+from linkwright.review.launches.contents import launch_contents
 from linkwright.review.launches.files import compare_launch_files
 from linkwright.review.robots.descriptions import compare_descriptions
+from linkwright.review.versions import Version
 
 _YAML_SUFFIXES = (".yaml", ".yml")
 _TEST_FOLDERS = frozenset({"test", "tests"})
@@ -39,6 +41,7 @@ class KindRule:
         added: the sentence for an added file.
         removed: the sentence for a removed file.
         removal_reason: why it is breaking to remove or rename a file; None if it is not.
+        contents: the function that returns the contents of an added file in one line, or None if they are unknown.
     """
 
     kind: SubjectKind
@@ -47,6 +50,7 @@ class KindRule:
     added: Phrase
     removed: Phrase
     removal_reason: Phrase | None = None
+    contents: Callable[[Version, str], Phrase | None] | None = None
 
 
 _RULES = (
@@ -73,6 +77,7 @@ _RULES = (
         phrase("launch file added"),
         phrase("launch file removed"),
         phrase("launch files and users that start the file do not find it"),
+        launch_contents,
     ),
     KindRule(
         SubjectKind.INTERFACE,

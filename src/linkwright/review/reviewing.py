@@ -26,6 +26,7 @@ from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
 from linkwright.review.kinds import LAUNCH_HELPER, KindRule, may_help_launch_files, rule_of
+from linkwright.review.launches.formats import with_other_formats
 from linkwright.review.launches.helpers import makes_actions
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
 from linkwright.review.parts import compare_parts
@@ -82,7 +83,8 @@ class _Reviewer:
         self._versions = versions
         self._drawings = drawings
         self._folders = folders
-        self._changed_files = [file for file in versions.changed_files if self._is_in_scope(file.path)]
+        changed_files = with_other_formats(versions.changed_files)
+        self._changed_files = [file for file in changed_files if self._is_in_scope(file.path)]
         self._new_paths = {
             file.old_path: file.new_path for file in self._changed_files if file.old_path and file.new_path
         }
@@ -249,7 +251,9 @@ def _compare(
     """
     kind, path = rule.kind, new_path or old_path or ""
     if old_path is None:
-        return Subject(kind, path, None, new_path, [Change(rule.added)])
+        contents = None if rule.contents is None else rule.contents(versions.new, path)
+        text = rule.added if contents is None else phrase("{change}: {items}", change=rule.added, items=contents)
+        return Subject(kind, path, None, new_path, [Change(text)])
     effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
     if new_path is None:
         return Subject(kind, path, old_path, None, [Change(rule.removed, effect, rule.removal_reason)])

@@ -15,6 +15,7 @@ from linkwright.review.launches.outlines import (
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
     PARAMETER,
+    READING,
     REMAPPING,
     Entry,
     LaunchOutline,
@@ -24,6 +25,9 @@ from linkwright.review.list_changes import list_items
 
 _USER_INTERFACE = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
 """Programs that offer nothing to other programs."""
+_USER_INTERFACE_FILE = re.compile(r"rviz|rqt|[^/]*gui[^/]*$")
+_JOINT_STATES = "joint_state_publisher"
+"""The beginning of the names of two packages that publish the same."""
 _SPAWNING = re.compile(
     r"(ros_gz_sim|ros_ign_gazebo)/(create|remove)|(gazebo_ros|gazebo)/(spawn_entity\.py|spawn_model)|webots_ros2\w*/.*spawn.*"
 )
@@ -34,6 +38,9 @@ _NAME_ARGUMENT = re.compile(
     r"(^|_)(namespace|ns|robot_name|tf_prefix|frame_prefix|prefix|frame|frame_id|topic|controller|controller_name)$"
 )
 """The arguments whose values are, by their names, names that other programs use."""
+_TRUTH = ("true", "false")
+_CODE = re.compile(r"\w\(")
+"""A call in a name, whose result is unknown."""
 _FRAME_PREFIX = f"{PARAMETER}frame_prefix"
 _NEVER = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
@@ -58,9 +65,17 @@ def removal_reason(entry: Entry, outline: LaunchOutline, new: LaunchOutline) -> 
     """
     if entry.kind == "argument" and "value" not in entry.settings:
         return value_reason(entry.name)
+    if entry.kind == READING:
+        return phrase("a value that a user sets for '{name}' has no effect", name=entry.name)
     if entry.kind == "remapping":
         return _remapping_reason(entry.name, entry.settings.get("to"), None, outline, outline)
-    if entry.kind != "node" or offers_nothing(entry) or condition_holds(_condition(entry, outline)) is False:
+    if entry.kind not in ("node", "include") or offers_nothing(entry):
+        return None
+    if condition_holds(_condition(entry, outline)) is False:
+        return None
+    if entry.kind == "include":
+        return None if _USER_INTERFACE_FILE.search(entry.name) else phrase("its nodes do not start any more")
+    if entry.name.startswith(_JOINT_STATES) and any(other.name.startswith(_JOINT_STATES) for other in new.entries):
         return None
     names = _served_names(entry, outline)
     if not names:
@@ -68,6 +83,19 @@ def removal_reason(entry: Entry, outline: LaunchOutline, new: LaunchOutline) -> 
             return phrase("programs that look up the frame of the node do not find it")
         return phrase("the topics and services of the node are missing")
     return _served_reason(entry, names, new)
+
+
+def addition_reason(entry: Entry) -> Phrase | None:
+    """Return why it is breaking that an action is added, or None if it is not."""
+    if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
+        return _required_reason(entry)
+    if entry.kind == READING and not entry.settings:
+        return phrase("the launch file fails where '{name}' is not set", name=entry.name)
+    return None
+
+
+def _required_reason(argument: Entry) -> Phrase:
+    return phrase("callers must pass '{name}'", name=argument.name)
 
 
 def value_reason(name: str) -> Phrase:
@@ -93,6 +121,8 @@ def setting_reason(
         old_outline: the old file.
         new_outline: the new file.
     """
+    if entry.kind == READING:
+        return addition_reason(entry)
     if entry.kind == "argument":
         return _argument_reason(entry, setting, old, new, old_outline, new_outline)
     if entry.kind == "remapping" and setting == "to":
@@ -144,7 +174,7 @@ def _argument_reason(
     new_outline: LaunchOutline,
 ) -> Phrase | None:
     if setting == "default" and new is None and "value" not in entry.settings:
-        return phrase("callers must pass '{name}'", name=entry.name)
+        return _required_reason(entry)
     if setting == "default" and old is not None and new is not None:
         return _default_reason(entry, old, new, old_outline, new_outline)
     if setting == "choices" and old is not None and new is not None:
@@ -166,6 +196,8 @@ def _default_reason(
             if short is old:
                 return phrase("callers that pass the name of a file instead of its path fail")
             return phrase("callers that pass the path of a file instead of its name fail")
+    if old_value.lower() in _TRUTH and re.fullmatch(r"[a-z]\w*", new_value.lower()) and new_value.lower() not in _TRUTH:
+        return phrase("callers that pass '{value}' fail", value=old_value)
     reasons = _reasons_of_uses(argument.name, old_outline, new_outline)
     reason = next((reason for reason in reasons if reason is not None), None)
     if reason is None and old_value and _NAME_ARGUMENT.search(argument.name) and "/" not in f"{old_value}{new_value}":
@@ -235,6 +267,8 @@ def _remapping_reason(
     new_name = new_outline.resolved(source if new is None else new)
     if old_name.lstrip("/") == new_name.lstrip("/"):  # the same name in the empty namespace
         return None
+    if _CODE.search(new_name):
+        return None  # the name may be the same
     return name_reason(old_name)
 
 

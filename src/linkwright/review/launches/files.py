@@ -2,31 +2,30 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from difflib import SequenceMatcher
-from pathlib import Path
 
-from linkwright.diagnostics import Phrase, SourceText, foreign, phrase
-from linkwright.review.changes import Location
-from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.launches.effects import removal_reason, setting_reason, value_reason
-from linkwright.review.launches.helpers import HelperFunctions
-from linkwright.review.launches.markup import read_markup_outline, xml_tags, yaml_tags
+from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.review.file_pair import FilePair
+from linkwright.review.launches.effects import addition_reason, removal_reason
+from linkwright.review.launches.included import IncludedActions
 from linkwright.review.launches.matching import MIN_SIMILARITY, matched_entries, replacements
-from linkwright.review.launches.names import LaunchPythonFile
-from linkwright.review.launches.outlines import CONDITION, CodePart, Entry, LaunchOutline
-from linkwright.review.launches.python import ACTIONS, read_python_outline
+from linkwright.review.launches.outlines import CodePart, Entry, LaunchOutline
+from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renames import renamed_names, with_new_names
+from linkwright.review.launches.settings import SettingChanges
 from linkwright.review.launches.titles import added_entry, joined_titles, title
-from linkwright.review.list_changes import change_text, excerpts
-from linkwright.xacro.cache import read_document
+from linkwright.review.list_changes import excerpts
 
+_MAX_SOURCE = 120
+"""The number of characters of a statement that are shown."""
 _MAX_STATEMENTS = 3
 """The number of changed statements up to which each is shown."""
-_Group = tuple[str, "str | None", "str | None", str]
-"""A setting, its old and its new value, and why the change is breaking. A group may give a condition to all actions."""
+_VARIABLE = re.compile(r"(?<=\bname )\w+\b|(?<=\barg=')\w+\b(?=')")
+"""The names of variables and parameters in the texts of statements."""
 
 
 def compare_launch_files(pair: FilePair) -> None:
@@ -36,9 +35,10 @@ def compare_launch_files(pair: FilePair) -> None:
     if outlines is None:
         return
     old, new = outlines
+    undeclared = _undeclared_arguments(pair, old, new)
     renamed = renamed_names(old, new)
     old = with_new_names(old, renamed)
-    settings = _SettingChanges(pair, old, new)
+    settings = SettingChanges(pair, old, new)
     settings.add_renamed(renamed)
     gone: list[Entry] = []
     come: list[Entry] = []
@@ -50,50 +50,71 @@ def compare_launch_files(pair: FilePair) -> None:
         elif new_entry is not None:
             come.append(new_entry)
     gone, come = ([entry for entry in entries if not _keeps_name(entry)] for entries in (gone, come))
-    replaced = replacements(gone, come)
+    new_paths = {
+        file.old_path: file.new_path for file in pair.versions.changed_files if file.old_path and file.new_path
+    }
+    replaced = replacements(gone, come, new_paths)
     for old_entry, new_entry in replaced:
         text = phrase("{old} replaced by {new}", old=title(old_entry), new=title(new_entry))
         pair.add(text, pair.location(new_entry.span))
         settings.compare(old_entry, new_entry)
     settings.add_groups()
+    gone = [entry for entry in gone if all(entry is not other for other, _ in replaced)]
+    come = [entry for entry in come if all(entry is not other for _, other in replaced)]
+    for name in {entry.name for entry in gone if entry.kind == "argument"} & undeclared.keys():
+        text = phrase("argument '{name}' removed", name=name)
+        reason = phrase("the launch file still uses '{name}', and fails if no other file declares it", name=name)
+        pair.add(text, pair.location(undeclared.pop(name).span), reason)
+        gone = [entry for entry in gone if (entry.kind, entry.name) != ("argument", name)]
+    for name, entry in undeclared.items():
+        text = phrase("{entry} uses argument '{name}', which is not declared", entry=title(entry), name=name)
+        reason = phrase("the launch file fails if no other file declares '{name}'", name=name)
+        pair.add(text, pair.location(entry.span), reason)
+    if gone or come:
+        _add_lone_entries(pair, gone, come, old, new)
+    if pair.old_file.suffix == pair.new_file.suffix:
+        _compare_code(pair, old.code, new.code)
+
+
+def _add_lone_entries(
+    pair: FilePair, gone: Sequence[Entry], come: Sequence[Entry], old: LaunchOutline, new: LaunchOutline
+) -> None:
+    """Add the actions that only one version has, and those that are in an included file of the other version."""
+    old_included = IncludedActions(pair.versions.old, pair.old_path, old)
+    new_included = IncludedActions(pair.versions.new, pair.new_path, new)
+    moved: dict[tuple[str, bool], list[Entry]] = {}
     for entry in come:
-        if all(entry is not new_entry for _, new_entry in replaced):
-            pair.add(added_entry(entry), pair.location(entry.span))
+        file = old_included.lone_file(entry, new_included)
+        if file is None:
+            pair.add(added_entry(entry), pair.location(entry.span), addition_reason(entry))
+        else:
+            moved.setdefault((file, False), []).append(entry)
     for entry in gone:
-        if all(entry is not old_entry for old_entry, _ in replaced):
-            text = phrase("{entry} removed", entry=title(entry))
-            pair.add(text, pair.location(entry.span, is_old=True), removal_reason(entry, old, new))
-    _compare_code(pair, old.code, new.code)
+        file = new_included.lone_file(entry, old_included)
+        if file is None:
+            text, location = phrase("{entry} removed", entry=title(entry)), pair.location(entry.span, is_old=True)
+            pair.add(text, location, removal_reason(entry, old, new))
+        else:
+            moved.setdefault((file, True), []).append(entry)
+    for (file, is_old), entries in moved.items():
+        titles = joined_titles(entries)
+        text = phrase("{entry} moved from {file}", entry=titles, file=file)
+        if is_old:
+            text = phrase("{entry} moved to {file}", entry=titles, file=file)
+        pair.add(text, pair.location(entries[0].span, is_old=is_old))
+
+
+def _undeclared_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> dict[str, Entry]:
+    """Return the arguments that only the new version uses without declaring them, each with an action that uses it."""
+    if not is_launch_file_name(pair.new_path):
+        return {}
+    old_names = IncludedActions(pair.versions.old, pair.old_path, old).undeclared()
+    new_names = IncludedActions(pair.versions.new, pair.new_path, new).undeclared()
+    return {name: entry for name, entry in new_names.items() if name not in old_names}
 
 
 def _keeps_name(entry: Entry) -> bool:
     return entry.is_same_name("to", None, entry.settings.get("to"))
-
-
-def read_outline(path: Path, root: Path) -> LaunchOutline:
-    """Return the outline of a launch file in Python, XML or YAML.
-
-    Args:
-        path: the file.
-        root: the folder of the repository, which may contain functions that make actions.
-
-    Raises:
-        LinkwrightError: the file is not XML.
-        UnreadableFileError: the file is not Python or YAML.
-        OSError: the file cannot be read.
-        ValueError: the file is not text in UTF-8.
-    """
-    if path.suffix in (".yaml", ".yml"):
-        return read_markup_outline(yaml_tags(path))
-    if path.suffix != ".py":
-        return read_markup_outline(xml_tags(read_document(str(path)).root))
-    try:
-        python = LaunchPythonFile(SourceText(str(path), path.read_text("utf-8")))
-    except SyntaxError as error:
-        line, reason = error.lineno or 1, foreign(error.msg)
-        message = phrase("line {line} is not valid Python: {reason}", line=line, reason=reason)
-        raise UnreadableFileError(message) from None
-    return read_python_outline(python, HelperFunctions(root, ACTIONS))
 
 
 def _compare_code(pair: FilePair, old: Sequence[CodePart], new: Sequence[CodePart]) -> None:
@@ -101,6 +122,8 @@ def _compare_code(pair: FilePair, old: Sequence[CodePart], new: Sequence[CodePar
     if [part.text for part in old] == [part.text for part in new]:
         return
     gone, come = _without_common(old, new), _without_common(new, old)
+    if _differ_in_names(gone, come):
+        return
     location = pair.location(come[0].span) if come else None
     if gone and not come:
         location = pair.location(gone[0].span, is_old=True)
@@ -109,7 +132,29 @@ def _compare_code(pair: FilePair, old: Sequence[CodePart], new: Sequence[CodePar
             before, after = excerpts(old_part.source, new_part.source)
             pair.add(phrase("other code: {old} -> {new}", old=before, new=after), pair.location(new_part.span))
     else:
-        pair.add(phrase("other code changed"), location)
+        pair.add(_code_text(gone, come), location)
+
+
+def _code_text(gone: Sequence[CodePart], come: Sequence[CodePart]) -> Phrase:
+    """Return the sentence about changed statements, with the first one."""
+    parts = come or gone
+    code = parts[0].source if len(parts[0].source) <= _MAX_SOURCE else f"{parts[0].source[:_MAX_SOURCE]}..."
+    if gone and come:
+        return phrase("other code changed, such as {code}", code=code)
+    text = phrase("other code added: {code}", code=code) if come else phrase("other code removed: {code}", code=code)
+    more = len(parts) - 1
+    if not more:
+        return text
+    return counted("{change} and {count} more statement", "{change} and {count} more statements", more, change=text)
+
+
+def _differ_in_names(gone: Sequence[CodePart], come: Sequence[CodePart]) -> bool:
+    """Return whether statements only have other names of variables and parameters, each everywhere the same."""
+    old, new = ("\n".join(part.text for part in parts) for parts in (gone, come))
+    if _VARIABLE.sub("", old) != _VARIABLE.sub("", new):
+        return False
+    pairs = set(zip(_VARIABLE.findall(old), _VARIABLE.findall(new), strict=True))
+    return len({before for before, _ in pairs}) == len({after for _, after in pairs}) == len(pairs)
 
 
 def _are_versions(old: CodePart, new: CodePart) -> bool:
@@ -129,53 +174,3 @@ def _without_common(parts: Sequence[CodePart], others: Sequence[CodePart]) -> li
         else:
             lone.append(part)
     return lone
-
-
-class _SettingChanges:
-    """The changed settings of actions. The same change of several actions is one.
-
-    Args:
-        pair: the file.
-        old: the old outline, with the new names of arguments.
-        new: the new outline.
-    """
-
-    def __init__(self, pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
-        self._pair = pair
-        self._old = old
-        self._new = new
-        self._groups: dict[_Group, list[tuple[Entry, Location | None, Phrase | None]]] = {}
-
-    def add_renamed(self, renamed: Mapping[str, str]) -> None:
-        """Add the arguments and variables with new names, by old name."""
-        for old_name, new_name in renamed.items():
-            entry = next(entry for entry in self._new.entries if entry.name == new_name and entry.has_value)
-            is_argument = entry.kind == "argument" and "value" not in entry.settings
-            text = phrase("{entry} renamed to '{name}'", entry=title(replace(entry, name=old_name)), name=new_name)
-            self._pair.add(text, self._pair.location(entry.span), value_reason(old_name) if is_argument else None)
-
-    def compare(self, old: Entry, new: Entry) -> None:
-        """Add the changed settings of an action."""
-        if old.kind == "process" and old.name != new.name:
-            program = replace(new, name=new.name.lstrip("[").partition(",")[0].partition(" ")[0])
-            self._add(program, "command", old.name, new.name, None)
-        for name in dict.fromkeys([*new.settings, *old.settings]):
-            old_value, new_value = old.settings.get(name), new.settings.get(name)
-            if old_value != new_value and not new.is_same_name(name, old_value, new_value):
-                reason = setting_reason(new, name, old_value, new_value, self._old, self._new)
-                self._add(new, name, old_value, new_value, reason)
-
-    def _add(self, entry: Entry, name: str, old: str | None, new: str | None, reason: Phrase | None) -> None:
-        place = entry, self._pair.location(entry.span), reason
-        key = name, old, new, "" if name == CONDITION else str(reason)
-        self._groups.setdefault(key, []).append(place)
-
-    def add_groups(self) -> None:
-        """Add the changes to the file."""
-        for (name, old, new, _), places in self._groups.items():
-            location = places[0][1]
-            reason = next((reason for _, _, reason in places if reason is not None), None)
-            values = ("-" if value is None else value or "''" for value in (old, new))
-            titles = joined_titles([entry for entry, _, _ in places])
-            text = phrase("{entry}: {change}", entry=titles, change=change_text(name, *values))
-            self._pair.add(text, location, reason)

@@ -11,6 +11,7 @@ import yaml
 from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.review.file_pair import LimitError
 from linkwright.review.files.yaml_values import composed
+from linkwright.review.launches.environment import markup_readings
 from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
@@ -29,7 +30,7 @@ _PUSHES = ("push_ros_namespace", "push-ros-namespace", "push_namespace")
 _ENVIRONMENT = ("set_env", "env", "append_env", "unset_env")
 _REMAPPINGS = ("remap", "set_remap")
 _CONDITIONS = ("if", "unless")
-_NOT_COMPARED = frozenset({"pkg", "exec", "type", "plugin", "output", "emulate_tty", "description", "doc", "cmd"})
+_NOT_COMPARED = frozenset({"pkg", "exec", "type", "plugin", "description", "doc", "cmd"})
 _MAX_NODES = 20_000
 """The maximum number of actions of a file. Aliases of YAML can repeat one billions of times."""
 
@@ -57,7 +58,14 @@ def read_markup_outline(root: LaunchTag) -> LaunchOutline:
     """Return the outline of a launch file in XML or YAML."""
     rest: list[CodePart] = []
     entries = list(_entries(root, Scope(), rest))
-    return LaunchOutline(entries, rest)
+    return LaunchOutline([*entries, *markup_readings(_values(root))], rest)
+
+
+def _values(tag: LaunchTag) -> Iterator[tuple[str, Span]]:
+    """Yield the attributes and texts of tags with their places."""
+    yield from ((value, tag.span) for value in (*tag.attributes.values(), tag.text))
+    for child in tag.children:
+        yield from _values(child)
 
 
 def xml_tags(element: Element) -> LaunchTag:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 from pathlib import PurePosixPath
 
@@ -24,9 +24,18 @@ def matched_entries(old: Sequence[Entry], new: Sequence[Entry]) -> Iterator[Matc
         yield from _matched(old_groups.get(key, []), new_groups.get(key, []))
 
 
-def replacements(gone: Sequence[Entry], come: Sequence[Entry]) -> list[tuple[Entry, Entry]]:
-    """Return the pairs of a removed action and an added one that replaces it."""
-    scores = [(_replacement_score(a, b), i, k) for i, a in enumerate(gone) for k, b in enumerate(come)]
+def replacements(
+    gone: Sequence[Entry], come: Sequence[Entry], new_paths: Mapping[str, str]
+) -> list[tuple[Entry, Entry]]:
+    """Return the pairs of a removed action and an added one that replaces it.
+
+    Args:
+        gone: the actions that only the old version has.
+        come: the actions that only the new version has.
+        new_paths: the new paths of renamed files, by old path.
+    """
+    names = {PurePosixPath(old).name: PurePosixPath(new).name for old, new in new_paths.items()}
+    scores = [(_replacement_score(a, b, names), i, k) for i, a in enumerate(gone) for k, b in enumerate(come)]
     pairs: dict[int, int] = {}
     for score, i, k in sorted(scores, key=lambda item: (-item[0], item[1], item[2])):
         if score and i not in pairs and k not in pairs.values():
@@ -34,7 +43,7 @@ def replacements(gone: Sequence[Entry], come: Sequence[Entry]) -> list[tuple[Ent
     return [(gone[i], come[k]) for i, k in sorted(pairs.items(), key=lambda pair: pair[1])]
 
 
-def _replacement_score(old: Entry, new: Entry) -> float:
+def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> float:
     """Return how certain it is that an action is another one under a new name; 0 if it is not."""
     if old.kind != new.kind:
         return 0.0
@@ -42,7 +51,8 @@ def _replacement_score(old: Entry, new: Entry) -> float:
         return float(old.settings == new.settings)
     similarity = _similarity(old, new)
     if old.kind == "include":
-        is_same = _file_key(old.name) == _file_key(new.name)
+        old_name = PurePosixPath(old.name).name
+        is_same = _file_key(new_names.get(old_name, old_name)) == _file_key(new.name)
         return 1.0 + similarity if is_same else 0.0
     if old.kind != "node":
         return 0.0

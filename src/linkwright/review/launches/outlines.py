@@ -14,6 +14,7 @@ NAMESPACE = "namespace"
 NAMESPACE_OF_INCLUDED = "namespace of its nodes"
 """The setting of an include that is not one of the arguments that it passes."""
 REMAPPING = "remapping "
+READING = "reading"
 PARAMETER = "parameter "
 _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*))?\)")
 _MAX_DEPTH = 5
@@ -27,7 +28,8 @@ class Entry:
 
     Attributes:
         kind: ``argument``, ``variable``, ``node``, ``process``, ``include``; ``remapping``, ``parameter``,
-            ``parameters`` or ``environment`` of all nodes that follow; ``action`` of a package that is not read.
+            ``parameters`` or ``environment`` of all nodes that follow; ``reading`` of an environment variable;
+            ``action`` of a package that is not read.
         name: the name of the argument or variable, ``package/executable`` of the node, the command, the path of the
             file, or the function that makes the action.
         settings: the values, by name. The value of an argument is its default.

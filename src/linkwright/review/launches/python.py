@@ -34,7 +34,7 @@ _INNER_ACTIONS = frozenset({"composable_node_descriptions", "on_exit"})
 """The arguments of actions that contain other actions, which are entries themselves."""
 _ALIASES = {"node_executable": "executable", "node_name": "name", "node_namespace": "namespace"}
 """The names of arguments of nodes before ROS 2 Foxy."""
-_NOT_COMPARED = frozenset({"package", "executable", "plugin", "output", "emulate_tty", "description", "cmd"})
+_NOT_COMPARED = frozenset({"package", "executable", "plugin", "description", "cmd"})
 """The arguments that name an action, and those that do not change what other programs see."""
 _MAX_HELPER_DEPTH = 3
 _Place = tuple[int, tuple[int, ...]]

@@ -10,8 +10,12 @@ from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.outlines import CodePart
 from linkwright.review.launches.text import shortened_text
 
-_TRANSPARENT = frozenset({"add_action", "add_entity", "GroupAction", "LaunchDescription"})
+_TRANSPARENT = frozenset({"add_action", "add_entity", "GroupAction", "LaunchDescription", "LoadComposableNodes"})
 """The calls that only put actions together."""
+_ADDITIONS = ("append", "extend")
+"""The methods that put actions into lists."""
+_CONTENTS = ("actions", "composable_node_descriptions", None)
+"""The arguments of these calls that contain actions."""
 _BODIES = ("body", "orelse", "finalbody", "handlers", "cases")
 """The fields of statements with other statements."""
 _UNCOMPARED_FIELDS = frozenset({"ctx", "returns", "annotation", "type_comment", "type_params", "kind"})
@@ -79,6 +83,8 @@ class _Rest:
             return ""
         if isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _TRANSPARENT:
             return self._group(node)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _ADDITIONS:
+            return self._other(node) if self._items(node.args) else ""
         if isinstance(node, (ast.List, ast.Tuple)):
             return self._items(node.elts)
         if isinstance(node, ast.Return):
@@ -96,16 +102,16 @@ class _Rest:
 
     def _group(self, node: ast.Call) -> str:
         """Return what a group or launch description contains besides actions."""
-        arguments = [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg in ("actions", None))]
+        arguments = [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg in _CONTENTS)]
         settings = [
             f"{keyword.arg}={self.text(keyword.value)}"
             for keyword in node.keywords
-            if keyword.arg not in ("actions", "condition", "initial_entities", None)
+            if keyword.arg not in (*_CONTENTS, "condition", "initial_entities")
         ]
         return self._items(arguments) + "".join(settings)
 
     def _items(self, nodes: list[ast.expr]) -> str:
-        texts = [text for text in map(self.text, nodes) if text]
+        texts = dict.fromkeys(text for text in map(self.text, nodes) if text)
         return f"[{', '.join(texts)}]" if texts else ""
 
     def _other(self, node: ast.AST) -> str:

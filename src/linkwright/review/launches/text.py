@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import hashlib
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
@@ -15,6 +16,8 @@ _MAX_LENGTH = 10_000
 make it endless."""
 _Part = Callable[[ast.expr | None], str]
 _COMPARISONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
+_PROGRAM = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
+"""The program of a command, which is found without `FindExecutable`, too."""
 _ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
 
 
@@ -188,14 +191,15 @@ class ExpressionTexts:
             return f"$(find-exec {part(first)})"
         if function in ("PathJoinSubstitution", "join"):
             return "/".join(map(part, self._pieces(first) if function != "join" else arguments))
-        if function in ("TextSubstitution", "str", "ParameterValue", "ParameterFile", "Path"):
+        if function in ("TextSubstitution", "str", "ParameterValue", "ParameterFile", "Path", "PathSubstitution"):
             return part(first)
         if function == "EnvironmentVariable":
             return f"$(env {' '.join(map(part, arguments))})"
         if function == "PythonExpression":
             return f"$(eval {''.join(map(part, self._pieces(first)))})"
         if function == "Command":
-            return f"$(command {''.join(map(part, self._pieces(first)))})"
+            command = _PROGRAM.sub(r"\1", "".join(map(part, self._pieces(first))))
+            return f"$(command {command})"
         if function.endswith("LaunchDescriptionSource"):
             return "".join(map(part, self._pieces(first)))
         return None

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
-from linkwright.review.launches.outlines import Entry
+from linkwright.review.launches.outlines import CONDITION, READING, Entry
 from linkwright.review.list_changes import list_items
 
 _MAX_TITLES = 4
@@ -42,6 +42,8 @@ def title(entry: Entry) -> Phrase:
         return phrase("parameter '{name}' of all nodes", name=name)
     if entry.kind == "parameters":
         return phrase("parameters of '{file}'", file=name)
+    if entry.kind == READING:
+        return phrase("use of environment variable '{name}'", name=name)
     if entry.kind == "environment":
         return phrase("environment variable '{name}'", name=name)
     return phrase("action '{name}'", name=name)
@@ -59,6 +61,8 @@ def served_names(entry: Entry) -> list[str]:
     """Return the controllers that a spawner starts, or the frame that a static transform places; empty if unknown."""
     text = entry.settings.get("arguments", "")
     words = list_items(text) if text.startswith("[") else text.split()
+    if words == [text] and text.startswith("["):
+        return []  # an expression that is not known
     if _SPAWNER.fullmatch(entry.name):
         return list(_controllers(words))
     if not entry.name.startswith(TRANSFORM_PUBLISHERS):
@@ -89,8 +93,14 @@ def joined_titles(entries: Sequence[Entry]) -> Phrase:
 
 
 def added_entry(entry: Entry) -> Phrase:
-    """Return that an action was added, with its value if it has only one."""
+    """Return that an action was added, with its value if it has only one, or its condition."""
     value = entry.settings.get("to") or entry.settings.get("value") or entry.settings.get("appended value")
     if entry.kind in ("remapping", "parameter", "environment", "variable") and value:
         return phrase("{entry} added: {new}", entry=title(entry), new=value[:_MAX_NAME])
+    if entry.kind == "argument" and "default" in entry.settings:
+        default = entry.settings["default"][:_MAX_NAME] or "''"
+        return phrase("{entry} added: default {new}", entry=title(entry), new=default)
+    condition = entry.settings.get(CONDITION)
+    if entry.kind in ("node", "include", "process", "action") and condition:
+        return phrase("{entry} added: {condition}", entry=title(entry), condition=condition[:_MAX_NAME])
     return phrase("{entry} added", entry=title(entry))

@@ -1,0 +1,110 @@
+"""The actions of the files that a launch file includes, as far as the repository has them."""
+
+from __future__ import annotations
+
+import re
+from functools import cached_property
+from pathlib import Path
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.launches.outlines import Entry, LaunchOutline
+from linkwright.review.launches.reading import read_outline
+from linkwright.review.versions import Version
+
+_SHARED = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/(?P<path>[^$]+)")
+_BESIDE = "$(dirname)/"
+_MOVABLE = ("node", "include", "process", "argument")
+_MAX_DEPTH = 3
+_MAX_FILES = 30
+_MAX_BYTES = 1 << 20
+_USED = re.compile(r"\$\((?:var|arg) (?P<name>[\w./-]+)\)")
+
+
+class IncludedActions:
+    """The actions that a launch file includes.
+
+    Args:
+        version: the version of the repository.
+        path: the path of the launch file, relative to the root.
+        outline: the actions of the file.
+    """
+
+    def __init__(self, version: Version, path: str, outline: LaunchOutline) -> None:
+        self._version = version
+        self._path = path
+        self._outline = outline
+
+    def lone_file(self, entry: Entry, other: IncludedActions) -> str | None:
+        """Return the included file with an action, or None if there is none, or if the other version has one, too."""
+        if entry.kind not in _MOVABLE:
+            return None
+        return None if other._file_with(entry) else self._file_with(entry)
+
+    def _file_with(self, entry: Entry) -> str | None:
+        name = entry.settings.get("name")
+        for path, outline in self._included.items():
+            for other in outline.entries:
+                is_same = (other.kind, other.name) == (entry.kind, entry.name)
+                if is_same and (name is None or other.settings.get("name") in (None, name)):
+                    return path
+        return None
+
+    @cached_property
+    def _included(self) -> dict[str, LaunchOutline]:
+        """The outlines of the included files, by path."""
+        found: dict[str, LaunchOutline] = {}
+        waiting = [(self._version.file(self._path), self._outline, 0)]
+        for file, outline, depth in waiting:
+            for entry in outline.entries if depth < _MAX_DEPTH else ():
+                inner = self._file_of(entry, file)
+                path = None if inner is None else self._version.relative(inner)
+                if inner is None or path is None or path in found or len(found) >= _MAX_FILES:
+                    continue
+                inner_outline = self._read(inner)
+                if inner_outline is not None:
+                    found[path] = inner_outline
+                    waiting.append((inner, inner_outline, depth + 1))
+        return found
+
+    def _file_of(self, entry: Entry, includer: Path) -> Path | None:
+        """Return the file that an action includes, or None if the repository does not have it."""
+        if entry.kind != "include":
+            return None
+        shared = _SHARED.fullmatch(entry.name)
+        if shared is not None:
+            share = self._version.shares.get(shared["package"])
+            file = None if share is None else share / shared["path"]
+        elif entry.name.startswith(_BESIDE) and "$" not in entry.name.removeprefix(_BESIDE):
+            file = includer.parent / entry.name.removeprefix(_BESIDE)
+        else:
+            file = None
+        return None if file is None or ".." in file.parts or not file.is_file() else file
+
+    def _read(self, file: Path) -> LaunchOutline | None:
+        try:
+            return read_outline(file, self._version.root) if file.stat().st_size <= _MAX_BYTES else None
+        except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
+            return None
+
+    def undeclared(self) -> dict[str, Entry]:
+        """Return the arguments without a default that nothing declares, each with the first action that uses it.
+
+        An argument that a file of another package may declare, or an action that cannot be read, is left out.
+        """
+        entries = self._outline.entries
+        if any(entry.kind == "action" or (entry.has_value and "$(" in entry.name) for entry in entries):
+            return {}
+        outlines = [self._outline, *self._included.values()]
+        declared = {entry.name for outline in outlines for entry in outline.entries if entry.has_value}
+        file = self._version.file(self._path)
+        unknown = [e.span.line for e in entries if e.kind == "include" and self._file_of(e, file) is None]
+        undeclared: dict[str, Entry] = {}
+        for entry in entries:
+            if unknown and entry.span.line > min(unknown):
+                continue
+            for text in (entry.name, *entry.settings.values()):
+                for match in _USED.finditer(text):
+                    if match["name"] not in declared:
+                        undeclared.setdefault(match["name"], entry)
+        return undeclared

@@ -1,0 +1,42 @@
+"""The reading of launch files in Python, XML and YAML."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.diagnostics import SourceText, foreign, phrase
+from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.launches.environment import python_readings
+from linkwright.review.launches.helpers import HelperFunctions
+from linkwright.review.launches.markup import read_markup_outline, xml_tags, yaml_tags
+from linkwright.review.launches.names import LaunchPythonFile
+from linkwright.review.launches.outlines import LaunchOutline
+from linkwright.review.launches.python import ACTIONS, read_python_outline
+from linkwright.xacro.cache import read_document
+
+
+def read_outline(path: Path, root: Path) -> LaunchOutline:
+    """Return the outline of a launch file in Python, XML or YAML.
+
+    Args:
+        path: the file.
+        root: the folder of the repository, which may contain functions that make actions.
+
+    Raises:
+        LinkwrightError: the file is not XML.
+        UnreadableFileError: the file is not Python or YAML.
+        OSError: the file cannot be read.
+        ValueError: the file is not text in UTF-8.
+    """
+    if path.suffix in (".yaml", ".yml"):
+        return read_markup_outline(yaml_tags(path))
+    if path.suffix != ".py":
+        return read_markup_outline(xml_tags(read_document(str(path)).root))
+    try:
+        python = LaunchPythonFile(SourceText(str(path), path.read_text("utf-8")))
+    except SyntaxError as error:
+        line, reason = error.lineno or 1, foreign(error.msg)
+        message = phrase("line {line} is not valid Python: {reason}", line=line, reason=reason)
+        raise UnreadableFileError(message) from None
+    outline = read_python_outline(python, HelperFunctions(root, ACTIONS))
+    return LaunchOutline([*outline.entries, *python_readings(python)], outline.code)

@@ -1,0 +1,148 @@
+"""The changed settings of the actions of launch files, each change once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.review.breaking import name_reason
+from linkwright.review.changes import Location
+from linkwright.review.file_pair import FilePair
+from linkwright.review.launches.effects import setting_reason, value_reason
+from linkwright.review.launches.outlines import CONDITION, PARAMETER, REMAPPING, Entry, LaunchOutline
+from linkwright.review.launches.titles import joined_titles, title
+from linkwright.review.list_changes import change_text
+
+_MIN_GROUP = 3
+"""The number of added or removed parameters or remappings of a node from which they are one change."""
+_MAX_ITEMS = 8
+_MAX_VALUE = 60
+
+
+@dataclass(frozen=True)
+class _Setting:
+    """A changed setting.
+
+    Attributes:
+        name: the name.
+        old: the old value; None if there was none.
+        new: the new value; None if there is none.
+        reason: why the change is breaking; None if it is not.
+    """
+
+    name: str
+    old: str | None
+    new: str | None
+    reason: Phrase | None
+
+    @property
+    def text(self) -> Phrase:
+        """The change in one line."""
+        values = ("-" if value is None else value or "''" for value in (self.old, self.new))
+        return change_text(self.name, *values)
+
+
+class SettingChanges:
+    """The changed settings of actions. The same change of several actions is one.
+
+    Args:
+        pair: the file.
+        old: the old outline, with the new names of arguments.
+        new: the new outline.
+    """
+
+    def __init__(self, pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
+        self._pair = pair
+        self._old = old
+        self._new = new
+        self._groups: dict[tuple[str, str], list[tuple[Entry, Location | None, Phrase, Phrase | None]]] = {}
+
+    def add_renamed(self, renamed: Mapping[str, str]) -> None:
+        """Add the arguments and variables with new names, by old name."""
+        for old_name, new_name in renamed.items():
+            entry = next(entry for entry in self._new.entries if entry.name == new_name and entry.has_value)
+            is_argument = entry.kind == "argument" and "value" not in entry.settings
+            text = phrase("{entry} renamed to '{name}'", entry=title(replace(entry, name=old_name)), name=new_name)
+            self._pair.add(text, self._pair.location(entry.span), value_reason(old_name) if is_argument else None)
+
+    def compare(self, old: Entry, new: Entry) -> None:
+        """Add the changed settings of an action."""
+        if old.kind == "process" and old.name != new.name:
+            program = replace(new, name=new.name.lstrip("[").partition(",")[0].partition(" ")[0])
+            self._add(program, change_text("command", old.name, new.name), None)
+        settings = []
+        for name in dict.fromkeys([*new.settings, *old.settings]):
+            old_value, new_value = old.settings.get(name), new.settings.get(name)
+            if old_value != new_value and not new.is_same_name(name, old_value, new_value):
+                reason = setting_reason(new, name, old_value, new_value, self._old, self._new)
+                settings.append(_Setting(name, old_value, new_value, reason))
+        for text, reason, name in _joined_settings(settings):
+            # A group may give a condition to actions that other programs need and to those of a user interface.
+            self._add(new, text, reason, is_apart=name != CONDITION)
+
+    def _add(self, entry: Entry, text: Phrase, reason: Phrase | None, *, is_apart: bool = True) -> None:
+        place = entry, self._pair.location(entry.span), text, reason
+        self._groups.setdefault((str(text), str(reason) if is_apart else ""), []).append(place)
+
+    def add_groups(self) -> None:
+        """Add the changes to the file."""
+        for places in self._groups.values():
+            _, location, change, _ = places[0]
+            reason = next((reason for _, _, _, reason in places if reason is not None), None)
+            entries = [entry for entry, _, _, _ in places]
+            text = phrase("{entry}: {change}", entry=joined_titles(entries), change=change)
+            self._pair.add(text, location, reason)
+            if len(set(map(title, entries))) == 1:  # a report counts equal changes
+                for _, other_location, _, _ in places[1:]:
+                    self._pair.add(text, other_location, reason)
+
+
+def _joined_settings(settings: Sequence[_Setting]) -> Iterator[tuple[Phrase, Phrase | None, str]]:
+    """Yield the changes of the settings of an action with their reasons and names.
+
+    Several added or removed parameters or remappings are one change.
+    """
+    groups: dict[object, list[_Setting]] = {}
+    for setting in settings:
+        prefix = next((word for word in (PARAMETER, REMAPPING) if setting.name.startswith(word)), "")
+        is_lone = not prefix or (setting.old is not None and setting.new is not None)
+        key = setting.name if is_lone else (prefix, setting.new is None, setting.reason is None)
+        groups.setdefault(key, []).append(setting)
+    for group in groups.values():
+        if len(group) < _MIN_GROUP:
+            yield from ((setting.text, setting.reason, setting.name) for setting in group)
+        else:
+            yield _group_text(group), _group_reason(group), group[0].name
+
+
+def _group_text(group: Sequence[_Setting]) -> Phrase:
+    is_remapping, is_added = group[0].name.startswith(REMAPPING), group[0].new is not None
+    items = joined_first([_item(setting) for setting in group], _MAX_ITEMS)
+    if is_remapping:
+        return (
+            phrase("remappings added: {items}", items=items)
+            if is_added
+            else phrase("remappings removed: {items}", items=items)
+        )
+    return (
+        phrase("parameters added: {items}", items=items)
+        if is_added
+        else phrase("parameters removed: {items}", items=items)
+    )
+
+
+def _item(setting: _Setting) -> str:
+    value = setting.new or setting.old or "''"
+    value = value if len(value) <= _MAX_VALUE else f"{value[:_MAX_VALUE]}..."
+    if setting.name.startswith(REMAPPING):
+        return f"{setting.name.removeprefix(REMAPPING)} -> {value}"
+    return f"{setting.name.removeprefix(PARAMETER)} {value}"
+
+
+def _group_reason(group: Sequence[_Setting]) -> Phrase | None:
+    reasons = [setting.reason for setting in group if setting.reason is not None]
+    names = [str(reason.arguments["name"]) for reason in reasons if reason.arguments.keys() == {"name"}]
+    if len(names) == len(reasons) > 1:
+        return name_reason(", ".join([*names[:_MAX_ITEMS], *["..."][: len(names) > _MAX_ITEMS]]))
+    return reasons[0] if reasons else None
