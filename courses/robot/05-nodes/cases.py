@@ -113,7 +113,10 @@ CASES = [
         says="is called with 2 arguments besides self",
     ),
     wrong(
-        "service", "a message in place of a service", Edit(ODOMETER, "std_srvs.srv", "std_srvs.msg"), says="has 'srv'"
+        "service",
+        "a message in place of a service",
+        Edit(ODOMETER, "std_srvs.srv", "std_srvs.msg"),
+        says="import it from 'std_srvs.srv'",
     ),
     wrong("service", "a client", Edit(ODOMETER, OFFER, CLIENT), says="does the program call create_service"),
     wrong("time", "seconds", Edit(MOVE, ".nanoseconds * 1e-9", ".seconds"), says="has nanoseconds"),

@@ -56,6 +56,13 @@ CASES = [
         says="not the time",
     ),
     wrong("brake", "no limit", Edit(METER, "min(0.3, remaining)", "remaining"), says="limits the speed"),
+    wrong(
+        "square",
+        "a yaw of half of its size",
+        Edit(SQUARE, "2 * math.atan2(orientation.z, orientation.w)", "orientation.z"),
+        says="it turns on the spot",
+    ),
+    wrong("wall", "degrees", Edit(WALL, "abs(angle) < 0.5", "abs(angle) < 30"), says="beside a wall"),
     wrong("meter", "no stop", Edit(METER, "        else:\n            self.drive(0.0)\n", ""), says="still drives"),
     wrong(
         "meter",

@@ -9,6 +9,7 @@ from linkwright.testing import SteppedGraph
 
 STARTS = ((0.0, 0.0, 0.0), (1.0, -2.0, 2.0))
 WANDER_STARTS = ((0.0, 0.0, 0.0), (0.0, 1.0, -2.0))
+BESIDE_WALL = (0.0, -2.55, 0.0)
 BODY = 0.2
 TWIST = "geometry_msgs/msg/Twist"
 BUDGET = 5.0
@@ -130,26 +131,44 @@ def limits_speed(work):
 
 @cache
 def drive_square(work):
-    """Return the positions of the robot while the learner's program runs."""
+    """Return the positions of the robot for a minute, and the last command."""
     with Run(work, "drive_square") as run:
-        return run.drive(60.0)
+        return run.drive(60.0), run.commands.last
+
+
+def explain_end(positions, command):
+    """Return where the robot is after a minute, and what it does there."""
+    x, y = positions[-1]
+    if math.dist(positions[-20], positions[-1]) < 0.01 and command.angular.z:
+        en = (
+            f"it turns on the spot at x = {x:.2f}, y = {y:.2f}: the error is math.atan2(dy, dx) minus the yaw, in "
+            "radians, between -π and π, and a positive turn is to the left"
+        )
+        zh = (
+            f"它在 x = {x:.2f}，y = {y:.2f} 处原地转动：误差是 math.atan2(dy, dx) 减去偏航角，"
+            "单位是弧度，在 -π 和 π 之间；正的转速是左转"
+        )
+        return en, zh
+    return f"it is at x = {x:.2f}, y = {y:.2f} then", f"这时它在 x = {x:.2f}，y = {y:.2f}"
 
 
 @check("square", en="The robot passes the four corners in order.", zh="机器人依次经过四个角。")
 def drives_square(work):
     corners = [(1, 0), (1, 1), (0, 1), (0, 0)]
-    positions = iter(drive_square(work))
+    way, command = drive_square(work)
+    positions = iter(way)
     for x, y in corners:
         if not any(math.dist(position, (x, y)) < 0.15 for position in positions):
+            en, zh = explain_end(way, command)
             raise NotYet(
-                en=f"The robot did not reach the corner ({x}, {y}) within 60 s.",
-                zh=f"机器人在 60 s 内没有到达角 ({x}, {y})。",
+                en=f"The robot did not reach the corner ({x}, {y}) within 60 s; {en}.",
+                zh=f"机器人在 60 s 内没有到达角 ({x}, {y})；{zh}。",
             )
 
 
 @check("square", en="It stops where it began.", zh="它停在出发的地方。")
 def ends_square(work):
-    positions = drive_square(work)
+    positions, _ = drive_square(work)
     if math.dist(positions[-20], positions[-1]) > 0.01 or math.dist(positions[-1], (0, 0)) > 0.15:
         x, y = positions[-1]
         raise NotYet(
@@ -160,7 +179,7 @@ def ends_square(work):
 
 @check("wall", en="The robot stops 0.3 to 0.7 m before a wall.", zh="机器人停在墙前 0.3 到 0.7 m 处。")
 def stops_at_wall(work):
-    for start in ((0.0, 0.0, 0.0), (0.0, 0.0, math.pi)):
+    for start in ((0.0, 0.0, 0.0), (0.0, 0.0, math.pi), BESIDE_WALL):
         with Run(work, "stop_at_wall", world=work.lesson / "room.world", start=start) as run:
             positions = run.drive(14.0)
         gap = 3.0 - abs(positions[-1][0])
@@ -168,6 +187,14 @@ def stops_at_wall(work):
             raise NotYet(en="After 14 s the robot still drives.", zh="14 s 之后机器人仍在行驶。")
         if gap < BODY + 0.02:
             raise NotYet(en="The robot drove into the wall.", zh="机器人撞上了墙。")
+        if math.dist(start[:2], positions[-1]) < 0.05:
+            where = "beside a wall" if start is BESIDE_WALL else "3 m before a wall"
+            zh_where = "墙的旁边" if start is BESIDE_WALL else "墙前 3 m 处"
+            raise NotYet(
+                en=f"The robot does not drive off {where}: look at the ranges within 0.5 rad of straight ahead alone, "
+                "and drive if the smallest one is over 0.6 m.",
+                zh=f"机器人在{zh_where}没有出发：只看正前方 0.5 rad 以内的距离，最小值大于 0.6 m 时行驶。",
+            )
         if not 0.3 < gap < 0.75:
             raise NotYet(
                 en=f"The robot stands {gap:.2f} m before the wall.",

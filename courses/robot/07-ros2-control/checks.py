@@ -125,12 +125,32 @@ def file_is_installed(work):
     package(work).expect_installed(CONTROLLERS)
 
 
+def expect_controllers(running):
+    """Require the topics of both controllers."""
+    expect_topic(running, "joint_state_broadcaster", "/joint_states", lambda message: set(WHEELS) <= set(message.name))
+    expect_topic(running, "base_controller", "/base_controller/odom")
+
+
+def expect_topic(running, controller, topic, condition=None):
+    """Require a controller to publish, and name the spawner if nothing starts it."""
+    try:
+        running.wait_for_message(topic, *([] if condition is None else [condition]))
+    except NotYet as reason:
+        if "the launch says" in str(reason):
+            raise
+        raise NotYet(
+            en=f"Nothing of {controller} is published on {topic}; the launch file must start 'spawner' with "
+            "arguments=['joint_state_broadcaster', 'base_controller'].",
+            zh=f"{controller} 没有在 {topic} 上发布；launch 文件应当启动 'spawner'，并写 "
+            "arguments=['joint_state_broadcaster', 'base_controller']。",
+        ) from None
+
+
 @check("start", en="control.launch.py starts both controllers.", zh="control.launch.py 启动两个控制器。")
 def launch_starts_controllers(work):
     with package(work).launch("control.launch.py") as running:
         running.expect_node("/controller_manager")
-        running.wait_for_message("/joint_states")
-        running.wait_for_message("/base_controller/odom")
+        expect_controllers(running)
 
 
 @check("start", en="package.xml lists what the launch file starts.", zh="package.xml 列出 launch 文件启动的东西。")
@@ -189,8 +209,7 @@ def hardware_is_simulated(work):
 def controllers_run_in_world(work):
     with package(work).launch("control_world.launch.py") as running:
         running.wait_for_message("/clock")
-        running.wait_for_message("/joint_states", lambda message: set(WHEELS) <= set(message.name))
-        running.wait_for_message("/base_controller/odom")
+        expect_controllers(running)
         managers = running.nodes().count("/controller_manager")
     if managers > 1:
         raise NotYet(

@@ -115,6 +115,9 @@ def main():
 """
 
 CASES = [
+    wrong("ball", "down for up", Edit(BALL, "(middle_row - row)", "(row - middle_row)"), says="forward, left, up"),
+    wrong("camera", "without colors", Edit(SIM, "R8G8B8", "L8"), says="which has no colors"),
+    wrong("camera", "another name", Edit(SIM, "<camera_name>camera", "<camera_name>cam"), says="on /cam/image_raw"),
     wrong(
         "camera",
         "no optical rotation",
@@ -155,7 +158,10 @@ CASES = [
         says="lacks crimson",
     ),
     wrong(
-        "red", "no conversion", Edit(RED, "imgmsg_to_cv2(message, 'bgr8')", "imgmsg_to_cv2(message)"), says="lacks red"
+        "red",
+        "no conversion",
+        Edit(RED, "imgmsg_to_cv2(message, 'bgr8')", "imgmsg_to_cv2(message)"),
+        says="channels are exchanged",
     ),
     wrong("red", "no header", Edit(RED, "        mask.header = message.header\n", ""), says="copy the header"),
     wrong("red", "no publishing", Edit(RED, "        self.publisher.publish(mask)\n", ""), says="nothing is published"),

@@ -56,6 +56,14 @@ def camera_messages(work):
     with simulate(work) as test:
         images, infos = test.record(IMAGES, IMAGE), test.record("/camera/camera_info", INFO)
         test.advance(1.0)
+        others = [
+            topic for topic, types in test.graph.get_topic_names_and_types() if IMAGE in types and topic != IMAGES
+        ]
+    if not len(images) and others:
+        raise NotYet(
+            en=f"Nothing is published on {IMAGES}, but on {others[0]}: compare <camera_name>.",
+            zh=f"{IMAGES} 上没有消息，而 {others[0]} 上有：请检查 <camera_name>。",
+        )
     if not len(images):
         raise NotYet(en=f"Nothing is published on {IMAGES}.", zh=f"{IMAGES} 上没有消息。")
     return images, infos
@@ -69,6 +77,12 @@ def publishes_images(work):
         raise NotYet(
             en=f"The images are {size[0]} x {size[1]}, but should be 320 x 240.",
             zh=f"图像是 {size[0]} x {size[1]}，应当是 320 x 240。",
+        )
+    if images.last.encoding not in {"rgb8", "bgr8"}:
+        raise NotYet(
+            en=f"The images have the encoding {images.last.encoding}, which has no colors; write "
+            "<format>R8G8B8</format>.",
+            zh=f"图像的编码是 {images.last.encoding}，没有颜色；请写 <format>R8G8B8</format>。",
         )
     if not 8 <= len(images) <= 12:
         raise NotYet(
@@ -107,12 +121,12 @@ def has_optical_frame(work):
     robot.expect_position("camera_optical_frame", (0, 0, 0), frame="camera_link")
     rotation = robot.pose("camera_optical_frame", "camera_link")[:3, :3]
     if not np.allclose(rotation, [(0, 0, 1), (-1, 0, 0), (0, -1, 0)], atol=0.02):
-        x, y, z = (round(float(value), 2) + 0.0 for value in rotation[:, 2])
+        x_axis, z_axis = (" ".join(f"{round(float(value), 2) + 0.0:g}" for value in rotation[:, i]) for i in (0, 2))
         raise NotYet(
-            en=f"The z axis of camera_optical_frame points along {x:g} {y:g} {z:g} in camera_link. "
-            "z must point forward (1 0 0), and x to the right (0 -1 0).",
-            zh=f"camera_optical_frame 的 z 轴在 camera_link 中指向 {x:g} {y:g} {z:g}。"
-            "z 应当指向前方（1 0 0），x 应当指向右方（0 -1 0）。",
+            en=f"In camera_link, the z axis of camera_optical_frame points along {z_axis}, and x along {x_axis}; "
+            "z must point forward, 1 0 0, and x to the right, 0 -1 0: check the rpy of camera_optical_joint.",
+            zh=f"在 camera_link 中，camera_optical_frame 的 z 轴指向 {z_axis}，x 轴指向 {x_axis}；"
+            "z 应当指向前方 1 0 0，x 应当指向右方 0 -1 0：请检查 camera_optical_joint 的 rpy。",
         )
 
 
@@ -156,6 +170,11 @@ def mask_of(work, encoding="rgb8"):
 def mask_has_red(work):
     _, shares = mask_of(work)
     for name, color in RED.items():
+        if shares["red"] < 0.1 and shares["blue"] > 0.9:
+            raise NotYet(
+                en="The mask contains blue in place of red: the channels are exchanged; use 'bgr8' with COLOR_BGR2HSV.",
+                zh="掩膜包含的是蓝色而不是红色：通道顺序反了；“bgr8”要与 COLOR_BGR2HSV 一起使用。",
+            )
         if shares[name] < 0.9:
             raise NotYet(en=f"The mask lacks {name}, rgb {color}.", zh=f"掩膜中缺少{CHINESE[name]}，rgb {color}。")
 
@@ -254,7 +273,7 @@ def ball_is_right(work):
         expected = seen_from(start, BALL)
         point = balls.last.point
         actual = point.x, point.y, point.z
-        if math.dist(actual, expected) > 0.08 + 0.05 * expected[0]:
+        if math.dist(actual, expected) > 0.08 + 0.05 * expected[0] or abs(point.z - expected[2]) > 0.06:
             raise NotYet(
                 en=f"/ball says {meters(actual)}, but the ball is at {meters(expected)} in camera_link "
                 "(forward, left, up).",

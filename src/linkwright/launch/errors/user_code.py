@@ -252,10 +252,7 @@ def _import_hint(error: ImportError) -> Phrase | None:
         siblings = [
             iter_module.name for iter_module in pkgutil.iter_modules(getattr(sys.modules[parent], "__path__", ()))
         ]
-        suggestion = did_you_mean(name, siblings)
-        if suggestion is None and 0 < len(siblings) <= _MOST_MODULES:
-            return phrase("'{package}' has {names}", package=parent, names=quoted_names(siblings))
-        return suggestion
+        return did_you_mean(name, siblings) or _other_kind_hint(parent)
     if missing_module in _ROS_1_MODULES:
         return phrase("'{module}' is part of ROS 1; in ROS 2 it is 'rclpy'", module=missing_module)
     packages = {full.split("/")[0] for full in interface_names("msg")}
@@ -264,6 +261,20 @@ def _import_hint(error: ImportError) -> Phrase | None:
     if suggestion or not missing_module:
         return suggestion
     return provider_hint(missing_module)
+
+
+def _other_kind_hint(package: str) -> Phrase | None:
+    """Return a hint with the modules of a package of interfaces, or None for another package."""
+    from linkwright.messages.presentation import interface_names
+
+    kinds = [
+        kind
+        for kind in ("msg", "srv", "action")
+        if any(full.partition("/")[0] == package for full in interface_names(kind))
+    ]
+    if not kinds:
+        return None
+    return phrase("import it from {modules}", modules=quoted_names([f"{package}.{kind}" for kind in kinds], " or "))
 
 
 def _keyword_hint(error: TypeError) -> Phrase | None:

@@ -59,9 +59,9 @@ def _explain_idle(test: Any) -> Phrase:
         name: types for name, types in _endpoints(test, published=False).items() if name not in _GENERAL_TOPICS
     }
     published = {
-        name: set(types)
-        for name, types in graph.get_topic_names_and_types()
-        if graph.get_publishers_info_by_topic(name)
+        name: {info.topic_type for info in publishers}
+        for name, _ in graph.get_topic_names_and_types()
+        if (publishers := graph.get_publishers_info_by_topic(name))
     }
     for name, types in sorted(subscriptions.items()):
         others = sorted(other for other in published if other not in subscriptions and types & published[other])
