@@ -71,6 +71,15 @@ def test_values_of_an_inertial_are_one_line(package, compare):
     assert str(sentence_of(found)) == expected
 
 
+def test_limits_of_a_joint_are_one_line(package, compare):
+    package.write({SEGMENT: MACRO.replace('lower="-1.5" upper="1.5"', 'lower="-1" upper="1"')})
+    (found,) = (change for change in subject(compare(package), ROBOT).changes if "limit" in str(change.sentence))
+    expected = (
+        "joint 'upper_joint': limit: lower -1.5 -> -1 rad, upper 1.5 -> 1 rad; also 'middle_joint', 'lower_joint'"
+    )
+    assert str(sentence_of(found)) == expected
+
+
 def test_added_sensors_have_their_topics(package, compare):
     package.commit({ROBOT: with_ranges("")})
     package.write({ROBOT: with_ranges(SENSOR)})

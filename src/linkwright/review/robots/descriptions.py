@@ -9,12 +9,12 @@ from dataclasses import dataclass, field, replace
 from linkwright.descriptions.comparison import Comparison, Difference, sentence
 from linkwright.diagnostics import Phrase, phrase, term
 from linkwright.geometry.single import Pose, pose_quaternion
-from linkwright.review.breaking import breaking_reason
+from linkwright.review.breaking import breaking_reason, frame_reason
 from linkwright.review.robots.cases import Case, cases, switched_cases
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.robots.collisions import collision_changes, may_change_collisions
 from linkwright.review.robots.figures import RobotMeasures, figures_of
-from linkwright.review.robots.inertials import INERTIAL, inertial_sentence, with_joined_inertials
+from linkwright.review.robots.joined_values import has_joined_values, joined_sentence, with_joined_values
 from linkwright.review.file_pair import FilePair
 from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.drawings.images import view_images
@@ -23,6 +23,7 @@ from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.parts.expanded import expanded_places
 from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
 from linkwright.review.drawings.scenes import robot_scene
+from linkwright.urdf import Robot
 
 
 def compare_descriptions(pair: FilePair) -> None:
@@ -91,22 +92,14 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case:
     old, new, partial = case.old.robot, case.new.robot, case.partial
     if old is None or new is None:
         return
-    if old.root != new.root and (partial is None or partial.has_certain_roots()):
-        text = phrase("root link '{old}' -> '{new}'", old=old.root, new=new.root)
-        if frames.are_aligned:
-            text = phrase(
-                "{change} (both robots are compared in the frame of '{link}')", change=text, link=frames.reference
-            )
-        yield Change(
-            text,
-            Effect.BREAKING,
-            phrase("programs that use '{old}' as the base frame of the robot get other transforms", old=old.root)
-            if old.root in new.links
-            else phrase("programs that look up the frame '{name}' do not find it", name=old.root),
-        )
+    has_other_root = comparison.links.get(old.root, "") != new.root and (partial is None or partial.has_certain_roots())
+    if has_other_root:
+        yield _root_change(old, new, frames)
     added = added_topics(comparison.differences)
-    for difference in with_joined_inertials(comparison.differences):
+    for difference in with_joined_values(comparison.differences):
         if partial is not None and not partial.is_certain(difference):
+            continue
+        if has_other_root and (difference.subject, difference.kind, difference.name) == ("link", "removed", old.root):
             continue
         reason = breaking_reason(difference, old, new) or missing_topics_reason(difference, added)
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
@@ -115,6 +108,18 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case:
             is_placed = partial is None or not partial.has_stand_ins
             text = _with_motion(text, frames.distance(difference.old or "") if is_placed else None)
         yield Change(text, effect, reason, _mesh_location(pair, case, difference) or _location(pair, difference))
+
+
+def _root_change(old: Robot, new: Robot, frames: SharedFrames) -> Change:
+    text = phrase("root link '{old}' -> '{new}'", old=old.root, new=new.root)
+    if frames.are_aligned:
+        text = phrase(
+            "{change} (both robots are compared in the frame of '{link}')", change=text, link=frames.reference
+        )
+    if old.root in new.links:
+        reason = phrase("programs that use '{old}' as the base frame of the robot get other transforms", old=old.root)
+        return Change(text, Effect.BREAKING, reason)
+    return Change(text, Effect.BREAKING, frame_reason(old.root))
 
 
 def _with_motion(text: Phrase, distance: float | None) -> Phrase:
@@ -139,8 +144,8 @@ def _location(pair: FilePair, difference: Difference) -> Location | None:
 
 def sentence_of_difference(difference: Difference) -> Phrase:
     """Return a difference in one line. A moved or rotated frame also has the distance or angle."""
-    if difference.property == INERTIAL and difference.old and difference.new:
-        return inertial_sentence(difference)
+    if has_joined_values(difference):
+        return joined_sentence(difference)
     text = sentence(difference)
     old_path = path_of_renamed(difference, difference.property)
     if old_path is not None:
