@@ -180,7 +180,7 @@ def test_world_changes_are_reported(repository, compare, old, new, expected, is_
 PARAMETERS = """controller_manager:
   ros__parameters:
     update_rate: 100
-    offset: 0
+    offset: 0.0
     arm_controller:
       type: a/B
 arm_controller:
@@ -200,13 +200,13 @@ arm_controller:
         ("lower]", "lower, tool]",
          "arm_controller.ros__parameters.joints [upper, lower] -> [upper, lower, tool]", False),
         ("[a, b, c, d, e]", "[a, b, c, d, e, f]", "arm_controller.ros__parameters.plugins: f added", False),
-        ("[a, b, c, d, e]", "[f, b, c, d, e]", "arm_controller.ros__parameters.plugins: f added, a removed", False),
+        ("[a, b, c, d, e]", "[f, b, c, d, e]", "arm_controller.ros__parameters.plugins: f added, a removed", True),
         ("lower]", "fore]", "arm_controller.ros__parameters.joints [upper, lower] -> [upper, fore]", True),
         ("frame_id: base_link", "frame_id: base", "arm_controller.ros__parameters.frame_id base_link -> base", True),
         ("stamped: true", "stamped: false", "arm_controller.ros__parameters.use_stamped true -> false", True),
         ("    arm_controller:\n      type: a/B\n", "",
          "controller_manager.ros__parameters.arm_controller.type a/B removed", True),
-        (PARAMETERS[PARAMETERS.index("arm_controller:\n  ros"):], "", "arm_controller with 5 values removed", False),
+        (PARAMETERS[PARAMETERS.index("arm_controller:\n  ros"):], "", "arm_controller with 5 values removed", True),
         ("    odom_topic: odom\n", "", "arm_controller.ros__parameters.odom_topic odom removed", False),
         ("    update_rate: 100\n", "", "controller_manager.ros__parameters.update_rate 100 removed", False),
     ],
@@ -232,7 +232,7 @@ def test_controller_type_as_own_parameter_is_not_a_removal(repository, compare):
 @pytest.mark.parametrize(
     "text",
     [
-        PARAMETERS.replace("offset: 0", "offset: 0.00"),
+        PARAMETERS.replace("offset: 0.0", "offset: 0.00"),
         "# Hz\n" + PARAMETERS,
         PARAMETERS.replace("[upper, lower]", "\n      - upper\n      - lower"),
     ],

@@ -101,3 +101,72 @@ def test_bridges_are_compared_by_topic(changes_of, old, new, expected, is_breaki
     changes, found_breaking = changes_of(BRIDGES, BRIDGES.replace(old, new))
     assert changes == [expected]
     assert bool(found_breaking) is is_breaking
+
+
+NODES = """planner_server:
+  ros__parameters:
+    planner_plugins: [GridBased, Smooth]
+    plugins: [GridBased, Smooth]
+    rate: 10
+    scale: 1.0
+    use_map: true
+    names: ["a", "b"]
+local_costmap:
+  ros__parameters:
+    base: base_footprint
+    size: 3
+global_costmap:
+  ros__parameters:
+    base: base_footprint
+    size: 3
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("rate: 10", "rate: 10.0", ["planner_server.ros__parameters.rate 10 -> 10.0"], True),
+        ("rate: 10", "rate: 12", ["planner_server.ros__parameters.rate 10 -> 12"], False),
+        ("true", '"true"', ['planner_server.ros__parameters.use_map true -> "true"'], True),
+        ("    plugins: [GridBased, Smooth]", "    plugins: [GridBased]",
+         ["planner_server.ros__parameters.plugins [GridBased, Smooth] -> [GridBased]"], True),
+        ("base: base_footprint", "base: base_link",
+         ["local_costmap.ros__parameters.base base_footprint -> base_link"], False),
+        (NODES[NODES.index("global"):], "", ["global_costmap with 2 values removed"], True),
+    ],
+)  # fmt: skip
+def test_types_and_nodes_of_parameters_are_compared(changes_of, old, new, expected, is_breaking):
+    found, found_breaking = changes_of(NODES, NODES.replace(old, new))
+    assert found == expected
+    assert bool(found_breaking) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("scale: 1.0", "scale: 1.00"), ('["a", "b"]', "[a, b]"), ("use_map: true", "use_map: True"), ("[a", "[ a")],
+)
+def test_another_writing_of_a_parameter_is_not_reported(repository, compare, old, new):
+    repository.commit({"a/package.xml": PACKAGE_XML, PATH: NODES})
+    repository.write({PATH: NODES.replace(old, new)})
+    assert compare(repository).subjects == []
+
+
+def test_equal_changes_of_a_parameter_are_one_line(repository, compare):
+    repository.commit({"a/package.xml": PACKAGE_XML, PATH: NODES})
+    repository.write({PATH: NODES.replace("size: 3", "size: 5")})
+    (change,) = subject(compare(repository), PATH).changes
+    assert change.other_names == ("global_costmap.ros__parameters.size",)
+
+
+POINTS = "vertices:\n" + "".join(f"  - [{n}.0, 0.0, {{kind: [1, p{n}]}}]\n" for n in range(20))
+
+
+def test_inserted_item_of_a_list_does_not_shift_the_others(changes_of):
+    text = POINTS.replace("  - [3.0", "  - [7.5, 1.0, {kind: [1, q]}]\n  - [3.0")
+    found, _ = changes_of(POINTS, text)
+    assert found == ["vertices[3] with 3 values added"]
+
+
+def test_many_changes_of_a_list_are_one_line(changes_of):
+    found, _ = changes_of(POINTS, POINTS.replace("0.0,", "2.0,"))
+    assert found == ["list vertices: 22 values changed"]

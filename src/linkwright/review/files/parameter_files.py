@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from linkwright.diagnostics import Phrase, counted, phrase
+import yaml
+
+from linkwright.diagnostics import phrase
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.files.bridges import compare_bridges, read_bridges
-from linkwright.review.files.parameter_names import NameRules, renamed_parts
-from linkwright.review.files.yaml_values import YamlValue, read_yaml_values
-from linkwright.review.list_changes import change_text
+from linkwright.review.files.parameter_names import NameRules, controllers, has_other_type, is_parameter, renamed_parts
+from linkwright.review.files.value_changes import ValueChange, merged_values
+from linkwright.review.files.yaml_lists import item_labels
+from linkwright.review.files.yaml_values import YamlType, YamlValue, composed, yaml_values
 
 _MAX_BYTES = 4 << 20
+_SEPARATOR = re.compile(r"(?<=.)[.\[]")
+"""The separators of the names in a path."""
 
 
 def compare_parameter_files(pair: FilePair) -> None:
@@ -27,27 +33,56 @@ def compare_parameter_files(pair: FilePair) -> None:
     if all(bridges):
         compare_bridges(pair, *bridges)
         return
-    values = pair.read(lambda file: read_yaml_values(texts[file == pair.new_file]))
-    if values is None:
-        return
-    new = values[1]
-    old = _with_new_names(pair, *values)
+    roots = pair.read(lambda file: _root(texts[file == pair.new_file]))
+    if roots is not None:
+        pair.changes += merged_values(_changes(pair, *roots))
+
+
+def _root(text: str) -> yaml.Node | None:
+    """Return a document that has no more values than a parameter file.
+
+    Raises:
+        UnreadableFileError: the text is not YAML, or has too many values.
+    """
+    root = composed(text)
+    if root is not None:
+        yaml_values(root, {})
+    return root
+
+
+def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | None) -> Iterator[ValueChange]:
+    labels = item_labels(old_root, new_root) if old_root is not None and new_root is not None else {}
+    old_values, new = ({} if root is None else yaml_values(root, labels) for root in (old_root, new_root))
+    old = _with_new_names(pair, old_values, new)
     rules = NameRules(old, new)
     for name, value in new.items():
         old_value = old.get(name)
-        if old_value is not None and not _are_equal(old_value.text, value.text):
+        if old_value is not None and not _are_equal(name, old_value, value):
             location = Location(pair.new_path, value.line, value.column)
-            change = change_text(name, old_value.text, value.text)
-            pair.add(change, location, rules.change_reason(name, old_value.text, value.text))
+            shown = _shown_values(old_value, value)
+            yield ValueChange(name, "changed", shown, location, rules.change_reason(name, old_value, value))
     for name, values_below in _lone_parts(new, old):
         location = Location(pair.new_path, values_below[0].line, values_below[0].column)
-        pair.add(_lone_text(name, values_below, is_added=True), location)
+        yield ValueChange(name, "added", _lone_content(values_below), location)
     for name, values_below in _lone_parts(old, new):
         location = Location(pair.old_path, values_below[0].line, values_below[0].column, is_old=True)
         below = [(each, old[each].text) for each in old if each not in new and _is_below(each, name)]
         reasons = (rules.removal_reason(parameter, value) for parameter, value in below)
         reason = next((reason for reason in reasons if reason is not None), None)
-        pair.add(_lone_text(name, values_below, is_added=False), location, reason)
+        yield ValueChange(name, "removed", _lone_content(values_below), location, reason)
+
+
+def _shown_values(old: YamlValue, new: YamlValue) -> tuple[str, str]:
+    """Return the texts of two values, with quotes if only these tell them apart."""
+    if old.text != new.text:
+        return old.text, new.text
+    old_text, new_text = (f'"{value.text}"' if value.type is YamlType.TEXT else value.text for value in (old, new))
+    return old_text, new_text
+
+
+def _lone_content(values: Sequence[YamlValue]) -> tuple[str, ...]:
+    """Return the value of a part that one version has, or nothing for several values but their number."""
+    return (values[0].text,) if len(values) == 1 else ("",) * len(values)
 
 
 def _lone_parts(
@@ -66,20 +101,11 @@ def _lone_parts(
 
 def _parts(name: str) -> list[str]:
     """Return the paths of the mappings that contain a value, the outermost first, and the path of the value."""
-    words = name.split(".")
-    return [".".join(words[: count + 1]) for count in range(len(words))]
+    return [*(name[: match.start()] for match in _SEPARATOR.finditer(name)), name]
 
 
 def _is_below(name: str, part: str) -> bool:
-    return name == part or name.startswith(f"{part}.")
-
-
-def _lone_text(name: str, values: Sequence[YamlValue], *, is_added: bool) -> Phrase:
-    if len(values) > 1:
-        part = counted("{parameter} with {count} value", "{parameter} with {count} values", len(values), parameter=name)
-    else:
-        part = phrase("{parameter} {value}", parameter=name, value=values[0].text)
-    return phrase("{part} added", part=part) if is_added else phrase("{part} removed", part=part)
+    return name == part or name.startswith((f"{part}.", f"{part}["))
 
 
 def _with_new_names(
@@ -89,7 +115,9 @@ def _with_new_names(
     for old_part, new_part in renamed_parts(old, new).items():
         inside = next(value for name, value in new.items() if _is_below(name, new_part))
         text = phrase("{old} renamed to {name}", old=old_part, name=new_part)
-        pair.add(text, Location(pair.new_path, inside.line, inside.column))
+        reason = phrase("the node '{name}' starts without these parameters", name=old_part)
+        is_controller = old_part in controllers(old)
+        pair.add(text, Location(pair.new_path, inside.line, inside.column), None if is_controller else reason)
         old = {
             f"{new_part}{name.removeprefix(old_part)}" if _is_below(name, old_part) else name: value
             for name, value in old.items()
@@ -103,13 +131,20 @@ def _read(file: Path) -> str:
     return file.read_text(encoding="utf-8")
 
 
-def _are_equal(old: str, new: str) -> bool:
-    """Return whether two values are equal as texts or as numbers: ``0`` and ``0.000`` are."""
-    if old == new:
+def _are_equal(name: str, old: YamlValue, new: YamlValue) -> bool:
+    """Return whether two values are equal as texts or as numbers: ``0`` and ``0.000`` are.
+
+    The parameters of a node are equal only if they have the same type, too.
+    """
+    if is_parameter(name) and has_other_type(old, new):
+        return False
+    if old.text == new.text:
         return True
+    if old.type is new.type is YamlType.TRUTH:
+        return old.text.lower() == new.text.lower()
     try:
-        return [float(word) for word in old.strip("[]").split(", ")] == [
-            float(word) for word in new.strip("[]").split(", ")
+        return [float(word) for word in old.text.strip("[]").split(", ")] == [
+            float(word) for word in new.text.strip("[]").split(", ")
         ]
     except ValueError:
         return False

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.breaking import name_reason
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import list_items
@@ -25,6 +25,8 @@ _STAMPED = re.compile(r"stamped", re.IGNORECASE)
 _STAMPED_BY_DEFAULT = "use_stamped_vel"
 """The parameter of diff_drive_controller and its relatives, which is true by default."""
 _NUMBER_OR_TRUTH = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
+_PLUGINS = re.compile(r"(^|[._])(plugins|plugin_names|plugin_ids)$")
+"""The parameters with the names of plugins, which trees of behaviors and goals name."""
 _MIN_FACTS = 6
 """The number of parameters and values from which a node can be recognized under another name."""
 _MIN_SIMILARITY = 0.6
@@ -40,11 +42,12 @@ class NameRules:
 
     def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> None:
         self._new = new
-        self._controllers = {*_controllers(old), *_controllers(new)}
-        self._new_controllers = set(_controllers(new))
+        self._controllers = {*controllers(old), *controllers(new)}
+        self._new_controllers = set(controllers(new))
 
-    def change_reason(self, parameter: str, old: str, new: str) -> Phrase | None:
+    def change_reason(self, parameter: str, old_value: YamlValue, new_value: YamlValue) -> Phrase | None:
         """Return why a changed value is breaking, or None if it is not."""
+        old, new = old_value.text, new_value.text
         if _STAMPED.search(parameter) and {old.lower(), new.lower()} == {"true", "false"}:
             return phrase("the message type of a topic changes between one with and one without a header")
         controller = _CONTROLLER_TYPE.fullmatch(parameter)
@@ -56,7 +59,17 @@ class NameRules:
             is_offered = _FRAMES.search(parameter) is not None or _JOINTS.search(parameter) is not None
         if gone and is_offered:
             return name_reason(", ".join(sorted(gone)))
-        return None
+        if gone and _PLUGINS.search(parameter):
+            return _plugin_reason(gone)
+        return self._type_reason(parameter, old_value, new_value)
+
+    def _type_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
+        """Return why another type is breaking: a node that declares a parameter refuses values of other types."""
+        if not _NODE.match(parameter) or not has_other_type(old, new):
+            return None
+        return phrase(
+            "a node that declares the parameter as {old} does not accept {new}", old=old.type_name, new=new.type_name
+        )
 
     def removal_reason(self, parameter: str, old: str) -> Phrase | None:
         """Return why a removed parameter is breaking, or None if it is not.
@@ -66,10 +79,15 @@ class NameRules:
         if parameter.endswith(_STAMPED_BY_DEFAULT) and old.lower() == "false" and self._has_node(parameter):
             return phrase("the message type of a topic changes between one with and one without a header")
         controller = _CONTROLLER_TYPE.fullmatch(parameter)
-        if controller is None or controller["controller"] in self._new_controllers:
-            return None
-        name = controller["controller"]
-        return phrase("programs that load or command the controller '{name}' do not find it", name=name)
+        if controller is not None and controller["controller"] not in self._new_controllers:
+            name = controller["controller"]
+            return phrase("programs that load or command the controller '{name}' do not find it", name=name)
+        node = _NODE.match(parameter)
+        if node is not None and not self._has_node(parameter):
+            return phrase("the node '{name}' starts without these parameters", name=node["node"])
+        if _PLUGINS.search(parameter) and _items(old):
+            return _plugin_reason(_items(old))
+        return None
 
     def _is_controllers(self, parameter: str) -> bool:
         """Return whether a parameter belongs to a controller."""
@@ -88,7 +106,24 @@ def offers_frame(parameter: str) -> bool:
     return _FRAMES.search(parameter) is not None and not _USED_FRAMES.search(parameter)
 
 
-def _controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
+def is_parameter(name: str) -> bool:
+    """Return whether a path is that of a parameter of a node."""
+    return _NODE.match(name) is not None
+
+
+def has_other_type(old: YamlValue, new: YamlValue) -> bool:
+    """Return whether two values have types that differ. Empty values fit all types."""
+    if old.is_list != new.is_list and None not in (old.type, new.type):
+        return True
+    return None not in (old.type, new.type) and old.type is not new.type
+
+
+def _plugin_reason(names: Collection[str]) -> Phrase:
+    return phrase("programs that name the plugins {names} do not find them", names=quoted_names(sorted(names)))
+
+
+def controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
+    """Yield the names of the controllers that a file gives a type."""
     for name in values:
         match = _CONTROLLER_TYPE.fullmatch(name) or _OWN_TYPE.fullmatch(name)
         if match is not None:

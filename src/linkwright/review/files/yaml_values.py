@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from enum import Enum
 
 import yaml
 
@@ -14,6 +16,19 @@ _MAX_VALUES = 20_000
 """The maximum number of values of a file. Aliases can repeat a value billions of times."""
 _NAME_KEYS = ("name", "id")
 """The keys that identify the items of a list."""
+_INTEGER = re.compile(r"[-+]?(0x[0-9a-fA-F]+|\d+)")
+_FLOAT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
+_TRUTH = re.compile(r"true|false|yes|no|on|off", re.IGNORECASE)
+
+
+class YamlType(Enum):
+    """The type that a parameter of ROS 2 gets from a value in YAML."""
+
+    INTEGER = "integer"
+    FLOAT = "double"
+    TRUTH = "bool"
+    TEXT = "string"
+    MIXED = "mixed"
 
 
 @dataclass(frozen=True)
@@ -24,24 +39,45 @@ class YamlValue:
         text: the value as text, as it is written without quotes.
         line: the line, starting at 1.
         column: the column, starting at 1.
+        type: the type of the scalar, or of the items of the list; None for an empty list or an empty value.
+        is_list: whether the value is a list.
     """
 
     text: str
     line: int
     column: int
+    type: YamlType | None = None
+    is_list: bool = False
+
+    @property
+    def type_name(self) -> str:
+        """The name of the type of a parameter in ROS 2."""
+        name = "" if self.type is None else self.type.value
+        return f"{name}_array" if self.is_list else name
 
 
-def read_yaml_values(text: str) -> dict[str, YamlValue]:
+def read_yaml_values(text: str, labels: Mapping[int, str] | None = None) -> dict[str, YamlValue]:
     """Return the values of a YAML document by their paths, such as ``controller_manager.ros__parameters.update_rate``.
 
     Raises:
         UnreadableFileError: the text is not YAML, or it has more values than a parameter file.
     """
-    values: dict[str, YamlValue] = {}
     root = composed(text)
-    if root is None:
-        return values
-    for path, value in _values(root, ""):
+    return {} if root is None else yaml_values(root, labels or {})
+
+
+def yaml_values(root: yaml.Node, labels: Mapping[int, str]) -> dict[str, YamlValue]:
+    """Return the values of a document by their paths.
+
+    Args:
+        root: the document.
+        labels: the labels of items of lists in paths, by the identity of the item; by default, their names or numbers.
+
+    Raises:
+        UnreadableFileError: the document has more values than a parameter file.
+    """
+    values: dict[str, YamlValue] = {}
+    for path, value in _values(root, "", labels):
         values[path] = value
         if len(values) > _MAX_VALUES:
             raise LimitError(phrase("it has more than {count} values", count=_MAX_VALUES))
@@ -60,17 +96,37 @@ def composed(text: str) -> yaml.Node | None:
         raise UnreadableFileError(foreign(" ".join(str(error).split()))) from None
 
 
-def _values(node: yaml.Node, path: str) -> Iterator[tuple[str, YamlValue]]:
+def _values(node: yaml.Node, path: str, labels: Mapping[int, str]) -> Iterator[tuple[str, YamlValue]]:
     if isinstance(node, yaml.MappingNode):
         for key, value in node.value:
             name = key.value if isinstance(key, yaml.ScalarNode) else "?"
-            yield from _values(value, f"{path}.{name}" if path else str(name))
-    elif isinstance(node, yaml.SequenceNode) and not all(isinstance(item, yaml.ScalarNode) for item in node.value):
+            yield from _values(value, f"{path}.{name}" if path else str(name), labels)
+    elif is_structured_list(node):
         for number, item in enumerate(node.value):
-            yield from _values(item, f"{path}[{_name_of(item) or number}]")
+            label = name_of_item(item) or labels.get(id(item)) or number
+            yield from _values(item, f"{path}[{label}]", labels)
     else:
         mark = node.start_mark
-        yield path, YamlValue(_scalar_text(node), mark.line + 1, mark.column + 1)
+        is_list = isinstance(node, yaml.SequenceNode)
+        yield path, YamlValue(_scalar_text(node), mark.line + 1, mark.column + 1, _type_of(node), is_list)
+
+
+def is_structured_list(node: yaml.Node) -> bool:
+    """Return whether a node is a list with items that are lists or mappings."""
+    return isinstance(node, yaml.SequenceNode) and not all(isinstance(item, yaml.ScalarNode) for item in node.value)
+
+
+def _type_of(node: yaml.Node) -> YamlType | None:
+    if isinstance(node, yaml.SequenceNode):
+        types = {_type_of(item) for item in node.value}
+        return YamlType.MIXED if len(types) > 1 else next(iter(types), None)
+    text = str(node.value)
+    if not isinstance(node, yaml.ScalarNode) or node.style is not None:
+        return YamlType.TEXT
+    if text in ("", "~", "null"):
+        return None
+    patterns = ((YamlType.INTEGER, _INTEGER), (YamlType.FLOAT, _FLOAT), (YamlType.TRUTH, _TRUTH))
+    return next((kind for kind, pattern in patterns if pattern.fullmatch(text)), YamlType.TEXT)
 
 
 def _scalar_text(node: yaml.Node) -> str:
@@ -79,7 +135,7 @@ def _scalar_text(node: yaml.Node) -> str:
     return " ".join(str(node.value).split())
 
 
-def _name_of(node: yaml.Node) -> str | None:
+def name_of_item(node: yaml.Node) -> str | None:
     """Return the name of an item of a list, so that an inserted item does not shift the others."""
     if not isinstance(node, yaml.MappingNode):
         return None

@@ -1,0 +1,92 @@
+"""Changes of values in files, of which equal ones are one line, and many of a list are a summary."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from linkwright.diagnostics import Phrase, counted, joined, phrase
+from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.list_changes import change_text
+
+_ITEM = re.compile(r"(?P<list>[^\[]*)\[(?:old )?\d+\]")
+"""The path of a list, and an item of it that has no name."""
+_MAX_ITEM_CHANGES = 6
+"""The number of changes of the items of a list up to which all are shown."""
+
+
+@dataclass(frozen=True)
+class ValueChange:
+    """A value, or a part with several values, that differs.
+
+    Attributes:
+        name: the path of the value or the part.
+        kind: whether it is changed, or which version has it.
+        values: both values of a changed one; the values of another one, which are empty for several.
+        location: the location.
+        reason: why the change is breaking; None if it is not.
+    """
+
+    name: str
+    kind: Literal["changed", "added", "removed"]
+    values: tuple[str, ...]
+    location: Location
+    reason: Phrase | None = None
+
+    @property
+    def sentence(self) -> Phrase:
+        """The change in one line."""
+        if self.kind == "changed":
+            return change_text(self.name, *self.values)
+        count = len(self.values)
+        part = phrase("{parameter} {value}", parameter=self.name, value=self.values[0])
+        if count > 1:
+            part = counted(
+                "{parameter} with {count} value", "{parameter} with {count} values", count, parameter=self.name
+            )
+        return phrase("{part} added", part=part) if self.kind == "added" else phrase("{part} removed", part=part)
+
+    @property
+    def key(self) -> Hashable:
+        """A key that is equal for the same change of a value of the same name in other parts."""
+        leaf = self.name.rpartition(".")[2]
+        return leaf, self.kind, self.values, None if self.reason is None else str(self.reason)
+
+
+def merged_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
+    """Yield the changes of a file: breaking ones alone, equal ones and those of long lists as one."""
+    lists: dict[str, list[ValueChange]] = {}
+    groups: dict[Hashable, list[ValueChange]] = {}
+    for change in changes:
+        item = None if change.reason is not None else _ITEM.match(change.name)
+        if item is not None:
+            lists.setdefault(item["list"], []).append(change)
+        else:
+            groups.setdefault(change.key, []).append(change)
+    for group in groups.values():
+        yield _as_one(group)
+    for name, group in lists.items():
+        yield from (
+            [_as_one([change]) for change in group] if len(group) <= _MAX_ITEM_CHANGES else [_summary(name, group)]
+        )
+
+
+def _as_one(group: Sequence[ValueChange]) -> Change:
+    first = group[0]
+    effect = Effect.CHANGED if first.reason is None else Effect.BREAKING
+    names = tuple(change.name for change in group[1:])
+    locations = tuple(change.location for change in group[1:])
+    return Change(first.sentence, effect, first.reason, first.location, (), names, locations)
+
+
+def _summary(name: str, group: Sequence[ValueChange]) -> Change:
+    counts = [sum(change.kind == kind for change in group) for kind in ("changed", "added", "removed")]
+    texts = (
+        counted("{count} value changed", "{count} values changed", counts[0]),
+        counted("{count} part added", "{count} parts added", counts[1]),
+        counted("{count} part removed", "{count} parts removed", counts[2]),
+    )
+    listed = joined([text for text, count in zip(texts, counts, strict=True) if count])
+    return Change(phrase("list {name}: {changes}", name=name, changes=listed), location=group[0].location)
