@@ -7,7 +7,7 @@ import {
   type Box3,
   type ColorRepresentation,
 } from "three";
-import { areTranslucent, blend } from "../materials";
+import { areTranslucent, setBlending } from "../materials";
 import { segmentsOf } from "./ribbons";
 
 /** Lines one pixel wide, unlit; with the same methods as `WideLines`. */
@@ -37,8 +37,8 @@ export class ThinLines {
   }
 
   /** Whether the lines are shown. */
-  set shown(shown: boolean) {
-    this.isShown = shown;
+  set isShown(isShown: boolean) {
+    this.isShown = isShown;
     this.show();
   }
 
@@ -48,8 +48,8 @@ export class ThinLines {
    */
   setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
     this.setSegments(
-      concatenated(strips.map((strip) => segmentsOf(strip))),
-      colors && concatenated(colors.map((color) => segmentsOf(color, 4))),
+      concatenate(strips.map((strip) => segmentsOf(strip))),
+      colors && concatenate(colors.map((color) => segmentsOf(color, 4))),
     );
   }
 
@@ -79,17 +79,17 @@ export class ThinLines {
     const { material, geometry } = this.root;
     const colors = geometry.attributes["color"];
     material.vertexColors = colors !== undefined;
-    blend(material, areTranslucent(this.opacity, colors));
+    setBlending(material, areTranslucent(this.opacity, colors));
   }
 }
 
 /** Concatenates arrays. */
-export function concatenated(parts: readonly Float32Array[]): Float32Array {
+export function concatenate(parts: readonly Float32Array[]): Float32Array {
   const result = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
-  let at = 0;
+  let offset = 0;
   for (const part of parts) {
-    result.set(part, at);
-    at += part.length;
+    result.set(part, offset);
+    offset += part.length;
   }
   return result;
 }
