@@ -31,7 +31,7 @@ export class ControlHandle {
   private readonly objects: MarkerObject[] = [];
   private readonly ownOrientation: Quaternion;
   private readonly framed = new Quaternion();
-  private isHighlighted = false;
+  private isBright = false;
 
   constructor(
     readonly control: InteractiveControl,
@@ -66,8 +66,8 @@ export class ControlHandle {
   }
 
   set isHighlighted(isBright: boolean) {
-    if (isBright === this.isHighlighted) return;
-    this.isHighlighted = isBright;
+    if (isBright === this.isBright) return;
+    this.isBright = isBright;
     this.arrangeSolids();
     for (const { root } of this.objects) root.traverse((object) => brighten(object, isBright));
   }
@@ -108,7 +108,7 @@ export class ControlHandle {
     for (const marker of this.control.markers) {
       if (!isSolid(marker.shape)) continue;
       const color = marker.color.map((channel, i) => (i < 3 ? Math.min(1, channel * BRIGHTNESS_FACTOR + BRIGHTNESS_OFFSET) : channel));
-      this.solids.add({ ...marker, color: this.isHighlighted ? color : marker.color }, poseOf(marker));
+      this.solids.add({ ...marker, color: this.isBright ? color : marker.color }, poseOf(marker));
     }
     this.solids.end();
   }

@@ -55,7 +55,7 @@ export class Drag {
   }
 
   /** Returns the marker's pose after a movement of the mouse; null if the movement does not define one. */
-  drag(event: DragEvent): MarkerPose | null {
+  followPointer(event: DragEvent): MarkerPose | null {
     const hasMoved = this.move(event);
     return hasMoved ? copyOf(this.pose) : null;
   }

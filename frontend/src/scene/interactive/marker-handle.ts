@@ -133,7 +133,7 @@ export class MarkerHandle {
     const inverse = this.inverseMatrix();
     const ray = event.ray.ray.clone().applyMatrix4(inverse);
     const rotation = new Quaternion().setFromRotationMatrix(inverse.clone().multiply(camera.matrixWorld));
-    const newPose = this.drag.drag.drag({
+    const newPose = this.drag.drag.followPointer({
       ray: new Ray(ray.origin, ray.direction.normalize()),
       dx: event.dx,
       dy: event.dy,

@@ -14,7 +14,7 @@ import { segmentsOf } from "./ribbons";
 export class ThinLines {
   readonly root = new LineSegments<BufferGeometry, LineBasicMaterial>(new BufferGeometry(), new LineBasicMaterial());
   private opacity = 1;
-  private isShown = true;
+  private isEnabled = true;
 
   constructor() {
     this.root.frustumCulled = false;
@@ -38,7 +38,7 @@ export class ThinLines {
 
   /** Whether the lines are shown. */
   set isShown(isShown: boolean) {
-    this.isShown = isShown;
+    this.isEnabled = isShown;
     this.show();
   }
 
@@ -72,7 +72,7 @@ export class ThinLines {
   }
 
   private show(): void {
-    this.root.visible = this.isShown && this.count > 0;
+    this.root.visible = this.isEnabled && this.count > 0;
   }
 
   private updateMaterial(): void {
