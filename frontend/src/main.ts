@@ -37,7 +37,7 @@ import { WorldPanel } from "./panels/modeling/world-panel";
 import { preserveSearches } from "./panels/preserve-searches";
 import { ChecksPanel } from "./panels/learning/checks-panel";
 import { LessonPanel } from "./panels/learning/lesson-panel";
-import { livePanels } from "./panels/monitor/live-panels";
+import { createLivePanels } from "./panels/monitor/live-panels";
 import { showTopic } from "./panels/monitor/show-topic";
 import { ScenePanel } from "./panels/over-scene/scene-panel";
 import type { PanelId } from "./panels/panel";
@@ -145,7 +145,7 @@ function start(app: HTMLElement): void {
     new ProgramPanel(session.terminals, theme),
     lesson,
     new ChecksPanel(session.course),
-    ...livePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
+    ...createLivePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
   ];
   preserveSearches(panels, session.memory);
   const dock = new Dock(dockBox, panels, new Layouts(browserStorage()), browserStorage());

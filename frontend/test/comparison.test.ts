@@ -45,8 +45,8 @@ describe("two descriptions in one scene", () => {
   it("draws the old robot in one color, behind the new one, and removed links more opaque in a color of their own", () => {
     const ghost = comparison.overrideOf("display-2", "arm");
     const gone = comparison.overrideOf("display-2", "camera");
-    expect(ghost).toMatchObject({ behind: true, firm: false });
-    expect(gone).toMatchObject({ behind: true, firm: true });
+    expect(ghost).toMatchObject({ isBehind: true, isOpaque: false });
+    expect(gone).toMatchObject({ isBehind: true, isOpaque: true });
     expect(gone?.color.map((part) => Math.round(part * 255))).toEqual([0xcc, 0x33, 0x77]);
     expect(comparison.isOld("display-2")).toBe(true);
   });

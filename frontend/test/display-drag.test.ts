@@ -30,20 +30,20 @@ function drop(dragged: string, target: string, part: DropPart): unknown {
 
 describe("a dropped display", () => {
   it("is inserted before another one, among its siblings", () => {
-    expect(drop("tf", "grid", "before")).toEqual({ group: null, before: "grid" });
-    expect(drop("tf", "laser", "before")).toEqual({ group: "sensors", before: "laser" });
+    expect(drop("tf", "grid", "before")).toEqual({ group: null, nextSibling: "grid" });
+    expect(drop("tf", "laser", "before")).toEqual({ group: "sensors", nextSibling: "laser" });
   });
 
   it("is inserted after another one, which is before the next sibling", () => {
-    expect(drop("tf", "grid", "after")).toEqual({ group: null, before: "sensors" });
-    expect(drop("tf", "laser", "after")).toEqual({ group: "sensors", before: "deep" });
-    expect(drop("grid", "tf", "after")).toEqual({ group: null, before: null });
-    expect(drop("sensors", "grid", "after")).toEqual({ group: null, before: "tf" });
+    expect(drop("tf", "grid", "after")).toEqual({ group: null, nextSibling: "sensors" });
+    expect(drop("tf", "laser", "after")).toEqual({ group: "sensors", nextSibling: "deep" });
+    expect(drop("grid", "tf", "after")).toEqual({ group: null, nextSibling: null });
+    expect(drop("sensors", "grid", "after")).toEqual({ group: null, nextSibling: "tf" });
   });
 
   it("is inserted at the start of a group", () => {
-    expect(drop("grid", "sensors", "inside")).toEqual({ group: "sensors", before: "laser" });
-    expect(drop("laser", "sensors", "inside")).toEqual({ group: "sensors", before: "deep" });
+    expect(drop("grid", "sensors", "inside")).toEqual({ group: "sensors", nextSibling: "laser" });
+    expect(drop("laser", "sensors", "inside")).toEqual({ group: "sensors", nextSibling: "deep" });
     expect(drop("tf", "grid", "inside")).toBeNull();
   });
 

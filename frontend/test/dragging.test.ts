@@ -1,6 +1,6 @@
 import { Quaternion, Ray, Vector3 } from "three";
 import { describe, expect, test } from "vitest";
-import { alongAxis, Drag, rotationBetween, type DragEvent } from "../src/scene/interactive/dragging";
+import { distanceAlongAxis, Drag, rotationBetween, type DragEvent } from "../src/scene/interactive/dragging";
 
 const START = { position: new Vector3(1, 2, 3), orientation: new Quaternion() };
 const NO_TURN = new Quaternion();
@@ -23,7 +23,7 @@ function from(x: number, y: number, part: Partial<DragEvent> = {}): DragEvent {
 }
 
 function expectPosition(drag: Drag, event: DragEvent, ...expected: [number, number, number]): void {
-  const moved = drag.poseAfter(event);
+  const moved = drag.followPointer(event);
   expect(moved?.position.toArray().map((each) => Number(each.toFixed(6)) + 0)).toEqual(expected);
 }
 
@@ -35,7 +35,7 @@ describe("moving", () => {
   });
 
   test("along an axis in the line of sight has no result", () => {
-    expect(new Drag("move_axis", START, START.position, TO_Z).poseAfter(from(5, 5))).toBeNull();
+    expect(new Drag("move_axis", START, START.position, TO_Z).followPointer(from(5, 5))).toBeNull();
   });
 
   test("in a plane keeps the grabbed point under the mouse", () => {
@@ -44,13 +44,13 @@ describe("moving", () => {
   });
 
   test("in a plane seen edge-on has no result", () => {
-    expect(new Drag("move_plane", START, START.position, NO_TURN).poseAfter(from(5, 5))).toBeNull();
+    expect(new Drag("move_plane", START, START.position, NO_TURN).followPointer(from(5, 5))).toBeNull();
   });
 
   test("without constraint moves in the plane that faces the viewer, or with Shift along the line of sight", () => {
     const drag = new Drag("move_3d", START, START.position, NO_TURN);
     expectPosition(drag, from(3, 3), 3, 3, 3);
-    const nearer = drag.poseAfter(from(3, 3, { shift: true, dy: 10 }));
+    const nearer = drag.followPointer(from(3, 3, { shift: true, dy: 10 }));
     expect(nearer?.position.x).toBeCloseTo(3);
     expect(nearer?.position.z).toBeGreaterThan(3);
   });
@@ -59,7 +59,7 @@ describe("moving", () => {
 describe("rotating", () => {
   test("about an axis follows the mouse around it", () => {
     const drag = new Drag("rotate_axis", START, new Vector3(2, 2, 3), TO_Z);
-    const moved = drag.poseAfter(from(1, 5));
+    const moved = drag.followPointer(from(1, 5));
     expect(moved?.position).toEqual(START.position);
     const turned = new Vector3(1, 0, 0).applyQuaternion(moved?.orientation ?? NO_TURN);
     expect(turned.toArray().map((each) => Math.round(each * 1e6) / 1e6 + 0)).toEqual([0, 1, 0]);
@@ -73,7 +73,7 @@ describe("rotating", () => {
 
   test("without constraint makes a full turn per 300 pixels", () => {
     const drag = new Drag("rotate_3d", START, START.position, NO_TURN);
-    const moved = drag.poseAfter(from(0, 0, { dx: 75 }));
+    const moved = drag.followPointer(from(0, 0, { dx: 75 }));
     const turned = new Vector3(0, 0, 1).applyQuaternion(moved?.orientation ?? NO_TURN);
     expect(turned.x).toBeCloseTo(1);
   });
@@ -81,13 +81,13 @@ describe("rotating", () => {
 
 test("buttons and menus do not move", () => {
   for (const mode of ["none", "button", "menu"] as const) {
-    expect(new Drag(mode, START, START.position, NO_TURN).poseAfter(from(5, 5))).toBeNull();
+    expect(new Drag(mode, START, START.position, NO_TURN).followPointer(from(5, 5))).toBeNull();
   }
 });
 
 test("the nearest point of an axis to a line", () => {
   const ray = new Ray(new Vector3(3, -5, 1), new Vector3(0, 1, 0));
-  expect(alongAxis(ray, new Vector3(1, 0, 0), new Vector3(1, 0, 0))).toBeCloseTo(2);
+  expect(distanceAlongAxis(ray, new Vector3(1, 0, 0), new Vector3(1, 0, 0))).toBeCloseTo(2);
 });
 
 test("the rotation between two directions keeps the sign of the axis", () => {

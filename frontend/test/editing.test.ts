@@ -1,6 +1,6 @@
 import { describe, expect, it, vi } from "vitest";
 import { placeText, shortPath } from "../src/panels/place";
-import { materialFiles } from "../src/scene/meshes/obj";
+import { listMaterialFiles } from "../src/scene/meshes/obj";
 import { formatColor, parseColor } from "../src/tree/colors";
 import { clamp, formatFixed, formatNumber, parseNumber, stepFor } from "../src/tree/numbers";
 
@@ -54,7 +54,7 @@ describe("source positions", () => {
 
 describe("OBJ files", () => {
   it("list their material files one per line, including names with blanks", () => {
-    expect(materialFiles("mtllib a.mtl\r\n# mtllib no.mtl\nv 0 0 0\n  mtllib my robot.mtl\n")).toEqual([
+    expect(listMaterialFiles("mtllib a.mtl\r\n# mtllib no.mtl\nv 0 0 0\n  mtllib my robot.mtl\n")).toEqual([
       "a.mtl",
       "my robot.mtl",
     ]);

@@ -103,7 +103,7 @@ describe("the files of an exported page", () => {
       expect(await response.text()).toBe("solid a");
     }
     expect((await files.fetch("/mesh/arm-1/meshes/b.stl")).status).toBe(404);
-    expect(files.address("blob:something")).toBe("blob:something");
+    expect(files.addressOf("blob:something")).toBe("blob:something");
   });
 });
 

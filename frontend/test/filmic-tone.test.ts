@@ -1,12 +1,12 @@
 import { MeshLambertMaterial, ShaderLib } from "three";
 import { expect, test } from "vitest";
-import { filmic } from "../src/scene/filmic-tone";
+import { applyFilmicTone } from "../src/scene/filmic-tone";
 import { MaterialPool, type Look } from "../src/scene/materials";
 
-const LOOK: Look = { color: [1, 1, 1], alpha: 1, map: null, vertexColors: false, doubleSided: true };
+const LOOK: Look = { color: [1, 1, 1], alpha: 1, map: null, hasVertexColors: false, isDoubleSided: true };
 
 test("the tone mapping is inserted into the shader at three.js's own", () => {
-  const material = filmic(new MeshLambertMaterial());
+  const material = applyFilmicTone(new MeshLambertMaterial());
   const shader = { ...ShaderLib.lambert };
   material.onBeforeCompile(shader as never, null as never);
   expect(shader.fragmentShader).not.toContain("tonemapping_fragment");

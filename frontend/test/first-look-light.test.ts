@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import { Backdrop } from "../src/scene/backdrop";
 import { ContactShadow } from "../src/scene/contact-shadow";
 import { fadedColors } from "../src/scene/displays/grid-lines";
-import { pointsOn, samplesOf } from "../src/scene/robot/surface-samples";
+import { samplePoints, samplesOf } from "../src/scene/robot/surface-samples";
 
 function boxAt(x: number, z: number): Mesh {
   const mesh = new Mesh(new BoxGeometry(1, 1, 1));
@@ -37,7 +37,7 @@ describe("sample points of a surface", () => {
   });
 
   it("follow the pose of the mesh", () => {
-    for (const [x] of pointsOn(boxAt(7, 0))) expect(Math.abs(x - 7)).toBeLessThanOrEqual(0.5 + 1e-5);
+    for (const [x] of samplePoints(boxAt(7, 0))) expect(Math.abs(x - 7)).toBeLessThanOrEqual(0.5 + 1e-5);
   });
 });
 

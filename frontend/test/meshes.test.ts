@@ -13,7 +13,7 @@ vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/
 
 const NO_FILES: MeshFiles = {
   fetch: () => Promise.resolve(new Response("no such file", { status: 404 })),
-  address: (url) => url,
+  addressOf: (url) => url,
 };
 
 function bytes(text: string): ArrayBuffer {

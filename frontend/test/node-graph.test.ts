@@ -134,14 +134,14 @@ describe("the drawn graph", () => {
   it("connects nodes directly if topics are not shown", () => {
     const { vertices, edges } = buildGraph(GRAPH, { ...OPTIONS, mode: "nodes" });
     expect(vertices.every(({ kind }) => kind === "node")).toBe(true);
-    expect(edges).toContainEqual({ from: "node:/base", to: "node:/talker", topics: ["/move", "/tf"] });
+    expect(edges).toContainEqual({ source: "node:/base", target: "node:/talker", topics: ["/move", "/tf"] });
   });
 
   it("merges the nodes of a namespace, including the topics between them", () => {
     const { vertices, edges } = buildGraph(GRAPH, { ...OPTIONS, grouped: true });
     expect(vertices).toContainEqual({ id: "group:/left", kind: "group", label: "/left/", count: 2 });
     expect(vertices.map(({ label }) => label)).not.toContain("/left/grip");
-    expect(edges).toContainEqual({ from: "group:/left", to: "topic:/left/state", topics: [] });
+    expect(edges).toContainEqual({ source: "group:/left", target: "topic:/left/state", topics: [] });
     expect(labels({ grouped: true, openGroups: new Set(["/left"]) })).toContain("node /left/hand");
   });
 });

@@ -17,9 +17,9 @@ import { alongX, ArrowBatch } from "../src/scene/objects/arrow-batch";
 import { AxesBatch } from "../src/scene/objects/axes-batch";
 import { CopyBatch } from "../src/scene/objects/copy-batch";
 import { CovarianceBatch, type CovarianceStyle } from "../src/scene/objects/covariance-batch";
-import { principalAxes } from "../src/scene/objects/eigen";
+import { computePrincipalAxes } from "../src/scene/objects/eigen";
 import { sphereGeometry, coneGeometry, cubeGeometry, rodGeometry } from "../src/scene/objects/geometries";
-import { ribbons, segmentsOf, stripsOf } from "../src/scene/objects/ribbons";
+import { createRibbons, segmentsOf, stripsOf } from "../src/scene/objects/ribbons";
 
 interface Boxed {
   expandBox(box: Box3): void;
@@ -144,7 +144,7 @@ describe("AxesBatch", () => {
 
 describe("ribbons", () => {
   it("share the vertices of a corner, along the bisector of both directions", () => {
-    const made = ribbons([new Float32Array([0, 0, 0, 1, 0, 0, 1, 3, 0])]);
+    const made = createRibbons([new Float32Array([0, 0, 0, 1, 0, 0, 1, 3, 0])]);
     expect(made.positions).toHaveLength(18);
     expect([...made.sides]).toEqual([-0.5, 0.5, -0.5, 0.5, -0.5, 0.5]);
     expect([...made.directions.subarray(6, 9)]).toEqual([1, 1, 0]);
@@ -154,13 +154,13 @@ describe("ribbons", () => {
 
   it("do not connect strips", () => {
     const line = new Float32Array([0, 0, 0, 1, 0, 0]);
-    const made = ribbons([line, line], [new Float32Array(8).fill(1), new Float32Array(8).fill(0.5)]);
+    const made = createRibbons([line, line], [new Float32Array(8).fill(1), new Float32Array(8).fill(0.5)]);
     expect([...made.indices]).toEqual([0, 1, 3, 0, 3, 2, 4, 5, 7, 4, 7, 6]);
     expect([...made.colors!.subarray(16, 20)]).toEqual([0.5, 0.5, 0.5, 0.5]);
   });
 
   it("handle lines that reverse, and strips of one point", () => {
-    const made = ribbons([new Float32Array([0, 0, 0, 1, 0, 0, 0, 0, 0]), new Float32Array([5, 5, 5])]);
+    const made = createRibbons([new Float32Array([0, 0, 0, 1, 0, 0, 0, 0, 0]), new Float32Array([5, 5, 5])]);
     expect([...made.directions.subarray(6, 9)]).toEqual([-1, 0, 0]);
     expect(made.indices).toHaveLength(12);
   });
@@ -175,7 +175,7 @@ describe("ribbons", () => {
 describe("principal axes", () => {
   it("reproduce the matrix", () => {
     const m = [4, 1, -2, 1, 3, 0.5, -2, 0.5, 6] as const;
-    const { values, axes } = principalAxes(m);
+    const { values, axes } = computePrincipalAxes(m);
     const [x, y, z] = [new Vector3(), new Vector3(), new Vector3()];
     axes.extractBasis(x, y, z);
     expect(axes.determinant()).toBeCloseTo(1);
@@ -194,7 +194,7 @@ describe("CovarianceBatch", () => {
   const POSITION: CovarianceStyle = { position: { color: 0xffffff, alpha: 1, scale: 1 }, orientation: null };
   const ORIENTATION: CovarianceStyle = {
     position: null,
-    orientation: { local: true, colors: [1, 2, 3], alpha: 1, offset: 2, scale: 1 },
+    orientation: { isLocal: true, colors: [1, 2, 3], alpha: 1, offset: 2, scale: 1 },
   };
 
   function drawn(diagonal: number[], style: CovarianceStyle, pose = [0, 0, 0, 0, 0, 0, 1]): ReturnType<typeof bounds> {

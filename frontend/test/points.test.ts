@@ -1,8 +1,8 @@
 import { expect, test } from "vitest";
 import { describePoint } from "../src/scene/displays/cloud-description";
 import { mapPalette } from "../src/scene/displays/map-palette";
-import { nearestPoint } from "../src/scene/objects/nearest-point";
-import { cameraInImageFrame, imageZoom, projection } from "../src/scene/images/camera-projection";
+import { findNearestPoint } from "../src/scene/objects/nearest-point";
+import { cameraInImageFrame, computeZoom, createProjection } from "../src/scene/images/camera-projection";
 import { rgbaOf } from "../src/scene/images/image-canvas";
 import { isShownInCamera } from "../src/scene/images/shown-in-camera";
 import { DisplayState } from "../src/state/displays";
@@ -15,14 +15,14 @@ const ORIGIN = [0, 0, 0] as const;
 
 test("finds the first point near a ray", () => {
   const points = new Float32Array([5, 0.05, 0, 2, 0.05, 0, -1, 0, 0, 1, 1, 0]);
-  expect(nearestPoint(points, ORIGIN, ALONG_X, 0.1, 0)).toEqual({ index: 1, distance: 2 });
-  expect(nearestPoint(points, ORIGIN, ALONG_X, 0.01, 0)).toBeNull();
+  expect(findNearestPoint(points, ORIGIN, ALONG_X, 0.1, 0)).toEqual({ index: 1, distance: 2 });
+  expect(findNearestPoint(points, ORIGIN, ALONG_X, 0.01, 0)).toBeNull();
 });
 
 test("a pointer covers a larger area at a greater distance", () => {
   const points = new Float32Array([10, 0.05, 0]);
-  expect(nearestPoint(points, ORIGIN, ALONG_X, 0, 0.004)).toBeNull();
-  expect(nearestPoint(points, ORIGIN, ALONG_X, 0, 0.006)?.index).toBe(0);
+  expect(findNearestPoint(points, ORIGIN, ALONG_X, 0, 0.004)).toBeNull();
+  expect(findNearestPoint(points, ORIGIN, ALONG_X, 0, 0.006)?.index).toBe(0);
 });
 
 test("a point is described as in RViz", () => {
@@ -91,20 +91,20 @@ const CAMERA = {
 };
 
 test("an image keeps its aspect ratio in any window", () => {
-  expect(imageZoom(CAMERA, 1, 640, 480)).toEqual([1, 1]);
-  const [wideX, wideY] = imageZoom(CAMERA, 1, 1280, 480);
+  expect(computeZoom(CAMERA, 1, 640, 480)).toEqual([1, 1]);
+  const [wideX, wideY] = computeZoom(CAMERA, 1, 1280, 480);
   expect([wideX, wideY]).toEqual([0.5, 1]);
-  const [highX, highY] = imageZoom(CAMERA, 1, 640, 960);
+  const [highX, highY] = computeZoom(CAMERA, 1, 640, 960);
   expect([highX, highY]).toEqual([1, 0.5]);
 });
 
 test("the camera projects according to its matrix", () => {
-  const matrix = projection(CAMERA, [1, 1], 100);
+  const matrix = createProjection(CAMERA, [1, 1], 100);
   // One meter to the right at a distance of two: 160 pixels of the 320 from the center to the edge.
   const at = new Vector3(1, 0, -2).applyMatrix4(matrix);
   expect(at.x).toBeCloseTo(0.5);
   expect(at.y).toBeCloseTo(0);
-  const shifted = projection({ ...CAMERA, center_x: 480 }, [1, 1], 100);
+  const shifted = createProjection({ ...CAMERA, center_x: 480 }, [1, 1], 100);
   expect(new Vector3(0, 0, -1).applyMatrix4(shifted).x).toBeCloseTo(0.5);
   expect(new Vector3(0, 0, -100).applyMatrix4(matrix).z).toBeCloseTo(1);
 });

@@ -50,8 +50,8 @@ function robot(links: LinkScene[]): { drawing: RobotDrawing; frames: FrameStore 
 }
 
 function draw({ drawing, frames }: ReturnType<typeof robot>, rows = new PropertyRows([])): Record<string, unknown> {
-  drawing.style(rows, false);
-  drawing.place((each, matrix) => framePose(frames, frames.rowOf(each.frame), matrix));
+  drawing.applyStyle(rows, false);
+  drawing.updatePoses((each, matrix) => framePose(frames, frames.rowOf(each.frame), matrix));
   drawing.chooseDetail(from(5));
   return drawing.inspect() as Record<string, unknown>;
 }

@@ -1,7 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { detailRows } from "../src/panels/displays/detail-rows";
-import { displayRows, linkOfKey, linkRowPath } from "../src/panels/displays/robot-rows";
+import { createDetailRows } from "../src/panels/displays/detail-rows";
+import { createDisplayRows, linkOfKey, linkRowPath } from "../src/panels/displays/robot-rows";
 import type { JointScene, Property, ServerMessage } from "../src/protocol";
 import { compose, computeRelativePose } from "../src/state/pose-numbers";
 import { Session } from "../src/state/session";
@@ -90,7 +90,7 @@ function outline(items: readonly TreeItem[], depth = 0): string[] {
 /** Returns the rows without options and details of links. */
 function arranged(): string[] {
   const known = /Show|Position|Orientation|^ *[XYZW]$|Type|Limit|Axis|Style|Expand|All/;
-  return outline(displayRows(session.displays.displays[0]!, session, () => undefined)).filter((line) => !known.test(line));
+  return outline(createDisplayRows(session.displays.displays[0]!, session, () => undefined)).filter((line) => !known.test(line));
 }
 
 beforeEach(() => {
@@ -143,7 +143,7 @@ describe("a robot's rows", () => {
 
   it("can be unfolded if they have children", () => {
     const offered = (): string[] =>
-      outline(displayRows(session.displays.displays[0]!, session, () => undefined)).filter((line) => /Expand/.test(line));
+      outline(createDisplayRows(session.displays.displays[0]!, session, () => undefined)).filter((line) => /Expand/.test(line));
     show("Links in Alphabetic Order");
     expect(offered()).toEqual(["  Expand Link Details"]);
     show("Joints in Alphabetic Order");
@@ -175,7 +175,7 @@ describe("rows of details", () => {
     frames({ base: { parent: null, pose: [0, 0, 2, 0, 0, HALF, HALF] } });
     const [model] = session.displays.displays;
     const [elbow, grip] = model!.rows.find("Joints")!.children;
-    const rows = detailRows(elbow!, model!, session);
+    const rows = createDetailRows(elbow!, model!, session);
     expect(values(rows)).toEqual({
       Position: "0; 1; 2",
       Orientation: "0; 0; 0.707107; 0.707107",
@@ -183,7 +183,7 @@ describe("rows of details", () => {
       "Lower Limit": "-1",
       "Joint Axis": "0; 0; 1",
     });
-    expect(values(detailRows(grip!, model!, session))["Type"]).toBe("fixed");
+    expect(values(createDetailRows(grip!, model!, session))["Type"]).toBe("fixed");
     expect(values(rows[0]!.children!())).toEqual({ X: "0", Y: "1", Z: "2" });
   });
 
@@ -197,7 +197,7 @@ describe("rows of details", () => {
       });
     place(3);
     const [tf] = session.displays.displays;
-    const rows = detailRows(tf!.rows.nodes[0]!, tf!, session);
+    const rows = createDetailRows(tf!.rows.nodes[0]!, tf!, session);
     expect(values(rows)).toEqual({
       Parent: "base",
       Position: "3; 0; 0",
@@ -213,7 +213,7 @@ describe("rows of details", () => {
     const box = property({ id: "d1/Frames/gone", name: "gone", kind: "bool", value: true, details: "frame" });
     receive(tree(display({ id: "d1", properties: [box] })));
     const [tf] = session.displays.displays;
-    expect(Object.values(values(detailRows(tf!.rows.nodes[0]!, tf!, session)))).toEqual(["", "", "", "", ""]);
+    expect(Object.values(values(createDetailRows(tf!.rows.nodes[0]!, tf!, session)))).toEqual(["", "", "", "", ""]);
   });
 
   it("show a joint's last effort", () => {
@@ -238,7 +238,7 @@ describe("rows of details", () => {
     rings(2, 2);
     rings(3, 3);
     const [effort] = session.displays.displays;
-    expect(values(detailRows(effort!.rows.nodes[0]!, effort!, session))).toEqual({ Effort: "3", "Max Effort": "10" });
+    expect(values(createDetailRows(effort!.rows.nodes[0]!, effort!, session))).toEqual({ Effort: "3", "Max Effort": "10" });
   });
 });
 

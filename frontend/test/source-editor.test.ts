@@ -1,10 +1,10 @@
 import { EditorState, type TransactionSpec } from "@codemirror/state";
 import { describe, expect, it } from "vitest";
-import { smallestChange, textOf } from "../src/panels/source-editor/document-changes";
-import { indentation, languageId } from "../src/panels/source-editor/languages";
-import { fitsMessage } from "../src/panels/source-editor/message-size";
-import { colorOf, hexOf, tokenRanges } from "../src/panels/source-editor/server-meanings";
-import { pathOf, positionIn, rangeText } from "../src/panels/source-editor/server-places";
+import { findSmallestChange, textOf } from "../src/panels/source-editor/document-changes";
+import { detectIndentation, languageOf } from "../src/panels/source-editor/languages";
+import { isWithinMessageSize } from "../src/panels/source-editor/message-size";
+import { colorOf, hexOf, decodeTokens } from "../src/panels/source-editor/server-meanings";
+import { pathOf, offsetOf, rangeText } from "../src/panels/source-editor/server-places";
 import { SourceDocument } from "../src/panels/source-editor/source-document";
 
 const TEXT = "<robot>\n  <link name='a'/>\n  <link name='b'/>\n</robot>\n";
@@ -53,7 +53,7 @@ describe("a document", () => {
   it("follows the file, and keeps unsaved changes of other places", () => {
     const document = documentOf();
     type(document, "'a'", "'mine'");
-    apply(document, document.diskChanged(TEXT.replace("'b'", "'theirs'"), 2));
+    apply(document, document.onDiskChanged(TEXT.replace("'b'", "'theirs'"), 2));
     expect(wholeText(document)).toBe("<robot>\n  <link name='mine'/>\n  <link name='theirs'/>\n</robot>\n");
     expect([document.isUnsaved, document.conflict, document.version]).toEqual([true, null, 2]);
     type(document, "'mine'", "'a'");
@@ -67,7 +67,7 @@ describe("a document", () => {
     const document = documentOf();
     type(document, "'a'", "'mine'");
     const theirs = TEXT.replace("'a'", "'theirs'");
-    expect(document.diskChanged(theirs, 2)).toBeNull();
+    expect(document.onDiskChanged(theirs, 2)).toBeNull();
     expect(document.conflict?.version).toBe(2);
     expect(wholeText(document)).toContain("'mine'");
     apply(document, settle(document));
@@ -78,7 +78,7 @@ describe("a document", () => {
   it("has no conflict with a file that has the same change", () => {
     const document = documentOf();
     type(document, "'a'", "'c'");
-    expect(document.diskChanged(TEXT.replace("'a'", "'c'"), 2)).toBeNull();
+    expect(document.onDiskChanged(TEXT.replace("'a'", "'c'"), 2)).toBeNull();
     expect([document.isUnsaved, document.conflict]).toEqual([false, null]);
   });
 
@@ -86,7 +86,7 @@ describe("a document", () => {
     const document = documentOf();
     type(document, "<robot>\n", "<robot>\n\n\n");
     const before = TEXT.indexOf("  <link name='b'");
-    expect([document.lineNow(3), document.lineThen(before + 2)]).toEqual([before + 2, 3]);
+    expect([document.currentLineOf(3), document.describedLineOf(before + 2)]).toEqual([before + 2, 3]);
   });
 
   it("finds places of the text that the scene shows, which may be older or newer than the file", () => {
@@ -94,11 +94,11 @@ describe("a document", () => {
     type(document, "<robot>\n", "<robot>\n\n\n");
     document.beginShowing(1);
     document.endShowing(1, true);
-    expect(document.lineThen(document.lineNow(5))).toBe(5);
+    expect(document.describedLineOf(document.currentLineOf(5))).toBe(5);
     type(document, "<robot>\n", "<robot>\n\n");
     document.beginShowing(2);
     document.endShowing(2, false); // it has errors
-    expect(document.state.doc.lineAt(document.lineNow(5)).number).toBe(6);
+    expect(document.state.doc.lineAt(document.currentLineOf(5)).number).toBe(6);
   });
 
   it("takes over an edit of the robot beside what was typed since, and not in the same place", () => {
@@ -106,20 +106,20 @@ describe("a document", () => {
     type(document, "'a'", "'c'");
     document.beginShowing(1);
     type(document, "'c'", "'d'");
-    apply(document, document.robotEdited(TEXT.replace("'a'", "'c'").replace("'b'", "'moved'"), 1));
+    apply(document, document.onRobotEdited(TEXT.replace("'a'", "'c'").replace("'b'", "'moved'"), 1));
     expect(wholeText(document)).toBe("<robot>\n  <link name='d'/>\n  <link name='moved'/>\n</robot>\n");
     expect(document.isUnsaved).toBe(true);
-    expect(document.robotEdited(TEXT.replace("'a'", "'e'"), 1)).toBeNull();
+    expect(document.onRobotEdited(TEXT.replace("'a'", "'e'"), 1)).toBeNull();
   });
 });
 
 it("the smallest change replaces one range", () => {
   const [before, after] = [textOf("one two three"), textOf("one 2 three")];
   const parts: unknown[] = [];
-  smallestChange(before, after).iterChanges((from, to, _a, _b, text) => parts.push([from, to, text.toString()]));
+  findSmallestChange(before, after).iterChanges((from, to, _a, _b, text) => parts.push([from, to, text.toString()]));
   expect(parts).toEqual([[4, 7, "2"]]);
-  expect(smallestChange(before, before).empty).toBe(true);
-  expect(smallestChange(textOf("aa"), textOf("aaa")).apply(textOf("aa")).toString()).toBe("aaa");
+  expect(findSmallestChange(before, before).empty).toBe(true);
+  expect(findSmallestChange(textOf("aa"), textOf("aaa")).apply(textOf("aa")).toString()).toBe("aaa");
 });
 
 it("paths come from URIs of files only", () => {
@@ -129,13 +129,13 @@ it("paths come from URIs of files only", () => {
 });
 
 it("languages and indentation follow the file", () => {
-  expect(["a.urdf.xacro", "b.RVIZ", "c.launch.py", "CMakeLists.txt"].map(languageId)).toEqual(["xml", "yaml", "python", "plaintext"]);
-  expect([indentation("a:\n    b: 1\n"), indentation("<a>\n\t<b/>"), indentation("a")]).toEqual(["    ", "\t", "  "]);
+  expect(["a.urdf.xacro", "b.RVIZ", "c.launch.py", "CMakeLists.txt"].map(languageOf)).toEqual(["xml", "yaml", "python", "plaintext"]);
+  expect([detectIndentation("a:\n    b: 1\n"), detectIndentation("<a>\n\t<b/>"), detectIndentation("a")]).toEqual(["    ", "\t", "  "]);
 });
 
 it("positions beyond a line or text are its end", () => {
   const text = textOf("ab\nc");
-  expect([positionIn(text, { line: 0, character: 9 }), positionIn(text, { line: 1, character: 1 }), positionIn(text, { line: 7, character: 0 })]).toEqual([2, 4, 4]);
+  expect([offsetOf(text, { line: 0, character: 9 }), offsetOf(text, { line: 1, character: 1 }), offsetOf(text, { line: 7, character: 0 })]).toEqual([2, 4, 4]);
 });
 
 it("the text of a range counts in UTF-16", () => {
@@ -144,12 +144,12 @@ it("the text of a range counts in UTF-16", () => {
 });
 
 it("a message with a text has at most a megabyte", () => {
-  expect([fitsMessage("a".repeat(900_000)), fitsMessage("中".repeat(300_000)), fitsMessage("中".repeat(400_000)), fitsMessage('"'.repeat(600_000))]).toEqual([true, true, false, false]);
+  expect([isWithinMessageSize("a".repeat(900_000)), isWithinMessageSize("中".repeat(300_000)), isWithinMessageSize("中".repeat(400_000)), isWithinMessageSize('"'.repeat(600_000))]).toEqual([true, true, false, false]);
 });
 
 it("semantic tokens are relative to the token before", () => {
   const legend = { tokenTypes: ["macro", "variable"], tokenModifiers: ["definition"] };
-  const ranges = tokenRanges(textOf("one two\n  three"), [0, 0, 3, 0, 1, 0, 4, 3, 1, 0, 1, 2, 5, 0, 0], legend);
+  const ranges = decodeTokens(textOf("one two\n  three"), [0, 0, 3, 0, 1, 0, 4, 3, 1, 0, 1, 2, 5, 0, 0], legend);
   expect(ranges).toEqual([
     { from: 0, to: 3, names: ["macro", "definition"] },
     { from: 4, to: 7, names: ["variable"] },

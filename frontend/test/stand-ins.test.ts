@@ -2,7 +2,7 @@ import { BoxGeometry, BufferGeometry, Matrix4, Mesh, MeshLambertMaterial, Object
 import { MeshoptSimplifier } from "meshoptimizer/simplifier";
 import { beforeAll, describe, expect, it } from "vitest";
 import { PICKABLE } from "../src/scene/layers";
-import { standIn, type StandIn, type Triangles } from "../src/scene/meshes/stand-in";
+import { createStandIn, type StandIn, type Triangles } from "../src/scene/meshes/stand-in";
 import type { StandInAnswer, StandInRequest } from "../src/scene/meshes/stand-in-worker";
 import { StandIns, type StandInWorker } from "../src/scene/meshes/stand-ins";
 import { levelsFor, MovingMeshes, type MovingPiece } from "../src/scene/robot/moving-meshes";
@@ -22,7 +22,7 @@ function soup(geometry: BufferGeometry): Triangles {
 }
 
 function made(mesh: Triangles): StandIn {
-  return standIn(mesh, MeshoptSimplifier);
+  return createStandIn(mesh, MeshoptSimplifier);
 }
 
 function looking(distance: number): { camera: PerspectiveCamera; height: number } {
@@ -82,23 +82,23 @@ describe("stand-ins of meshes", () => {
     const { worker: made, requests, answer } = worker();
     const standIns = new StandIns(() => made);
     const geometry = new BoxGeometry(1, 1, 1);
-    expect(standIns.of(geometry)).toBeNull();
-    expect(standIns.of(geometry)).toBeNull();
+    expect(standIns.standInsOf(geometry)).toBeNull();
+    expect(standIns.standInsOf(geometry)).toBeNull();
     expect(requests).toHaveLength(1);
     expect(requests[0]?.pieces).toHaveLength(6);
     expect(requests[0]?.pieces[0]?.index).toHaveLength(6);
-    const found = requests[0]!.pieces.map((piece) => standIn(piece, MeshoptSimplifier));
+    const found = requests[0]!.pieces.map((piece) => createStandIn(piece, MeshoptSimplifier));
     answer(found);
-    expect(standIns.of(geometry)).toBe(found);
+    expect(standIns.standInsOf(geometry)).toBe(found);
   });
 
   it("do not exist if the worker does not run", () => {
     const { worker: made } = worker();
     const standIns = new StandIns(() => made);
     const geometry = new SphereGeometry();
-    standIns.of(geometry);
+    standIns.standInsOf(geometry);
     made.onerror?.({} as ErrorEvent);
-    expect(standIns.of(geometry)).toEqual([]);
+    expect(standIns.standInsOf(geometry)).toEqual([]);
   });
 });
 
@@ -122,8 +122,8 @@ describe("moving meshes", () => {
     const mesh = new Mesh(new SphereGeometry(), new MeshLambertMaterial());
     const moving = new MovingMeshes(parent);
     moving.begin([ball(), ball()], [mesh], looking(50));
-    expect(moving.drawn.pieces).toBe(2);
-    expect(moving.drawn.triangles).toBeLessThan(48 * 32);
+    expect(moving.drawnCounts.pieces).toBe(2);
+    expect(moving.drawnCounts.triangles).toBeLessThan(48 * 32);
     expect(mesh.layers.isEnabled(0)).toBe(false);
     expect(mesh.layers.isEnabled(PICKABLE)).toBe(true);
     expect(parent.children).toHaveLength(1);

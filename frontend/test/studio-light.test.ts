@@ -1,6 +1,6 @@
 import { Box3, DirectionalLight, Mesh, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import { castShadows, StudioLight } from "../src/scene/studio-light";
+import { enableShadows, StudioLight } from "../src/scene/studio-light";
 
 describe("the studio", () => {
   function parts(studio: StudioLight): { lamp: DirectionalLight; ground: Mesh } {
@@ -28,7 +28,7 @@ describe("the studio", () => {
 
   it("gives a robot's shadow softer edges than a world's", () => {
     const sun = new DirectionalLight();
-    castShadows(sun);
+    enableShadows(sun);
     expect(parts(new StudioLight()).lamp.shadow.radius).toBeGreaterThan(2 * sun.shadow.radius);
   });
 

@@ -56,17 +56,17 @@ it("is silent until it is switched on, and stops when it is switched off", () =>
   const speaker = new Speaker(storage);
   speaker.speak("on my way");
   expect(voices.spoken).toEqual([]);
-  speaker.configure({ isOn: true });
+  speaker.configure({ on: true });
   speaker.speak("on my way");
   speaker.speak("");
   expect(voices.spoken).toEqual([["on my way", "", ""]]);
-  speaker.configure({ isOn: false });
+  speaker.configure({ on: false });
   expect(voices.hushed).toBe(1);
 });
 
 it("leaves the voice to the browser, but marks Chinese texts as Chinese", () => {
   const speaker = new Speaker(storage);
-  speaker.configure({ isOn: true });
+  speaker.configure({ on: true });
   speaker.speak("我这就去");
   expect(voices.spoken).toEqual([["我这就去", "zh-CN", ""]]);
 });
@@ -78,7 +78,7 @@ it("lists the user's languages first, reports when voices arrive, and uses the c
   voices.come(["Ting", "zh-CN"], ["Hans", "de-DE"], ["Anna", "en-US"]);
   expect(told).toBe(1);
   expect(speaker.voices.map(({ name }) => name)).toEqual(["Anna", "Hans", "Ting"]);
-  speaker.configure({ isOn: true, voice: "Hans" });
+  speaker.configure({ on: true, voice: "Hans" });
   new Speaker(storage).speak("ich komme");
   expect(voices.spoken).toEqual([["ich komme", "de-DE", "Hans"]]);
 });
@@ -87,7 +87,7 @@ it("ignores a missing voice and invalid settings", () => {
   kept.set("linkwright.speaker.1", "{");
   const speaker = new Speaker(storage);
   expect(speaker.settings).toEqual({ on: false, voice: "" });
-  speaker.configure({ isOn: true, voice: "nobody" });
+  speaker.configure({ on: true, voice: "nobody" });
   speaker.speak("here");
   expect(voices.spoken).toEqual([["here", "", ""]]);
 });
@@ -95,7 +95,7 @@ it("ignores a missing voice and invalid settings", () => {
 it("is silent if the browser cannot speak", () => {
   vi.stubGlobal("speechSynthesis", undefined);
   const speaker = new Speaker(storage);
-  speaker.configure({ isOn: true });
+  speaker.configure({ on: true });
   speaker.speak("nobody hears it");
   expect([speaker.voices, speaker.isSpeaking]).toEqual([[], false]);
 });

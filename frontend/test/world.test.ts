@@ -2,14 +2,14 @@ import { Box3, BoxGeometry, Matrix4, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import { freePlace } from "../src/scene/displays/free-place";
 import type { MeshPart } from "../src/scene/meshes/mesh-template";
-import { extrudedPolygons, heightmapGeometry, submesh } from "../src/scene/objects/world-geometries";
+import { extrudePolygons, heightmapGeometry, selectSubmesh } from "../src/scene/objects/world-geometries";
 
 const SQUARE = [0, 0, 4, 0, 4, 4, 0, 4];
 const HOLE = [1, 1, 3, 1, 3, 3, 1, 3];
 
 /** Returns the area of the faces that face up, m2. */
 function top(outlines: number[][]): number {
-  const geometry = extrudedPolygons(outlines, 2);
+  const geometry = extrudePolygons(outlines, 2);
   const points = geometry.getAttribute("position");
   let sum = 0;
   for (let i = 0; i < points.count; i += 3) {
@@ -43,14 +43,14 @@ describe("submesh", () => {
   const parts = [part("wheel", 2), part("body", 5)];
 
   it("is the whole mesh, or the parts with the name", () => {
-    expect(submesh(parts, null).parts).toEqual(parts);
-    expect(submesh(parts, { name: "body", center: false }).parts).toEqual([parts[1]]);
-    expect(submesh(parts, { name: "scene", center: false }).parts).toEqual(parts);
-    expect(() => submesh(parts, { name: "door", center: false })).toThrow("no part 'door'");
+    expect(selectSubmesh(parts, null).parts).toEqual(parts);
+    expect(selectSubmesh(parts, { name: "body", center: false }).parts).toEqual([parts[1]]);
+    expect(selectSubmesh(parts, { name: "scene", center: false }).parts).toEqual(parts);
+    expect(() => selectSubmesh(parts, { name: "door", center: false })).toThrow("no part 'door'");
   });
 
   it("can be moved to the origin", () => {
-    expect(submesh(parts, { name: "body", center: true }).offset.toArray().map(Math.abs)).toEqual([5, 0, 0]);
+    expect(selectSubmesh(parts, { name: "body", center: true }).offset.toArray().map(Math.abs)).toEqual([5, 0, 0]);
   });
 });
 

@@ -23,7 +23,7 @@ export class RecordedFiles implements MeshFiles {
     return Promise.resolve(new Response(decodeBase64(file), { headers: { ETag: path } }));
   }
 
-  address(url: string): string {
+  addressOf(url: string): string {
     const path = pathOf(url);
     const file = this.files[path];
     if (file === undefined) return url;

@@ -8,7 +8,7 @@ export interface Panel {
   readonly icon: IconName;
   readonly element: HTMLElement;
   /** Called when the user opened the panel; another panel may be in front of it. */
-  opened?(): void;
+  onOpened?(): void;
   /** Called when the user closed the panel. */
-  closed?(): void;
+  onClosed?(): void;
 }

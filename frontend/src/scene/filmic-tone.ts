@@ -26,7 +26,7 @@ const TONE = /* glsl */ `
  * Makes a material's light look as on film: brightly lit surfaces keep their shape, shadows are deep, and tones between
  * stay as they are. Only surfaces are affected, so that marks, lines, grids and backgrounds keep their exact colors.
  */
-export function filmic<T extends Material>(material: T): T {
+export function applyFilmicTone<T extends Material>(material: T): T {
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader.replace("#include <tonemapping_fragment>", TONE);
   };

@@ -17,9 +17,9 @@ import {
   type MeshStandardMaterialParameters,
   type Texture,
 } from "three";
-import { filmic } from "./filmic-tone";
+import { applyFilmicTone } from "./filmic-tone";
 import { usesSceneLights, type Lighting } from "./light";
-import { withSoftLight } from "./soft-material";
+import { softenLight } from "./soft-material";
 
 /**
  * The reflective properties of a surface: roughness and metalness from 0 to 1, maps of these and of the normals,
@@ -48,10 +48,10 @@ export interface Look {
   color: readonly [number, number, number];
   alpha: number;
   map: Texture | null;
-  vertexColors: boolean;
-  doubleSided: boolean;
+  hasVertexColors: boolean;
+  isDoubleSided: boolean;
   /** Whether lines and marks in the same plane must remain visible. */
-  behind?: boolean;
+  isBehind?: boolean;
   /** Applies only to lights in the scene, because the camera's light is that of RViz. */
   surface?: Surface | null;
 }
@@ -62,14 +62,14 @@ export const RVIZ_RED = [1, 0, 0] as const;
 export const OPAQUE_FROM = 0.9998;
 
 /** Makes a material translucent or opaque. */
-export function blend(material: Material, seeThrough: boolean): void {
-  material.transparent = seeThrough;
-  material.depthWrite = !seeThrough;
+export function setBlending(material: Material, isSeeThrough: boolean): void {
+  material.transparent = isSeeThrough;
+  material.depthWrite = !isSeeThrough;
   material.needsUpdate = true;
 }
 
 /** Returns the polygon offset that keeps lines and marks in the plane of a surface visible. */
-export function offsetBehind(isBehind: boolean): { polygonOffset: boolean; polygonOffsetFactor: number; polygonOffsetUnits: number } {
+export function polygonOffsetOf(isBehind: boolean): { polygonOffset: boolean; polygonOffsetFactor: number; polygonOffsetUnits: number } {
   return { polygonOffset: isBehind, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
 }
 
@@ -87,7 +87,7 @@ export const errorMaterial = new MeshBasicMaterial({ color: 0xffffff, side: Doub
 export class MaterialPool {
   lighting: Lighting = "Camera";
   private readonly materials = new Map<string, MeshLambertMaterial | MeshStandardMaterial>();
-  private readonly used = new Set<string>();
+  private readonly usedKeys = new Set<string>();
 
   /** Whether lights in the scene illuminate the surfaces, so that reflective properties apply. */
   get isLit(): boolean {
@@ -98,24 +98,24 @@ export class MaterialPool {
     const surface = (this.isLit && look.surface) || null;
     const maps = [look.map, ...mapsOf(surface)].map((map) => map?.uuid);
     const numbers = [look.alpha, surface?.roughness, surface?.metalness, ...(surface?.emissive ?? [])];
-    const key = [...look.color, ...numbers, ...maps, look.vertexColors, look.doubleSided, look.behind, this.lighting].join();
-    this.used.add(key);
+    const key = [...look.color, ...numbers, ...maps, look.hasVertexColors, look.isDoubleSided, look.isBehind, this.lighting].join();
+    this.usedKeys.add(key);
     let material = this.materials.get(key);
     if (!material) {
-      const seeThrough = look.alpha < OPAQUE_FROM;
+      const isSeeThrough = look.alpha < OPAQUE_FROM;
       const style = {
         color: new Color(...look.color),
         opacity: look.alpha,
-        transparent: seeThrough,
-        depthWrite: !seeThrough,
+        transparent: isSeeThrough,
+        depthWrite: !isSeeThrough,
         map: look.map,
-        vertexColors: look.vertexColors,
-        side: look.doubleSided ? DoubleSide : FrontSide,
-        ...offsetBehind(look.behind === true),
+        vertexColors: look.hasVertexColors,
+        side: look.isDoubleSided ? DoubleSide : FrontSide,
+        ...polygonOffsetOf(look.isBehind === true),
       };
-      material = surface ? reflectiveMaterial(style, surface) : new MeshLambertMaterial(style);
-      if (this.lighting === "Studio") filmic(material);
-      else if (this.lighting === "Soft") withSoftLight(material);
+      material = surface ? createReflectiveMaterial(style, surface) : new MeshLambertMaterial(style);
+      if (this.lighting === "Studio") applyFilmicTone(material);
+      else if (this.lighting === "Soft") softenLight(material);
       this.materials.set(key, material);
     }
     return material;
@@ -123,10 +123,10 @@ export class MaterialPool {
 
   /** Runs `paint`, which requests every material still needed, and disposes of the others. */
   repaint(paint: () => void): void {
-    this.used.clear();
+    this.usedKeys.clear();
     paint();
     for (const [key, material] of this.materials) {
-      if (this.used.has(key)) continue;
+      if (this.usedKeys.has(key)) continue;
       material.dispose();
       this.materials.delete(key);
     }
@@ -139,8 +139,8 @@ export class MaterialPool {
 }
 
 /** Returns a material that reflects lights and, as far as it is metallic, a gray room. */
-function reflectiveMaterial(style: MeshStandardMaterialParameters, surface: Surface): MeshStandardMaterial {
-  const envMap = surface.metalness > 0 ? roomMap() : null;
+function createReflectiveMaterial(style: MeshStandardMaterialParameters, surface: Surface): MeshStandardMaterial {
+  const envMap = surface.metalness > 0 ? createRoomMap() : null;
   const emissive = new Color(...surface.emissive);
   const material = new MeshStandardMaterial({ ...style, ...surface, emissive, envMap, envMapIntensity: surface.metalness });
   material.envMapRotation.x = Math.PI / 2; // the image has y up
@@ -153,7 +153,7 @@ let cachedRoom: DataTexture | null = null;
  * Returns the environment map that metal reflects in addition to lights; it would be black without one. The map is
  * bright above and dark below.
  */
-function roomMap(): DataTexture {
+function createRoomMap(): DataTexture {
   if (cachedRoom) return cachedRoom;
   const grays = [90, 90, 110, 150, 190, 215, 230, 240];
   cachedRoom = new DataTexture(new Uint8Array(grays.flatMap((gray) => [gray, gray, gray, 255])), 1, grays.length);

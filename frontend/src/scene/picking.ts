@@ -55,7 +55,7 @@ export interface ScenePointer {
 /** The state of the Interact tool. */
 export interface Interaction {
   /** Whether the Interact tool is active. */
-  enabled: boolean;
+  isEnabled: boolean;
   /** Whether an object is being dragged, and the tool hides all others. */
-  hideOthers: boolean;
+  hidesOthers: boolean;
 }

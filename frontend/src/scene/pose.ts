@@ -7,9 +7,9 @@ const orientation = new Quaternion();
 const ONE = new Vector3(1, 1, 1);
 
 /** Computes the matrix of a pose, x y z (m) qx qy qz qw, from index `at` on. */
-export function poseMatrix(values: ArrayLike<number>, matrix: Matrix4, at = 0): Matrix4 {
-  position.fromArray(values, at);
-  orientation.fromArray(values, at + 3);
+export function poseMatrix(values: ArrayLike<number>, matrix: Matrix4, offset = 0): Matrix4 {
+  position.fromArray(values, offset);
+  orientation.fromArray(values, offset + 3);
   return matrix.compose(position, orientation, ONE);
 }
 

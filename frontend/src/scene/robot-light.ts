@@ -45,6 +45,6 @@ export class RobotLight {
       return null;
     }
     this.studio.update(robots.reduce((sum, robot) => sum.union(robot.roughBounds()), new Box3()), height);
-    return { shadows: true, background: null, daylight: null, fog: null, backdrop };
+    return { hasShadows: true, background: null, daylight: null, fog: null, backdrop };
   }
 }

@@ -2,7 +2,7 @@ import type { Material } from "three";
 import { SURFACE_LIGHT } from "./light";
 
 /** Gives a material the soft light instead of the lights of the scene. */
-export function withSoftLight<T extends Material>(material: T): T {
+export function softenLight<T extends Material>(material: T): T {
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", `#include <common>\n${SURFACE_LIGHT}`)

@@ -7,7 +7,7 @@ import type { PanelHost } from "./displays/display-panel";
 import type { Drawing, DrawnScene } from "./displays/drawing";
 import { Pacing } from "./displays/pacing";
 import { DRAWINGS } from "./displays/registry";
-import { pointsOn } from "./robot/surface-samples";
+import { samplePoints } from "./robot/surface-samples";
 import { RobotModelDrawing } from "./displays/robot-model";
 import { WorldDrawing } from "./displays/world";
 import { Backdrop } from "./backdrop";
@@ -52,7 +52,7 @@ export class Stage {
   private readonly focalShape = new FocalShape();
   /** Objects that only this view shows: handles, and the mark of the focal point. */
   readonly overlays = new Group();
-  private interaction: Interaction = { enabled: false, hideOthers: false };
+  private interaction: Interaction = { isEnabled: false, hidesOthers: false };
   private readonly robotLight = new RobotLight();
   private readonly backdrop = new Backdrop();
   private robotSettled = false;
@@ -337,7 +337,7 @@ export class Stage {
   /** Returns the bounding box of all robots, with sample points of their surfaces. */
   private spanOfRobots(): Span | null {
     const box = this.boundsOfRobots();
-    const points = this.robots().flatMap((robot) => robot.visibleMeshes.flatMap((mesh) => pointsOn(mesh)));
+    const points = this.robots().flatMap((robot) => robot.visibleMeshes.flatMap((mesh) => samplePoints(mesh)));
     return box && points.length > 0 ? { ...box, points } : box;
   }
 

@@ -30,7 +30,7 @@ const SHADOW_OPACITY = 0.35;
 const GROUND_WIDTH = 6;
 
 /** Returns light from all directions, brighter from above. */
-export function studioSky(): HemisphereLight {
+export function createStudioSky(): HemisphereLight {
   const sky = new HemisphereLight(0xffffff, 0xffffff, STUDIO_SKY * FULL_INTENSITY);
   sky.groundColor.setScalar(STUDIO_GROUND / STUDIO_SKY);
   sky.position.set(0, 0, 1);
@@ -38,7 +38,7 @@ export function studioSky(): HemisphereLight {
 }
 
 /** Makes a light cast shadows with soft edges. */
-export function castShadows(light: DirectionalLight | SpotLight): void {
+export function enableShadows(light: DirectionalLight | SpotLight): void {
   light.castShadow = true;
   light.shadow.mapSize.set(SHADOW_PIXELS, SHADOW_PIXELS);
   light.shadow.bias = -0.0005;
@@ -47,18 +47,18 @@ export function castShadows(light: DirectionalLight | SpotLight): void {
 }
 
 /** Places a sun just outside a sphere, so that the shadows within it have the highest resolution. */
-export function aimSun(light: DirectionalLight, direction: Vector3, middle: Vector3, radius: number): void {
-  light.target.position.copy(middle);
-  light.position.copy(middle).addScaledVector(direction, -2 * radius);
+export function aimSun(light: DirectionalLight, direction: Vector3, center: Vector3, radius: number): void {
+  light.target.position.copy(center);
+  light.position.copy(center).addScaledVector(direction, -2 * radius);
   const { camera } = light.shadow;
   Object.assign(camera, { left: -radius, right: radius, top: radius, bottom: -radius, near: radius / 10, far: 4 * radius });
   camera.updateProjectionMatrix();
 }
 
 /** Sets whether objects cast and receive shadows. */
-export function setShadowed(root: Object3D, shadowed: boolean): void {
+export function setShadowed(root: Object3D, isShadowed: boolean): void {
   root.traverse((object) => {
-    if (object instanceof Mesh) object.castShadow = object.receiveShadow = shadowed;
+    if (object instanceof Mesh) object.castShadow = object.receiveShadow = isShadowed;
   });
 }
 
@@ -72,10 +72,10 @@ export class StudioLight {
   );
 
   constructor() {
-    castShadows(this.key);
+    enableShadows(this.key);
     this.key.shadow.radius = ROBOT_SHADOW_EDGE;
     this.ground.receiveShadow = true;
-    this.root.add(studioSky(), this.key, this.key.target, this.ground);
+    this.root.add(createStudioSky(), this.key, this.key.target, this.ground);
     this.root.visible = false;
   }
 
@@ -83,12 +83,12 @@ export class StudioLight {
   update(box: Box3, height: number): void {
     this.ground.visible = !box.isEmpty();
     if (box.isEmpty()) return;
-    const middle = box.getCenter(new Vector3());
+    const center = box.getCenter(new Vector3());
     const radius = box.getSize(new Vector3()).length() / 2;
     // Include the shadow of the highest point.
-    aimSun(this.key, ROBOT_DIRECTION, middle, 1.5 * radius);
+    aimSun(this.key, ROBOT_DIRECTION, center, 1.5 * radius);
     this.key.shadow.normalBias = radius / 100;
-    this.ground.position.set(middle.x, middle.y, height);
+    this.ground.position.set(center.x, center.y, height);
     this.ground.scale.setScalar(GROUND_WIDTH * radius);
   }
 }

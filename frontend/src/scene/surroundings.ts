@@ -13,7 +13,7 @@ export interface Surroundings {
 
 /** The lighting of a world or a studio: whether it casts shadows, and its surroundings. */
 export interface OwnLight extends Surroundings {
-  readonly shadows: boolean;
+  readonly hasShadows: boolean;
 }
 
 /** Whether a world specifies its background. */
@@ -48,7 +48,7 @@ export class SkyAndFog {
     const key = daylight ?? backdrop;
     if (key !== this.skyKey) {
       this.sky?.dispose();
-      this.sky = key === null ? null : skyTexture(typeof key === "number" ? skyAt(key) : skyOf(key));
+      this.sky = key === null ? null : createSkyTexture(typeof key === "number" ? skyAt(key) : skyOf(key));
       this.skyKey = key;
     }
     if (!isOrthographic) this.scene.background = this.sky;
@@ -66,8 +66,8 @@ function fogOf({ color: [r = 1, g = 1, b = 1], start, end, density }: FogScene):
 }
 
 /** Returns the color of a sky at a height: -1 nadir, 0 horizon, 1 zenith. */
-function colorAt(height: number, [below, middle, above]: Sky): Rgb {
-  return height < 0 ? mix(middle, below, Math.min(1, -8 * height)) : mix(middle, above, Math.sqrt(height));
+function colorAt(height: number, [nadir, horizon, zenith]: Sky): Rgb {
+  return height < 0 ? mix(horizon, nadir, Math.min(1, -8 * height)) : mix(horizon, zenith, Math.sqrt(height));
 }
 
 function skyAt(daylight: number): Sky {
@@ -82,11 +82,11 @@ function skyOf(color: string): Sky {
 }
 
 function mix(a: Rgb, b: Rgb, fraction: number): Rgb {
-  const channel = (i: 0 | 1 | 2): number => a[i] + (b[i] - a[i]) * fraction;
-  return [channel(0), channel(1), channel(2)];
+  const mixChannel = (i: 0 | 1 | 2): number => a[i] + (b[i] - a[i]) * fraction;
+  return [mixChannel(0), mixChannel(1), mixChannel(2)];
 }
 
-function skyTexture(sky: Sky): DataTexture {
+function createSkyTexture(sky: Sky): DataTexture {
   const pixels = new Uint8Array(4 * SKY_PIXELS);
   for (let row = 0; row < SKY_PIXELS; row++) {
     const rgb = colorAt(Math.sin(((row + 0.5) / SKY_PIXELS - 0.5) * Math.PI), sky);

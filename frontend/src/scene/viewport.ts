@@ -104,7 +104,7 @@ export class Viewport {
     const { renderer } = this;
     this.headlight.intensity = (own ? FAINT_LIGHT : 1 - AMBIENT) * Math.PI;
     this.ambient.intensity = own ? 0 : AMBIENT * Math.PI;
-    renderer.shadowMap.enabled = own?.shadows ?? false;
+    renderer.shadowMap.enabled = own?.hasShadows ?? false;
     renderer.setClearColor(new Color(own?.background ?? this.ownBackground));
     this.surroundings.set(own ?? NOTHING, this.activeCamera === this.orthographic);
   }

@@ -14,7 +14,7 @@ import {
 import type { LightScene, WorldScene } from "../protocol";
 import type { PropertyRows } from "../state/properties";
 import { usesSceneLights, type Lighting } from "./light";
-import { aimSun, castShadows, FULL_INTENSITY, setShadowed, STUDIO_DIRECTION, STUDIO_KEY, studioSky } from "./studio-light";
+import { aimSun, enableShadows, FULL_INTENSITY, setShadowed, STUDIO_DIRECTION, STUDIO_KEY, createStudioSky } from "./studio-light";
 
 /** The maximum radius around the center of the drawn objects in which shadows are drawn, m. */
 const MAX_SHADOW_RADIUS = 25;
@@ -28,10 +28,10 @@ const MAX_LIGHTS = 8;
 /** The lights of a world, at their poses in the fixed frame. */
 export class WorldLights {
   readonly root = new Group();
-  private placed: { light: Light; spec: LightScene }[] = [];
+  private placedLights: { light: Light; spec: LightScene }[] = [];
   private builtKey = "";
-  private chosen: Lighting = "Camera";
-  private shadowed = false;
+  private chosenLighting: Lighting = "Camera";
+  private isShadowed = false;
 
   constructor(private readonly affordsStudio: () => boolean) {
     this.root.matrixAutoUpdate = false;
@@ -40,63 +40,63 @@ export class WorldLights {
   /** Applies the properties of the display and its world. */
   style(rows: PropertyRows, scene: WorldScene): void {
     const choice = rows.text("Automatic", "Light");
-    this.chosen = choice === "Studio" || choice === "World" || choice === "Camera" ? choice : this.affordsStudio() ? "Studio" : "Soft";
-    this.shadowed = this.isLit && rows.bool(true, "Shadows") && (this.chosen === "Studio" || scene.shadows);
-    const key = [this.chosen, this.shadowed, scene.revision].join();
+    this.chosenLighting = choice === "Studio" || choice === "World" || choice === "Camera" ? choice : this.affordsStudio() ? "Studio" : "Soft";
+    this.isShadowed = this.isLit && rows.bool(true, "Shadows") && (this.chosenLighting === "Studio" || scene.shadows);
+    const key = [this.chosenLighting, this.isShadowed, scene.revision].join();
     if (key === this.builtKey) return;
     this.builtKey = key;
     this.clear();
-    if (this.chosen === "Studio") this.buildStudio();
-    else if (this.chosen === "World") this.buildWorld(scene);
+    if (this.chosenLighting === "Studio") this.buildStudio();
+    else if (this.chosenLighting === "World") this.buildWorld(scene);
   }
 
   /** Whether lights in the scene replace the camera's light. */
   get isLit(): boolean {
-    return usesSceneLights(this.chosen);
+    return usesSceneLights(this.chosenLighting);
   }
 
   get lighting(): Lighting {
-    return this.chosen;
+    return this.chosenLighting;
   }
 
   get castsShadows(): boolean {
-    return this.shadowed;
+    return this.isShadowed;
   }
 
   /** Whether the world's own lights are used. */
   get isOfWorld(): boolean {
-    return this.chosen === "World";
+    return this.chosenLighting === "World";
   }
 
   /** Returns the background color of the world. */
-  background(scene: WorldScene): string {
+  backgroundOf(scene: WorldScene): string {
     const [r = 0, g = 0, b = 0] = scene.background;
     return `#${new Color(r, g, b).getHexString()}`;
   }
 
   /** Moves the lights to the poses of their links, and fits shadows to the drawn objects. */
-  place(world: Matrix4, poseOf: (link: string) => Matrix4 | null, drawn: () => Box3): void {
+  updatePoses(world: Matrix4, poseOf: (link: string) => Matrix4 | null, boundsOfDrawn: () => Box3): void {
     if (!this.isLit) return;
-    for (const { light, spec } of this.placed) {
+    for (const { light, spec } of this.placedLights) {
       const frame = spec.link === null ? world : poseOf(spec.link);
       light.visible = frame !== null;
       if (!frame) continue;
       light.position.fromArray(spec.position).applyMatrix4(frame);
       const direction = new Vector3().fromArray(spec.direction).transformDirection(frame);
       if (light instanceof SpotLight || light instanceof DirectionalLight) light.target.position.copy(light.position).add(direction);
-      if (light instanceof DirectionalLight) this.aim(light, direction, drawn);
+      if (light instanceof DirectionalLight) this.aim(light, direction, boundsOfDrawn);
     }
   }
 
   /** Sets whether objects cast and receive shadows. */
   shade(root: Object3D): void {
-    setShadowed(root, this.shadowed);
+    setShadowed(root, this.isShadowed);
   }
 
   /** Returns the lights in use, for tests. */
   inspect(): object {
-    const shadows = this.placed.filter(({ light }) => light.castShadow).length;
-    return { lighting: this.chosen, lights: this.placed.length, shadows };
+    const shadows = this.placedLights.filter(({ light }) => light.castShadow).length;
+    return { lighting: this.chosenLighting, lights: this.placedLights.length, shadows };
   }
 
   dispose(): void {
@@ -108,11 +108,11 @@ export class WorldLights {
       if (object instanceof Light) object.dispose();
     });
     this.root.clear();
-    this.placed = [];
+    this.placedLights = [];
   }
 
   private buildStudio(): void {
-    this.root.add(studioSky());
+    this.root.add(createStudioSky());
     const spec: LightScene = {
       kind: "directional",
       link: null,
@@ -136,19 +136,19 @@ export class WorldLights {
   private add(light: DirectionalLight | PointLight | SpotLight, spec: LightScene): void {
     const [r = 0, g = 0, b = 0] = spec.color;
     light.color.setRGB(r, g, b);
-    light.intensity = FULL_INTENSITY * strength(spec);
-    const shadows = this.placed.filter((each) => each.light.castShadow).length;
-    if (this.shadowed && spec.shadows && shadows < MAX_SHADOWS && !(light instanceof PointLight)) {
-      castShadows(light);
+    light.intensity = FULL_INTENSITY * strengthOf(spec);
+    const shadows = this.placedLights.filter((placedLight) => placedLight.light.castShadow).length;
+    if (this.isShadowed && spec.shadows && shadows < MAX_SHADOWS && !(light instanceof PointLight)) {
+      enableShadows(light);
     }
     this.root.add(light);
     if (!(light instanceof PointLight)) this.root.add(light.target);
-    this.placed.push({ light, spec });
+    this.placedLights.push({ light, spec });
   }
 
   /** Aims a sun from just outside the drawn objects, so that its shadows have the highest resolution. */
-  private aim(light: DirectionalLight, direction: Vector3, drawn: () => Box3): void {
-    const box = light.castShadow ? drawn() : new Box3();
+  private aim(light: DirectionalLight, direction: Vector3, boundsOfDrawn: () => Box3): void {
+    const box = light.castShadow ? boundsOfDrawn() : new Box3();
     if (box.isEmpty()) {
       light.position.copy(direction).negate();
       light.target.position.set(0, 0, 0);
@@ -160,7 +160,7 @@ export class WorldLights {
 }
 
 /** Returns the intensity of a light at a typical distance, which is used for all distances up to its range. */
-function strength({ kind, range, fading }: LightScene): number {
+function strengthOf({ kind, range, fading }: LightScene): number {
   if (kind === "directional") return 1;
   const [constant = 1, linear = 0, quadratic = 0] = fading;
   const distance = Math.min(range / 2, TYPICAL_DISTANCE);
@@ -170,8 +170,8 @@ function strength({ kind, range, fading }: LightScene): number {
 function lightOf(spec: LightScene): DirectionalLight | PointLight | SpotLight {
   if (spec.kind === "directional") return new DirectionalLight();
   if (spec.kind === "point") return new PointLight(0xffffff, 1, spec.range, 0);
-  const [inner = 0, outer = 0] = spec.cone;
-  const angle = Math.min(outer > 0 ? outer / 2 : Math.PI / 4, Math.PI / 2);
-  const soft = outer > 0 ? Math.min(Math.max(1 - inner / outer, 0), 1) : 0;
+  const [innerAngle = 0, outerAngle = 0] = spec.cone;
+  const angle = Math.min(outerAngle > 0 ? outerAngle / 2 : Math.PI / 4, Math.PI / 2);
+  const soft = outerAngle > 0 ? Math.min(Math.max(1 - innerAngle / outerAngle, 0), 1) : 0;
   return new SpotLight(0xffffff, 1, spec.range, angle, soft, 0);
 }

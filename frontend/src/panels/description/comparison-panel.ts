@@ -17,10 +17,10 @@ export class ComparisonPanel implements Panel {
   readonly id = "comparison";
   readonly icon = "compare";
   readonly element: HTMLElement;
-  private readonly old = this.switchOf("old", strings.comparison.old, strings.comparison.showOld);
+  private readonly oldSwitch = this.switchOf("old", strings.comparison.old, strings.comparison.showOld);
   private readonly new = this.switchOf("new", strings.comparison.new, strings.comparison.showNew);
   private readonly alpha = h("input", { class: "slider", title: strings.comparison.alpha, aria: { label: strings.comparison.alpha } });
-  private readonly marks = tickBox(strings.comparison.marks, strings.comparison.marksHint, (ticked) => (this.session.comparison.marks = ticked));
+  private readonly marks = tickBox(strings.comparison.marks, strings.comparison.marksHint, (isTicked) => (this.session.comparison.marks = isTicked));
   private readonly legend = h("ul", { class: "comparison-legend" });
   private readonly count = h("p", { class: "comparison-count", role: "status" });
   private readonly list = h("div", { class: "comparison-list", role: "list", aria: { label: strings.comparison.list } });
@@ -28,13 +28,13 @@ export class ComparisonPanel implements Panel {
   /** `look` points the camera at the selection. */
   constructor(
     private readonly session: Session,
-    private readonly look: () => void,
+    private readonly focusScene: () => void,
   ) {
     this.alpha.type = "range";
     [this.alpha.min, this.alpha.max, this.alpha.step] = ["0", "1", "0.05"];
     this.alpha.style.setProperty("--zero", "0");
     this.alpha.addEventListener("input", () => {
-      const row = this.display("old")?.rows.find("Alpha");
+      const row = this.displayOf("old")?.rows.find("Alpha");
       if (row) session.setProperty(row.id, Number(this.alpha.value));
       this.showSwitches();
     });
@@ -42,7 +42,7 @@ export class ComparisonPanel implements Panel {
       "div",
       { class: "comparison-head" },
       h("div", { class: "comparison-row" }, this.new),
-      h("div", { class: "comparison-row" }, this.old, this.alpha),
+      h("div", { class: "comparison-row" }, this.oldSwitch, this.alpha),
       h("div", { class: "comparison-row" }, this.marks),
       this.legend,
     );
@@ -50,27 +50,27 @@ export class ComparisonPanel implements Panel {
     this.element = h("div", { class: "panel comparison" }, body);
     this.list.addEventListener("pointerleave", () => session.focus.setHovered(null));
     const { comparison, displays } = session;
-    const switches = coalesced(() => this.showSwitches());
+    const updateSwitches = coalesced(() => this.showSwitches());
     comparison.changed.on(() => this.show());
-    displays.treeChanged.on(switches);
-    displays.enabledChanged.on(switches);
+    displays.treeChanged.on(updateSwitches);
+    displays.enabledChanged.on(updateSwitches);
     displays.valueChanged.on(({ display }) => {
-      if (display) switches();
+      if (display) updateSwitches();
     });
     session.focus.changed.on(coalesced(() => this.showFocus()));
     this.show();
   }
 
   private switchOf(side: "old" | "new", text: string, hint: string): ReturnType<typeof tickBox> {
-    const tick = tickBox(text, hint, (ticked) => {
-      const display = this.display(side);
-      if (display) this.session.setProperty(display.enabledId, ticked);
+    const tick = tickBox(text, hint, (isTicked) => {
+      const display = this.displayOf(side);
+      if (display) this.session.setProperty(display.enabledId, isTicked);
     });
     tick.append(h("span", { class: "comparison-file" }));
     return tick;
   }
 
-  private display(side: "old" | "new"): DisplayState | undefined {
+  private displayOf(side: "old" | "new"): DisplayState | undefined {
     return this.session.displays.find(this.session.comparison.compared?.[side].display ?? "");
   }
 
@@ -78,10 +78,10 @@ export class ComparisonPanel implements Panel {
     const { compared } = this.session.comparison;
     if (!compared) return;
     const texts = strings.comparison;
-    for (const [tick, { label }] of [[this.old, compared.old], [this.new, compared.new]] as const) {
+    for (const [tick, { label }] of [[this.oldSwitch, compared.old], [this.new, compared.new]] as const) {
       const file = tick.querySelector(".comparison-file");
       if (file) file.textContent = shortPlace(label);
-      tick.title = `${tick === this.old ? texts.showOld : texts.showNew}\n${label}`;
+      tick.title = `${tick === this.oldSwitch ? texts.showOld : texts.showNew}\n${label}`;
     }
     const marks = usedMarks([compared.new, compared.old]);
     this.legend.replaceChildren(
@@ -94,21 +94,21 @@ export class ComparisonPanel implements Panel {
     const { items } = compared;
     this.element.classList.toggle("same", items.length === 0);
     this.count.textContent = items.length === 0 ? texts.same : texts.count(items.length);
-    const at = this.list.scrollTop;
-    this.list.replaceChildren(...groupDifferences(items).map((group) => this.group(group)));
-    this.list.scrollTop = at;
+    const scrollTop = this.list.scrollTop;
+    this.list.replaceChildren(...groupDifferences(items).map((group) => this.createGroup(group)));
+    this.list.scrollTop = scrollTop;
     this.showSwitches();
     this.showFocus();
   }
 
   private showSwitches(): void {
-    for (const [tick, side] of [[this.old, "old"], [this.new, "new"]] as const) {
-      const display = this.display(side);
+    for (const [tick, side] of [[this.oldSwitch, "old"], [this.new, "new"]] as const) {
+      const display = this.displayOf(side);
       tick.box.disabled = display === undefined;
       tick.box.checked = display?.isEnabled ?? false;
     }
-    const alpha = this.display("old")?.rows.number(1, "Alpha") ?? 1;
-    this.alpha.disabled = !this.old.box.checked;
+    const alpha = this.displayOf("old")?.rows.number(1, "Alpha") ?? 1;
+    this.alpha.disabled = !this.oldSwitch.box.checked;
     this.alpha.value = String(alpha);
     this.alpha.style.setProperty("--part", String(alpha));
     this.marks.box.checked = this.session.comparison.marks;
@@ -125,7 +125,7 @@ export class ComparisonPanel implements Panel {
     }
   }
 
-  private group({ items, kind }: DifferenceGroup): HTMLElement {
+  private createGroup({ items, kind }: DifferenceGroup): HTMLElement {
     const [first] = items;
     if (!first) return h("div");
     const texts = strings.comparison;
@@ -134,7 +134,7 @@ export class ComparisonPanel implements Panel {
     const label = [icon(SUBJECT_ICONS[first.subject]), h("span", { class: "difference-kind" }, texts.subjects[first.subject]), first.name] as const;
     const choose = (): void => {
       focus.select(element);
-      this.look();
+      this.focusScene();
     };
     const header = element
       ? button(texts.select(first.name), choose, "difference-name", ...label)
@@ -142,8 +142,8 @@ export class ComparisonPanel implements Panel {
     const group = h(
       "div",
       { class: "difference-group", role: "listitem", data: element ? { element: keyOf(element) } : {} },
-      h("div", { class: "difference-head" }, header, items.length === 1 && first.property === "" ? kindTag(kind) : null),
-      ...items.map((item) => this.item(item, choose)),
+      h("div", { class: "difference-head" }, header, items.length === 1 && first.property === "" ? createKindTag(kind) : null),
+      ...items.map((item) => this.createItem(item, choose)),
     );
     const hover = (): void => focus.setHovered(element);
     group.addEventListener("pointerenter", hover);
@@ -152,37 +152,37 @@ export class ComparisonPanel implements Panel {
     return group;
   }
 
-  private item(item: ComparedItem, choose: () => void): HTMLElement {
+  private createItem(createItem: ComparedItem, choose: () => void): HTMLElement {
     const texts = strings.comparison;
-    const none = (text: string | null): string => text ?? texts.nothing;
+    const textOrNothing = (text: string | null): string => text ?? texts.nothing;
     const line =
-      item.property === ""
+      createItem.property === ""
         ? null
         : h(
             "div",
             { class: "difference-values" },
-            icon(KIND_ICONS[item.kind]),
-            h("span", { class: "difference-property" }, item.property),
-            h("span", { class: "difference-value" }, h("del", {}, none(item.old)), " → ", h("ins", {}, [none(item.new), item.unit].filter((part) => part !== "").join(" "))),
+            icon(KIND_ICONS[createItem.kind]),
+            h("span", { class: "difference-property" }, createItem.property),
+            h("span", { class: "difference-value" }, h("del", {}, textOrNothing(createItem.old)), " → ", h("ins", {}, [textOrNothing(createItem.new), createItem.unit].filter((part) => part !== "").join(" "))),
           );
     line?.addEventListener("click", choose);
-    const places = [this.place(item.old_place, "old"), this.place(item.new_place, "new")].filter((place) => place !== null);
+    const places = [this.createPlace(createItem.old_place, "old"), this.createPlace(createItem.new_place, "new")].filter((place) => place !== null);
     return h("div", { class: "difference" }, line, places.length > 0 ? h("div", { class: "difference-places" }, ...places) : null);
   }
 
   /** Returns the place in the text: a link into the Source panel if that can show it. */
-  private place(place: ComparedPlace | null, side: "old" | "new"): HTMLElement | null {
+  private createPlace(place: ComparedPlace | null, side: "old" | "new"): HTMLElement | null {
     if (!place) return null;
     const { text, file, line } = place;
-    const words = [h("span", { class: "difference-side" }, strings.comparison[side]), shortPlace(text)] as const;
+    const parts = [h("span", { class: "difference-side" }, strings.comparison[side]), shortPlace(text)] as const;
     const display = this.session.comparison.compared?.[side].display ?? "";
-    if (file === "" || display === "") return h("span", { class: "place", title: text }, ...words);
+    if (file === "" || display === "") return h("span", { class: "place", title: text }, ...parts);
     const name = text.replace(/(:\d+)+$/, "");
-    return button(text, () => this.session.description.placeRequested.emit({ file, line, display, name }), "place", ...words);
+    return button(text, () => this.session.description.placeRequested.emit({ file, line, display, name }), "place", ...parts);
   }
 }
 
-function kindTag(kind: ComparedItem["kind"]): HTMLElement {
+function createKindTag(kind: ComparedItem["kind"]): HTMLElement {
   return h("span", { class: `difference-tag ${kind}` }, icon(KIND_ICONS[kind]), strings.comparison.kinds[kind]);
 }
 

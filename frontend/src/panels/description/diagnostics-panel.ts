@@ -4,7 +4,7 @@ import type { DiagnosticItem, DiagnosticNote, StatusRow } from "../../protocol";
 import { problemsOf, type DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { troubleText } from "../displays/display-items";
+import { formatTrouble } from "../displays/display-items";
 import type { Panel } from "../panel";
 import { placeText, shortPath } from "../place";
 
@@ -15,11 +15,11 @@ export class DiagnosticsPanel implements Panel {
   readonly element = h("div", { class: "panel diagnostics" });
   private readonly findings = h("div", { aria: { live: "polite" } });
   private readonly displays = h("div");
-  private readonly none = h("p", { class: "empty" }, icon("check", "level-ok"), strings.diagnostics.none);
+  private readonly noFindings = h("p", { class: "empty" }, icon("check", "level-ok"), strings.diagnostics.none);
   private cards: ReadonlyMap<string, ProblemCard> = new Map<string, ProblemCard>();
 
   constructor(private readonly session: Session) {
-    this.element.append(this.none, this.findings, this.displays);
+    this.element.append(this.noFindings, this.findings, this.displays);
     session.diagnosticsChanged.on(() => this.showFindings());
     const { displays } = session;
     const show = coalesced(() => this.showDisplays());
@@ -32,35 +32,35 @@ export class DiagnosticsPanel implements Panel {
 
   private showFindings(): void {
     const show = (file: string, line: number): void => this.session.description.placeRequested.emit({ file, line });
-    this.findings.replaceChildren(...this.session.diagnostics.map((item) => card(item, show)));
+    this.findings.replaceChildren(...this.session.diagnostics.map((item) => createCard(item, show)));
     this.showNone();
   }
 
   private showDisplays(): void {
     const { displays } = this.session;
-    const all = problemsOf(displays.globalStatus);
+    const problems = problemsOf(displays.globalStatus);
     const next = new Map<string, ProblemCard>();
-    const show = (id: string, name: string, troubles: readonly StatusRow[], title: () => HTMLElement): void => {
+    const show = (id: string, name: string, troubles: readonly StatusRow[], createTitle: () => HTMLElement): void => {
       if (troubles.length === 0) return;
-      const card = this.cards.get(id) ?? new ProblemCard(title());
+      const card = this.cards.get(id) ?? new ProblemCard(createTitle());
       card.show(name, troubles);
       next.set(id, card);
     };
-    show("#status", strings.tree.globalStatus, all, () => h("span"));
-    for (const display of displays.displays) show(display.id, display.name, display.problems, () => this.rowButton(display));
+    show("#status", strings.tree.globalStatus, problems, () => h("span"));
+    for (const display of displays.displays) show(display.id, display.name, display.problems, () => this.createRowButton(display));
     this.cards = next;
-    const elements = [...next.values()].map((each) => each.element);
-    const before = [...this.displays.children];
+    const elements = [...next.values()].map((card) => card.element);
+    const previousElements = [...this.displays.children];
     // Keep the element of a display whatever its text: the user may be about to click it.
-    if (elements.length !== before.length || elements.some((element, index) => element !== before[index])) this.displays.replaceChildren(...elements);
+    if (elements.length !== previousElements.length || elements.some((element, index) => element !== previousElements[index])) this.displays.replaceChildren(...elements);
     this.showNone();
   }
 
   private showNone(): void {
-    this.none.hidden = !this.session.displays.isKnown || this.findings.childElementCount + this.displays.childElementCount > 0;
+    this.noFindings.hidden = !this.session.displays.isKnown || this.findings.childElementCount + this.displays.childElementCount > 0;
   }
 
-  private rowButton(display: DisplayState): HTMLElement {
+  private createRowButton(display: DisplayState): HTMLElement {
     const { displays } = this.session;
     return button(strings.diagnostics.showDisplay, () => displays.rowRequested.emit(display), "text-link", display.name);
   }
@@ -85,13 +85,13 @@ class ProblemCard {
     this.element.className = `diagnostic ${level === "warn" ? "warning" : level}`;
     this.sign.replaceChildren(icon(LEVEL_ICONS[level], `level-${level}`));
     this.title.textContent = name;
-    this.list.replaceChildren(...troubles.map((row) => h("li", {}, troubleText(row))));
+    this.list.replaceChildren(...troubles.map((row) => h("li", {}, formatTrouble(row))));
   }
 }
 
 type ShowPlace = (file: string, line: number) => void;
 
-function card(item: DiagnosticItem, show: ShowPlace): HTMLElement {
+function createCard(item: DiagnosticItem, show: ShowPlace): HTMLElement {
   const notes = item.notes.map((note) => {
     return h(
       "li",
@@ -115,7 +115,7 @@ function card(item: DiagnosticItem, show: ShowPlace): HTMLElement {
       h("code", { class: "code" }, item.code),
     ),
     placeButton(item, show),
-    excerpt(item),
+    createExcerpt(item),
     notes.length + hints.length > 0 ? h("ul", {}, ...notes, ...hints) : null,
   );
 }
@@ -128,14 +128,14 @@ function placeButton({ file, line, column }: Pick<DiagnosticNote, "file" | "line
 }
 
 /** Returns the source line of a finding, with the part in question marked. */
-function excerpt(item: DiagnosticItem): HTMLElement | null {
+function createExcerpt(item: DiagnosticItem): HTMLElement | null {
   if (item.excerpt === "") return null;
   const text = item.excerpt.trimStart();
   const indent = item.excerpt.length - text.length;
-  const offset = (column: number): number => Math.min(Math.max(0, column - 1 - indent), text.length);
-  const start = offset(item.column ?? 1);
-  const sameLine = item.end_line === null || item.end_line === item.line;
-  const end = sameLine && item.end_column !== null ? offset(item.end_column) : text.length;
+  const offsetOf = (column: number): number => Math.min(Math.max(0, column - 1 - indent), text.length);
+  const start = offsetOf(item.column ?? 1);
+  const isOneLine = item.end_line === null || item.end_line === item.line;
+  const end = isOneLine && item.end_column !== null ? offsetOf(item.end_column) : text.length;
   const code = h("code", {}, text.slice(0, start));
   code.append(h("mark", {}, text.slice(start, Math.max(end, start + 1))), text.slice(Math.max(end, start + 1)));
   return h("pre", { class: "excerpt" }, h("span", { class: "line-number" }, String(item.line ?? "")), code);

@@ -8,7 +8,7 @@ import { strings } from "../../strings";
 import { PanZoom } from "../../widgets/pan-zoom";
 import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
-import { currentModel } from "./current-model";
+import { modelOfCurrentRobot } from "./current-model";
 
 const SVG = "http://www.w3.org/2000/svg";
 const FONT = "12px Inter, 'Segoe UI', 'Noto Sans', sans-serif";
@@ -23,13 +23,13 @@ export class DiagramPanel implements Panel {
   readonly icon = "diagram";
   readonly element: HTMLElement;
   private readonly canvas = h("div", { class: "diagram", tabIndex: 0, role: "group", aria: { label: strings.description.diagram.label } });
-  private readonly svg = svg("svg", {});
-  private readonly drawing = svg("g", {});
+  private readonly svg = createSvg("svg", {});
+  private readonly drawing = createSvg("g", {});
   private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
   private readonly panZoom: PanZoom;
   private readonly nodes = new Map<string, SVGGElement>();
-  private readonly measure = textMeasure();
-  private origins = true;
+  private readonly measure = createTextMeasure();
+  private showsOrigins = true;
   private model: DescriptionModel | undefined;
   private diagram: Diagram | null = null;
   private isPlaced = false;
@@ -78,7 +78,7 @@ export class DiagramPanel implements Panel {
   }
 
   private update(): void {
-    const model = currentModel(this.session);
+    const model = modelOfCurrentRobot(this.session);
     this.empty.hidden = model !== undefined;
     this.canvas.hidden = model === undefined;
     if (!model) return;
@@ -89,40 +89,40 @@ export class DiagramPanel implements Panel {
     }
     if (this.isPlaced || this.canvas.clientWidth === 0) return;
     this.isPlaced = true;
-    this.place();
+    this.placeDrawing();
     this.showFocus();
   }
 
   private draw(model: DescriptionModel): void {
-    this.diagram = layOut(model, this.origins, this.measure);
+    this.diagram = layOut(model, this.showsOrigins, this.measure);
     this.nodes.clear();
-    const edges = svg("g", { class: "edges" });
-    const shapes = svg("g", {});
+    const edges = createSvg("g", { class: "edges" });
+    const shapes = createSvg("g", {});
     for (const node of this.diagram.nodes) {
       const { parent } = node;
       if (parent) {
-        edges.append(svg("path", { d: edge(parent, node), class: "edge" }), svg("path", { d: head(node), class: "edge-head" }));
+        edges.append(createSvg("path", { d: createEdgePath(parent, node), class: "edge" }), createSvg("path", { d: createHeadPath(node), class: "edge-head" }));
       }
-      const shape = this.node(node, model);
-      this.nodes.set(key(node.element), shape);
+      const shape = this.createNode(node, model);
+      this.nodes.set(keyOf(node.element), shape);
       shapes.append(shape);
     }
     this.drawing.replaceChildren(edges, shapes);
   }
 
-  private node(node: DiagramNode, model: DescriptionModel): SVGGElement {
+  private createNode(node: DiagramNode, model: DescriptionModel): SVGGElement {
     const { element, x, y, width, height, origin } = node;
     const kind = element.kind === "joint" ? (model.joints.get(element.name)?.kind ?? "") : "";
-    const group = svg("g", { class: `node ${element.kind} ${kind}`, transform: `translate(${x} ${y})` });
+    const group = createSvg("g", { class: `node ${element.kind} ${kind}`, transform: `translate(${x} ${y})` });
     group.dataset[element.kind] = element.name;
     origin.forEach((text, i) => {
-      const at = -height / 2 - 12 - (origin.length - 1 - i) * LINE_PX;
-      group.append(label(text, at, "origin"));
+      const baseline = -height / 2 - 12 - (origin.length - 1 - i) * LINE_PX;
+      group.append(label(text, baseline, "origin"));
     });
     const shape =
       element.kind === "link"
-        ? svg("rect", { x: -width / 2, y: -height / 2, width, height, rx: 3 })
-        : svg("ellipse", { rx: width / 2, ry: height / 2 });
+        ? createSvg("rect", { x: -width / 2, y: -height / 2, width, height, rx: 3 })
+        : createSvg("ellipse", { rx: width / 2, ry: height / 2 });
     group.append(shape, label(element.name, 0, "name"));
     group.addEventListener("click", () => {
       if (!this.panZoom.wasDragged) this.session.focus.select(element);
@@ -134,9 +134,9 @@ export class DiagramPanel implements Panel {
 
   private showFocus(): void {
     const { current } = this.session.focus;
-    for (const old of this.drawing.querySelectorAll(".node.selected")) old.classList.remove("selected");
+    for (const element of this.drawing.querySelectorAll(".node.selected")) element.classList.remove("selected");
     if (!current) return;
-    this.nodes.get(key(current))?.classList.add("selected");
+    this.nodes.get(keyOf(current))?.classList.add("selected");
     const node = this.diagram?.nodes.find(({ element }) => isSameElement(element, current));
     if (node && !this.canvas.matches(":hover")) this.panZoom.reveal(node.x, node.y);
   }
@@ -146,7 +146,7 @@ export class DiagramPanel implements Panel {
   }
 
   /** Scrolls to the selected element, or else the root, at a legible size. */
-  private place(): void {
+  private placeDrawing(): void {
     const { diagram } = this;
     if (!diagram || this.canvas.clientWidth === 0) return;
     const { current } = this.session.focus;
@@ -154,12 +154,12 @@ export class DiagramPanel implements Panel {
     this.panZoom.showLegibly(diagram.width, diagram.height, TEXT_PX, [node?.x ?? 0, node?.y ?? 0]);
   }
 
-  private toggleOrigins(pressed: HTMLElement): void {
-    this.origins = !this.origins;
-    pressed.classList.toggle("on", this.origins);
-    pressed.setAttribute("aria-pressed", String(this.origins));
+  private toggleOrigins(toggle: HTMLElement): void {
+    this.showsOrigins = !this.showsOrigins;
+    toggle.classList.toggle("on", this.showsOrigins);
+    toggle.setAttribute("aria-pressed", String(this.showsOrigins));
     if (this.model) this.draw(this.model);
-    this.place();
+    this.placeDrawing();
     this.showFocus();
   }
 
@@ -175,28 +175,28 @@ export class DiagramPanel implements Panel {
   }
 }
 
-function key({ kind, name }: ElementName): string {
+function keyOf({ kind, name }: ElementName): string {
   return `${kind} ${name}`;
 }
 
 /** Returns the path from the lower end of one node to the upper end of another. */
-function edge(from: DiagramNode, to: DiagramNode): string {
-  const [top, bottom] = [from.y + from.height / 2, to.y - to.height / 2];
-  const middle = Math.min(14, (bottom - top) / 2);
-  return `M${from.x} ${top}C${from.x} ${top + middle} ${to.x} ${top} ${to.x} ${top + 2 * middle}V${bottom - 5}`;
+function createEdgePath(parent: DiagramNode, child: DiagramNode): string {
+  const [top, bottom] = [parent.y + parent.height / 2, child.y - child.height / 2];
+  const bend = Math.min(14, (bottom - top) / 2);
+  return `M${parent.x} ${top}C${parent.x} ${top + bend} ${child.x} ${top} ${child.x} ${top + 2 * bend}V${bottom - 5}`;
 }
 
-function head({ x, y, height }: DiagramNode): string {
+function createHeadPath({ x, y, height }: DiagramNode): string {
   return `M${x - 3.5} ${y - height / 2 - 7}h7l-3.5 7z`;
 }
 
 function label(text: string, y: number, className: string): SVGTextElement {
-  const element = svg("text", { y, class: className });
+  const element = createSvg("text", { y, class: className });
   element.textContent = text;
   return element;
 }
 
-function svg<K extends keyof SVGElementTagNameMap>(
+function createSvg<K extends keyof SVGElementTagNameMap>(
   tag: K,
   attributes: Readonly<Record<string, string | number>>,
 ): SVGElementTagNameMap[K] {
@@ -206,13 +206,13 @@ function svg<K extends keyof SVGElementTagNameMap>(
 }
 
 /** Returns a function that measures texts in the diagram's font, each text once. */
-function textMeasure(): (text: string) => number {
+function createTextMeasure(): (text: string) => number {
   const context = document.createElement("canvas").getContext("2d");
-  const known = new Map<string, number>();
+  const widths = new Map<string, number>();
   if (context) context.font = FONT;
   return (text) => {
-    let width = known.get(text);
-    if (width === undefined) known.set(text, (width = context?.measureText(text).width ?? text.length * 7));
+    let width = widths.get(text);
+    if (width === undefined) widths.set(text, (width = context?.measureText(text).width ?? text.length * 7));
     return width;
   };
 }

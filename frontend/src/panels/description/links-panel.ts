@@ -8,7 +8,7 @@ import { strings } from "../../strings";
 import { VirtualRows } from "../../widgets/virtual-rows";
 import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
-import { currentModel } from "./current-model";
+import { modelOfCurrentRobot } from "./current-model";
 
 const ROW_PX = 23;
 const FLASH_MS = 1600;
@@ -18,12 +18,12 @@ export class LinksPanel implements Panel {
   readonly id = "links";
   readonly icon = "tree";
   readonly element: HTMLElement;
-  private readonly rows = new VirtualRows("link-rows", ROW_PX, (index) => this.row(index));
+  private readonly rows = new VirtualRows("link-rows", ROW_PX, (index) => this.createRow(index));
   private readonly search = h("input", { class: "field filter" });
   private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
   private readonly count = h("span", { class: "toolbar-label" });
   private readonly tree = new LinkTreeState();
-  private shown: TreeRow[] = [];
+  private shownRows: TreeRow[] = [];
   private model: DescriptionModel | undefined;
   private flashing = new Set<string>();
 
@@ -59,17 +59,17 @@ export class LinksPanel implements Panel {
   }
 
   private update(): void {
-    this.model = currentModel(this.session);
+    this.model = modelOfCurrentRobot(this.session);
     const { model } = this;
     this.empty.hidden = model !== undefined;
     this.rows.element.hidden = this.search.hidden = model === undefined;
     if (!model) return;
     const { links, joints } = model;
     this.count.textContent = strings.description.count(links.size, joints.size);
-    this.shown = visibleRows(model, this.tree, this.search.value);
-    const deepest = this.shown.reduce((most, { depth }) => Math.max(most, depth), 1);
-    this.rows.element.style.setProperty("--deepest", String(deepest));
-    this.rows.refresh(this.shown.length);
+    this.shownRows = visibleRows(model, this.tree, this.search.value);
+    const maxDepth = this.shownRows.reduce((maximum, { depth }) => Math.max(maximum, depth), 1);
+    this.rows.element.style.setProperty("--deepest", String(maxDepth));
+    this.rows.refresh(this.shownRows.length);
   }
 
   /** Unfolds and reveals the row of the newly selected element. */
@@ -77,7 +77,7 @@ export class LinksPanel implements Panel {
     const link = this.focusedLink();
     if (this.model && link !== undefined && this.search.value === "") this.tree.reveal(this.model, link);
     this.update();
-    const index = this.shown.findIndex((row) => row.link.name === link);
+    const index = this.shownRows.findIndex((row) => row.link.name === link);
     if (index >= 0) this.rows.reveal(index);
   }
 
@@ -86,29 +86,29 @@ export class LinksPanel implements Panel {
     return current && current.display === this.model?.display ? this.session.focus.linkOf(current) : undefined;
   }
 
-  private row(index: number): HTMLElement {
-    const row = this.shown[index];
+  private createRow(index: number): HTMLElement {
+    const row = this.shownRows[index];
     const model = this.model;
     if (!row || !model) return h("div");
     const { link, joint, depth, isFolded } = row;
     const focus = this.session.focus.current;
-    const name = (kind: "link" | "joint", of: string): ElementName => ({ display: model.display, kind, name: of });
+    const name = (kind: "link" | "joint", elementName: string): ElementName => ({ display: model.display, kind, name: elementName });
     const self = name("link", link.name);
     const twist = h("span", { class: row.hasChildren ? "twist" : "twist leaf" }, icon("chevron"));
     twist.addEventListener("click", (event) => {
       event.stopPropagation();
       this.toggle(index);
     });
-    const findings = this.session.description.findingsOf(model.display).filter((each) => each.link === link.name);
+    const findings = this.session.description.findingsOf(model.display).filter((finding) => finding.link === link.name);
     const element = h(
       "div",
       { class: "link-row", role: "treeitem", data: { link: link.name } },
       twist,
       icon("cube"),
       h("span", { class: "link-name", title: link.name }, link.name),
-      findings.length > 0 ? badge(findings.map((finding) => finding.message)) : null,
+      findings.length > 0 ? createBadge(findings.map((finding) => finding.message)) : null,
       h("span", { class: "spacer" }),
-      joint ? this.jointName(name("joint", joint.name), joint.kind) : null,
+      joint ? this.createJointName(name("joint", joint.name), joint.kind) : null,
     );
     element.style.setProperty("--depth", String(depth));
     element.id = `link-row-${index}`;
@@ -122,7 +122,7 @@ export class LinksPanel implements Panel {
     return element;
   }
 
-  private jointName(joint: ElementName, kind: keyof typeof strings.description.kinds): HTMLElement {
+  private createJointName(joint: ElementName, kind: keyof typeof strings.description.kinds): HTMLElement {
     const element = h(
       "span",
       { class: `joint-of ${kind}`, title: `${joint.name} (${strings.description.kinds[kind]})`, data: { joint: joint.name } },
@@ -144,32 +144,32 @@ export class LinksPanel implements Panel {
   }
 
   private toggle(index: number): void {
-    const row = this.shown[index];
+    const row = this.shownRows[index];
     if (row?.hasChildren) this.tree.toggle(row.link.name);
     this.update();
   }
 
-  private fold(all: boolean): void {
-    if (this.model) this.tree.foldAll(this.model, all);
+  private fold(foldsAll: boolean): void {
+    if (this.model) this.tree.foldAll(this.model, foldsAll);
     this.update();
   }
 
   private onKeyDown(event: KeyboardEvent): void {
     const link = this.focusedLink();
-    const index = this.shown.findIndex((row) => row.link.name === link);
-    const row = this.shown[index];
-    const goTo = (to: number): void => {
-      const next = this.shown[Math.min(Math.max(0, to), this.shown.length - 1)];
-      if (next && this.model) this.select(to, { display: this.model.display, kind: "link", name: next.link.name });
+    const index = this.shownRows.findIndex((row) => row.link.name === link);
+    const row = this.shownRows[index];
+    const goTo = (index: number): void => {
+      const next = this.shownRows[Math.min(Math.max(0, index), this.shownRows.length - 1)];
+      if (next && this.model) this.select(index, { display: this.model.display, kind: "link", name: next.link.name });
     };
     if (event.key === "ArrowDown") goTo(index + 1);
     else if (event.key === "ArrowUp") goTo(index - 1);
     else if (event.key === "Home") goTo(0);
-    else if (event.key === "End") goTo(this.shown.length - 1);
+    else if (event.key === "End") goTo(this.shownRows.length - 1);
     else if (event.key === "ArrowRight" && row?.hasChildren && row.isFolded) this.toggle(index);
     else if (event.key === "ArrowRight") goTo(index + 1);
     else if (event.key === "ArrowLeft" && row?.hasChildren && !row.isFolded) this.toggle(index);
-    else if (event.key === "ArrowLeft" && row?.joint) goTo(this.shown.findIndex((each) => each.link.name === row.joint?.parent));
+    else if (event.key === "ArrowLeft" && row?.joint) goTo(this.shownRows.findIndex((candidate) => candidate.link.name === row.joint?.parent));
     else if (event.key === "Enter" && row?.joint && this.model) {
       // Switch from a link to its joint, or back.
       const kind = this.session.focus.current?.kind === "joint" ? "link" : "joint";
@@ -190,6 +190,6 @@ export class LinksPanel implements Panel {
   }
 }
 
-function badge(messages: readonly string[]): HTMLElement {
+function createBadge(messages: readonly string[]): HTMLElement {
   return h("span", { class: "level-warn", title: messages.join("\n") }, icon("warn"));
 }

@@ -10,14 +10,14 @@ import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { EditorPane } from "../source-editor/editor-pane";
 import { placeText, shortPath, shortPlace } from "../place";
-import { currentModel } from "./current-model";
+import { modelOfCurrentRobot } from "./current-model";
 import { SourceView, type Highlight } from "./source-view";
 
 /** A place to show that is not the place of an element, such as that of a diagnostic or macro call. */
 interface RequestedPlace {
   readonly file: string;
   readonly line: number;
-  readonly look: Highlight["look"];
+  readonly look: Highlight["kind"];
   /** The display whose description the file belongs to, if that is not the one that the panels show. */
   readonly display: string | undefined;
   /** The file's name for users, if that is not its path: a file of a commit, for example. */
@@ -29,7 +29,7 @@ export class SourcePanel implements Panel {
   readonly id = "source";
   readonly icon = "code";
   readonly element: HTMLElement;
-  private readonly expanded = new SourceView(strings.description.source.expanded, (line) => this.choose(EXPANDED, line));
+  private readonly expandedView = new SourceView(strings.description.source.expanded, (line) => this.choose(EXPANDED, line));
   private readonly origin = new SourceView(strings.description.source.origin, (line) => this.choose(this.file, line));
   private readonly files = h("select", { class: "choice source-file" });
   private readonly trail = h("div", { class: "source-trail" });
@@ -39,11 +39,11 @@ export class SourcePanel implements Panel {
   private readonly editor: EditorPane;
   /** The file shown. */
   private file = "";
-  private requested: RequestedPlace | null = null;
+  private requestedPlace: RequestedPlace | null = null;
   /** Whether the selection follows the cursor of the editor, which then stays where it is. */
   private followsCursor = false;
   /** The element whose lines were shown last. */
-  private focused: ElementName | null = null;
+  private focusedElement: ElementName | null = null;
   private model: DescriptionModel | undefined;
   private isVisible = false;
   /** The lines to scroll to once their text has arrived. */
@@ -53,8 +53,8 @@ export class SourcePanel implements Panel {
     const texts = strings.description.source;
     this.files.setAttribute("aria-label", texts.file);
     this.files.addEventListener("change", () => this.openFile(this.files.value));
-    const heading = (text: string, title: string, ...more: HTMLElement[]): HTMLElement =>
-      h("div", { class: "source-heading" }, h("span", { class: "toolbar-label", title }, text), ...more);
+    const createHeading = (text: string, title: string, ...elements: HTMLElement[]): HTMLElement =>
+      h("div", { class: "source-heading" }, h("span", { class: "toolbar-label", title }, text), ...elements);
     this.editor = new EditorPane(session, browserStorage(), (file, line) => this.chooseInEditor(file, line), (file) => {
       this.file = file ?? this.file;
       this.update();
@@ -65,14 +65,14 @@ export class SourcePanel implements Panel {
       h(
         "section",
         { class: "source-pane" },
-        heading(texts.origin, texts.file, this.files, this.editor.toggle),
+        createHeading(texts.origin, texts.file, this.files, this.editor.toggle),
         this.trail,
         this.editor.notice,
         this.notice,
         this.origin.element,
         this.editor.element,
       ),
-      h("section", { class: "source-pane" }, heading(texts.expanded, texts.expandedHint), this.expanded.element),
+      h("section", { class: "source-pane" }, createHeading(texts.expanded, texts.expandedHint), this.expandedView.element),
     );
     this.element = h("div", { class: "panel source-panel" }, this.empty, this.panes);
     const { description, focus } = session;
@@ -98,7 +98,7 @@ export class SourcePanel implements Panel {
 
   /** Shows a line of a file, such as a diagnostic's. */
   reveal(file: string, line: number, { look = "problem", display, name }: Partial<Pick<RequestedPlace, "look" | "display" | "name">> = {}): void {
-    this.requested = { file, line, look: display === undefined ? look : "focus", display, name };
+    this.requestedPlace = { file, line, look: display === undefined ? look : "focus", display, name };
     this.file = file;
     this.pendingReveal.origin = line;
     this.update();
@@ -113,7 +113,7 @@ export class SourcePanel implements Panel {
 
   /** Edits a file, which is created when it is saved if it does not exist. */
   async edit(path: string): Promise<void> {
-    this.requested = null;
+    this.requestedPlace = null;
     await this.editor.edit(path);
     this.file = path;
     this.update();
@@ -135,24 +135,24 @@ export class SourcePanel implements Panel {
 
   /** Returns what is shown and marked, for tests. */
   inspect(): object {
-    const marks = (view: SourceView): object => view.highlighted.map(({ from, to, look }) => ({ from, to, look }));
+    const listMarks = (view: SourceView): object => view.highlighted.map(({ firstLine, lastLine, kind }) => ({ from: firstLine, to: lastLine, look: kind }));
     return {
       editor: this.editor.inspect(),
-      expanded: { lines: this.expanded.lineCount, marks: marks(this.expanded) },
-      origin: { file: this.file, lines: this.origin.lineCount, marks: marks(this.origin) },
+      expanded: { lines: this.expandedView.lineCount, marks: listMarks(this.expandedView) },
+      origin: { file: this.file, lines: this.origin.lineCount, marks: listMarks(this.origin) },
     };
   }
 
   /** Follows the selection, or a new place of the selected element. */
   private showFocus(): void {
-    this.model = currentModel(this.session);
+    this.model = modelOfCurrentRobot(this.session);
     const { expanded, origin } = this.writtenPlaces();
     if (expanded) this.pendingReveal.expanded = expanded.line;
     const { current } = this.session.focus;
-    const stays = this.editor.isShown && (this.followsCursor || isSameElement(current, this.focused));
-    this.focused = current;
+    const stays = this.editor.isShown && (this.followsCursor || isSameElement(current, this.focusedElement));
+    this.focusedElement = current;
     if (origin && !stays) {
-      this.requested = null;
+      this.requestedPlace = null;
       this.file = origin.file;
       this.pendingReveal.origin = origin.line;
     }
@@ -165,16 +165,16 @@ export class SourcePanel implements Panel {
    * selection changes.
    */
   private refresh(): void {
-    const stays = this.editor.isShown || (this.requested !== null && this.requested.file === this.file);
+    const stays = this.editor.isShown || (this.requestedPlace !== null && this.requestedPlace.file === this.file);
     if (stays) this.update();
     else this.showFocus();
   }
 
   private update(): void {
-    this.model = currentModel(this.session);
+    this.model = modelOfCurrentRobot(this.session);
     const { model } = this;
     const faulty = this.session.diagnostics.flatMap((item) => (item.file === null ? [] : [item.file]));
-    const files = [...new Set([...(model?.description.files ?? []), ...faulty, ...this.editor.files, ...(this.requested ? [this.requested.file] : [])])];
+    const files = [...new Set([...(model?.description.files ?? []), ...faulty, ...this.editor.files, ...(this.requestedPlace ? [this.requestedPlace.file] : [])])];
     this.empty.hidden = model !== undefined || files.length > 0 || this.editor.hasWorkspace;
     this.panes.hidden = !this.empty.hidden;
     if (!files.includes(this.file)) this.file = files[0] ?? "";
@@ -187,12 +187,12 @@ export class SourcePanel implements Panel {
     const display = this.model?.display ?? "";
     const { expanded, origin } = this.writtenPlaces();
     const texts = strings.description.source;
-    if (this.model) this.fill(this.expanded, this.session.description.textOf(display, EXPANDED), marks(expanded), "expanded");
-    const text = this.file === "" ? null : this.session.description.textOf(this.requested?.file === this.file ? (this.requested.display ?? display) : display, this.file);
-    const marked = origin?.file === this.file ? marks(origin) : [];
-    if (this.requested?.file === this.file) marked.push({ from: this.requested.line, to: this.requested.line, look: this.requested.look });
-    const highlights = [...marked, ...this.problems()];
-    const isWorkingFile = this.file !== "" && (this.requested?.file !== this.file || (this.requested.display ?? display) === display);
+    if (this.model) this.fill(this.expandedView, this.session.description.textOf(display, EXPANDED), focusMarks(expanded), "expanded");
+    const text = this.file === "" ? null : this.session.description.textOf(this.requestedPlace?.file === this.file ? (this.requestedPlace.display ?? display) : display, this.file);
+    const originMarks = origin?.file === this.file ? focusMarks(origin) : [];
+    if (this.requestedPlace?.file === this.file) originMarks.push({ firstLine: this.requestedPlace.line, lastLine: this.requestedPlace.line, kind: this.requestedPlace.look });
+    const highlights = [...originMarks, ...this.problemMarks()];
+    const isWorkingFile = this.file !== "" && (this.requestedPlace?.file !== this.file || (this.requestedPlace.display ?? display) === display);
     const isEdited = this.editor.show(isWorkingFile ? this.file : null, isWorkingFile ? highlights : [], this.pendingReveal.origin);
     if (isEdited) this.pendingReveal.origin = null;
     this.notice.hidden = isEdited || typeof text === "string";
@@ -214,20 +214,20 @@ export class SourcePanel implements Panel {
 
   private writtenPlaces(): { expanded: SourceRange | null; origin: SourceRange | null; calls: readonly CallSite[] } {
     const { current } = this.session.focus;
-    const written = current && this.model?.display === current.display ? this.model.placesOf(current) : undefined;
-    return written ?? { expanded: null, origin: null, calls: [] };
+    const places = current && this.model?.display === current.display ? this.model.placesOf(current) : undefined;
+    return places ?? { expanded: null, origin: null, calls: [] };
   }
 
   /** Returns the findings in the file shown. */
-  private problems(): Highlight[] {
+  private problemMarks(): Highlight[] {
     return this.session.diagnostics.flatMap(({ file, line, end_line }) =>
-      file === this.file && line !== null ? [{ from: line, to: end_line ?? line, look: "problem" as const }] : [],
+      file === this.file && line !== null ? [{ firstLine: line, lastLine: end_line ?? line, kind: "problem" as const }] : [],
     );
   }
 
   private listFiles(files: readonly string[]): void {
     const options = files.map((file) => {
-      const name = this.requested?.file === file ? this.requested.name : undefined;
+      const name = this.requestedPlace?.file === file ? this.requestedPlace.name : undefined;
       const option = h("option", { title: name ?? file }, name === undefined ? shortPath(file) : shortPlace(name));
       option.value = file;
       return option;
@@ -252,17 +252,17 @@ export class SourcePanel implements Panel {
       const text = texts.call(macro, placeText(shortPath(file, 1), line, null));
       return button(placeText(file, line, column), () => this.reveal(file, line, { look: "focus" }), "trail-step", text);
     });
-    const back = origin && this.requested
+    const backButton = origin && this.requestedPlace
       ? button(texts.origin, () => this.showFocus(), "tool bare", icon("reset"))
       : null;
     this.trail.hidden = steps.length === 0;
-    this.trail.replaceChildren(h("span", { class: "tag" }, texts.made), ...steps, ...(back ? [back] : []));
+    this.trail.replaceChildren(h("span", { class: "tag" }, texts.made), ...steps, ...(backButton ? [backButton] : []));
   }
 
   /** Selects the element written on the line of the cursor, unless one of them is selected. */
   private chooseInEditor(file: string, line: number): void {
-    const here = this.model?.elementsAt(file, line) ?? [];
-    if (here.length === 0 || here.some((element) => isSameElement(element, this.session.focus.current))) return;
+    const elements = this.model?.elementsAt(file, line) ?? [];
+    if (elements.length === 0 || elements.some((element) => isSameElement(element, this.session.focus.current))) return;
     this.followsCursor = true;
     this.choose(file, line);
   }
@@ -271,13 +271,13 @@ export class SourcePanel implements Panel {
    * Selects the element written on a line; if a macro makes the line yield several, the one after the selected element.
    */
   private choose(file: string, line: number): void {
-    const here = this.model?.elementsAt(file, line) ?? [];
-    const at = here.findIndex((element) => isSameElement(element, this.session.focus.current));
-    const next = here[(at + 1) % here.length];
+    const elements = this.model?.elementsAt(file, line) ?? [];
+    const index = elements.findIndex((element) => isSameElement(element, this.session.focus.current));
+    const next = elements[(index + 1) % elements.length];
     if (next) this.session.focus.select(next);
   }
 }
 
-function marks(range: SourceRange | null): Highlight[] {
-  return range ? [{ from: range.line, to: range.end_line, look: "focus" }] : [];
+function focusMarks(range: SourceRange | null): Highlight[] {
+  return range ? [{ firstLine: range.line, lastLine: range.end_line, kind: "focus" }] : [];
 }

@@ -9,15 +9,15 @@ const LONGEST_LINE = 4000;
 
 /** Lines `from` to `to`, 1-based and inclusive, and how they are marked. */
 export interface Highlight {
-  readonly from: number;
-  readonly to: number;
-  readonly look: "focus" | "problem";
+  readonly firstLine: number;
+  readonly lastLine: number;
+  readonly kind: "focus" | "problem";
 }
 
 /** A text with line numbers and syntax colors; only the visible lines are drawn. */
 export class SourceView {
   readonly element: HTMLElement;
-  private readonly rows = new VirtualRows("source-lines", ROW_PX, (index) => this.row(index));
+  private readonly rows = new VirtualRows("source-lines", ROW_PX, (index) => this.createRow(index));
   private lines: readonly string[] = [];
   private states: readonly LineState[] = [];
   private highlights: readonly Highlight[] = [];
@@ -50,8 +50,8 @@ export class SourceView {
     this.text = text;
     this.lines = text.replace(/\n$/, "").split(/\r\n?|\n/);
     this.states = computeLineStates(this.lines);
-    const longest = this.lines.reduce((most, line) => Math.max(most, line.length), 0);
-    this.rows.body.style.minWidth = `calc(${Math.min(longest, LONGEST_LINE) + 4}ch + 70px)`;
+    const maxLength = this.lines.reduce((maximum, line) => Math.max(maximum, line.length), 0);
+    this.rows.body.style.minWidth = `calc(${Math.min(maxLength, LONGEST_LINE) + 4}ch + 70px)`;
     this.rows.element.style.setProperty("--gutter", `${String(this.lines.length).length + 1}ch`);
     this.rows.refresh(this.lines.length);
   }
@@ -68,7 +68,7 @@ export class SourceView {
     this.rows.reveal(line - 1);
   }
 
-  private row(index: number): HTMLElement {
+  private createRow(index: number): HTMLElement {
     const line = this.lines[index] ?? "";
     const code = h("code", { class: "source-code" });
     const { tokens } = tokenize(line.slice(0, LONGEST_LINE), this.states[index] ?? "text");
@@ -81,7 +81,7 @@ export class SourceView {
       h("span", { class: "source-number" }, String(number)),
       code,
     );
-    for (const { from, to, look } of this.highlights) if (from <= number && number <= to) row.classList.add(look);
+    for (const { firstLine, lastLine, kind } of this.highlights) if (firstLine <= number && number <= lastLine) row.classList.add(kind);
     return row;
   }
 
@@ -110,7 +110,7 @@ export class SourceView {
   }
 
   private showCursor(): void {
-    for (const old of this.element.querySelectorAll(".source-line.cursor")) old.classList.remove("cursor");
+    for (const lineElement of this.element.querySelectorAll(".source-line.cursor")) lineElement.classList.remove("cursor");
     this.rows.rowAt(this.cursor - 1)?.classList.add("cursor");
   }
 }

@@ -28,7 +28,7 @@ export class AddDialog {
   private tab: Tab = "type";
   private isWaiting = false;
   private choices: Choice[] = [];
-  private chosen: Choice | null = null;
+  private chosenChoice: Choice | null = null;
   private suggestedName = "";
 
   /** @param group - the group that the display is added to; null for none. */
@@ -80,18 +80,18 @@ export class AddDialog {
     tabButton.setAttribute("role", "tab");
     tabButton.addEventListener("keydown", (event) => {
       if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
-      const other = tab === "type" ? "topic" : "type";
-      this.show(other);
-      this.tabs[other].focus();
+      const otherTab = tab === "type" ? "topic" : "type";
+      this.show(otherTab);
+      this.tabs[otherTab].focus();
     });
     return tabButton;
   }
 
   private show(tab: Tab): void {
     this.tab = tab;
-    for (const each of ["type", "topic"] as const) {
-      this.tabs[each].setAttribute("aria-selected", String(each === tab));
-      this.tabs[each].tabIndex = each === tab ? 0 : -1;
+    for (const name of ["type", "topic"] as const) {
+      this.tabs[name].setAttribute("aria-selected", String(name === tab));
+      this.tabs[name].tabIndex = name === tab ? 0 : -1;
     }
     this.allBox.hidden = tab !== "topic";
     const { configuration } = this.session;
@@ -102,57 +102,57 @@ export class AddDialog {
 
   private fill(): void {
     const query = this.search.value.trim().toLowerCase();
-    const before = this.chosen;
+    const previousChoice = this.chosenChoice;
     this.choices = [];
-    const entries = this.tab === "type" ? this.types(query) : this.byTopic(query);
+    const entries = this.tab === "type" ? this.listTypes(query) : this.listTopics(query);
     this.list.replaceChildren(...entries);
     this.list.role = entries.length > 0 ? "listbox" : "group"; // a listbox without options is none
-    if (entries.length === 0) this.list.append(h("p", { class: "empty" }, this.emptyText()));
-    const again = this.choices.find((choice) => choice.cls === before?.cls && choice.topic === before.topic);
+    if (entries.length === 0) this.list.append(h("p", { class: "empty" }, this.explainEmptyList()));
+    const again = this.choices.find((choice) => choice.cls === previousChoice?.cls && choice.topic === previousChoice.topic);
     this.choose(again ?? (query === "" ? null : (this.choices[0] ?? null)));
     const first = this.choices[0];
     if (first && !again) first.element.tabIndex = 0;
   }
 
-  private emptyText(): string {
+  private explainEmptyList(): string {
     const texts = strings.displays;
     if (this.isWaiting) return texts.asking;
-    return this.tab === "topic" && this.offered.topics.length === 0 ? texts.noTopics : texts.notFound;
+    return this.tab === "topic" && this.offeredChoices.topics.length === 0 ? texts.noTopics : texts.notFound;
   }
 
-  private get offered(): { classes: DisplayClass[]; topics: TopicChoice[] } {
+  private get offeredChoices(): { classes: DisplayClass[]; topics: TopicChoice[] } {
     const { choices } = this.session.configuration;
     return this.isWaiting || choices === null ? { classes: [], topics: [] } : choices;
   }
 
-  private types(query: string): HTMLElement[] {
-    return this.offered.classes
-      .map(({ cls, messages }) => ({ cls, about: aboutDisplay(cls), messages }))
+  private listTypes(query: string): HTMLElement[] {
+    return this.offeredChoices.classes
+      .map(({ cls, messages }) => ({ cls, about: describeDisplay(cls), messages }))
       .filter(({ cls, about, messages }) => [cls, about, ...messages].some((text) => text.toLowerCase().includes(query)))
-      .map(({ cls, about }) => this.choice(cls, null, shortName(cls), about));
+      .map(({ cls, about }) => this.createChoice(cls, null, shortName(cls), about));
   }
 
-  private byTopic(query: string): HTMLElement[] {
+  private listTopics(query: string): HTMLElement[] {
     const matches = ({ topic, message, classes }: TopicChoice): boolean =>
       [topic, message, ...classes].some((text) => text.toLowerCase().includes(query));
-    const listed = this.offered.topics.filter((each) => each.classes.length > 0 || this.showAll.checked);
-    return listed.filter(matches).map((each) => {
-      const { topic, message, classes } = each;
-      const first = obviousDisplay(each);
-      const ordered = [...classes].sort((a, b) => Number(b === first) - Number(a === first));
-      const rows = ordered.map((cls) => this.choice(cls, topic, shortName(cls), aboutDisplay(cls)));
+    const listedTopics = this.offeredChoices.topics.filter((topicChoice) => topicChoice.classes.length > 0 || this.showAll.checked);
+    return listedTopics.filter(matches).map((topicChoice) => {
+      const { topic, message, classes } = topicChoice;
+      const first = obviousDisplay(topicChoice);
+      const sortedClasses = [...classes].sort((a, b) => Number(b === first) - Number(a === first));
+      const rows = sortedClasses.map((cls) => this.createChoice(cls, topic, shortName(cls), describeDisplay(cls)));
       const [obvious] = rows;
       const name = h("div", { class: "topic-name" }, topic, h("span", { class: "topic-type" }, message));
       // A click on the name chooses the display that most users want.
       for (const kind of ["click", "dblclick"] as const) {
         name.addEventListener(kind, () => obvious?.dispatchEvent(new MouseEvent(kind)));
       }
-      const none = classes.length === 0 ? h("p", { class: "hint" }, strings.displays.topicNotShown) : null;
-      return h("div", { class: "topic-choice", role: "group", aria: { label: topic } }, name, ...rows, none);
+      const hint = classes.length === 0 ? h("p", { class: "hint" }, strings.displays.topicNotShown) : null;
+      return h("div", { class: "topic-choice", role: "group", aria: { label: topic } }, name, ...rows, hint);
     });
   }
 
-  private choice(cls: string, topic: string | null, name: string, about: string): HTMLElement {
+  private createChoice(cls: string, topic: string | null, name: string, about: string): HTMLElement {
     const element = h(
       "div",
       { class: "choice-row", role: "option", tabIndex: -1, aria: { selected: "false" } },
@@ -171,10 +171,10 @@ export class AddDialog {
   }
 
   private choose(choice: Choice | null): void {
-    this.chosen = choice;
-    for (const each of this.choices) {
-      each.element.setAttribute("aria-selected", String(each === choice));
-      each.element.tabIndex = each === choice ? 0 : -1;
+    this.chosenChoice = choice;
+    for (const candidate of this.choices) {
+      candidate.element.setAttribute("aria-selected", String(candidate === choice));
+      candidate.element.tabIndex = candidate === choice ? 0 : -1;
     }
     this.dialog.ready = choice !== null;
     // Keep a name that the user typed.
@@ -186,29 +186,29 @@ export class AddDialog {
   }
 
   private onKeyDown(event: KeyboardEvent): void {
-    const index = this.chosen ? this.choices.indexOf(this.chosen) : -1;
-    const inList = event.target !== this.search;
+    const index = this.chosenChoice ? this.choices.indexOf(this.chosenChoice) : -1;
+    const isInList = event.target !== this.search;
     const step = { ArrowDown: 1, ArrowUp: -1, PageDown: 8, PageUp: -8 }[event.key];
     if (step !== undefined) {
       const next = this.choices[Math.max(0, Math.min(this.choices.length - 1, index + step))];
       this.choose(next ?? null);
-      if (inList) next?.element.focus();
-    } else if (inList && event.key === "Enter") {
+      if (isInList) next?.element.focus();
+    } else if (isInList && event.key === "Enter") {
       if (this.accept()) this.dialog.close();
     } else return;
     event.preventDefault();
   }
 
   private accept(): boolean {
-    if (!this.chosen) return false;
-    const { cls, topic } = this.chosen;
+    if (!this.chosenChoice) return false;
+    const { cls, topic } = this.chosenChoice;
     this.session.configuration.add(cls, this.name.value.trim() || shortName(cls), this.group?.id ?? null, topic);
     return true;
   }
 }
 
 /** Returns the purpose of a display class, in one sentence. */
-function aboutDisplay(cls: string): string {
+function describeDisplay(cls: string): string {
   return (strings.displays.about as Readonly<Record<string, string | undefined>>)[shortName(cls)] ?? cls;
 }
 

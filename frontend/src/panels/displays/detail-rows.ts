@@ -16,111 +16,111 @@ const ROUNDING = 1e-6;
  * Returns the read-only rows below a row with `details`: the current pose of a frame, link or joint. The page has the
  * poses; the server would have to send these rows with every movement. Names and forms are RViz's.
  */
-export function detailRows(node: PropertyNode, display: DisplayState, session: Session): TreeItem[] {
+export function createDetailRows(node: PropertyNode, display: DisplayState, session: Session): TreeItem[] {
   switch (node.details) {
     case "frame":
       return frameRows(node, session.frames);
     case "link":
-      return poseRows(node.id, () => linkPose(node.name, display, session));
+      return createPoseRows(node.id, () => linkPose(node.name, display, session));
     case "joint":
-      return jointRows(node, display, session);
+      return createJointRows(node, display, session);
     case "effort":
-      return effortRows(node, display, session);
+      return createEffortRows(node, display, session);
     case null:
       return [];
   }
 }
 
 function frameRows({ id, name }: PropertyNode, frames: FrameStore): TreeItem[] {
-  const parent = (): number => frames.parents[frames.rowOf(name)] ?? -1;
-  const relativePose = (): PoseNumbers | null => {
-    const [above, here] = [poseOf(frames, parent()), poseOf(frames, frames.rowOf(name))];
-    return above && here ? computeRelativePose(above, here) : null;
+  const parentRow = (): number => frames.parents[frames.rowOf(name)] ?? -1;
+  const poseInParent = (): PoseNumbers | null => {
+    const [parentPose, framePose] = [poseOf(frames, parentRow()), poseOf(frames, frames.rowOf(name))];
+    return parentPose && framePose ? computeRelativePose(parentPose, framePose) : null;
   };
   return [
-    textRow(`${id}#Parent`, "Parent", () => frames.names[parent()] ?? ""),
-    ...poseRows(id, () => poseOf(frames, frames.rowOf(name))),
-    ...poseRows(id, relativePose, "Relative "),
+    createTextRow(`${id}#Parent`, "Parent", () => frames.names[parentRow()] ?? ""),
+    ...createPoseRows(id, () => poseOf(frames, frames.rowOf(name))),
+    ...createPoseRows(id, poseInParent, "Relative "),
   ];
 }
 
-function jointRows({ id, name }: PropertyNode, display: DisplayState, session: Session): TreeItem[] {
-  const joint = session.robots.get(display.id)?.joints.find((each) => each.name === name);
+function createJointRows({ id, name }: PropertyNode, display: DisplayState, session: Session): TreeItem[] {
+  const joint = session.robots.get(display.id)?.joints.find((candidate) => candidate.name === name);
   if (!joint) return [];
   const rows = [
-    ...poseRows(id, () => jointPose(joint, display, session)),
-    textRow(`${id}#Type`, "Type", () => joint.kind),
+    ...createPoseRows(id, () => jointPose(joint, display, session)),
+    createTextRow(`${id}#Type`, "Type", () => joint.kind),
   ];
   if (joint.lower !== null) rows.push(numberRow(`${id}#Lower Limit`, "Lower Limit", () => joint.lower));
   if (joint.upper !== null) rows.push(numberRow(`${id}#Upper Limit`, "Upper Limit", () => joint.upper));
   if (joint.kind !== "fixed" && joint.kind !== "floating") {
-    rows.push(vectorRow(`${id}#Joint Axis`, "Joint Axis", ["X", "Y", "Z"], () => joint.axis));
+    rows.push(createVectorRow(`${id}#Joint Axis`, "Joint Axis", ["X", "Y", "Z"], () => joint.axis));
   }
   return rows;
 }
 
-function effortRows({ id, name }: PropertyNode, display: DisplayState, session: Session): TreeItem[] {
-  const latest = (): { effort: number; limit: number } | null => {
-    let found: { effort: number; limit: number } | null = null;
+function createEffortRows({ id, name }: PropertyNode, display: DisplayState, session: Session): TreeItem[] {
+  const latestEffort = (): { effort: number; limit: number } | null => {
+    let newest: { effort: number; limit: number } | null = null;
     let stamp = -Infinity;
-    for (const { content, stamp: at } of session.data.contentsOf(display.id)) {
-      if (content.kind !== "effort_rings" || at < stamp) continue;
+    for (const { content, stamp: contentStamp } of session.data.contentsOf(display.id)) {
+      if (content.kind !== "effort_rings" || contentStamp < stamp) continue;
       const i = content.joints.indexOf(name);
       if (i < 0) continue;
-      found = { effort: content.efforts[i] ?? 0, limit: content.limits[i] ?? 0 };
-      stamp = at;
+      newest = { effort: content.efforts[i] ?? 0, limit: content.limits[i] ?? 0 };
+      stamp = contentStamp;
     }
-    return found;
+    return newest;
   };
   return [
-    numberRow(`${id}#Effort`, "Effort", () => latest()?.effort ?? 0),
-    numberRow(`${id}#Max Effort`, "Max Effort", () => latest()?.limit ?? 0),
+    numberRow(`${id}#Effort`, "Effort", () => latestEffort()?.effort ?? 0),
+    numberRow(`${id}#Max Effort`, "Max Effort", () => latestEffort()?.limit ?? 0),
   ];
 }
 
-function poseRows(id: string, pose: () => PoseNumbers | null, prefix = ""): TreeItem[] {
+function createPoseRows(id: string, readPose: () => PoseNumbers | null, prefix = ""): TreeItem[] {
   const [position, orientation] = [`${prefix}Position`, `${prefix}Orientation`];
   return [
-    vectorRow(`${id}#${position}`, position, ["X", "Y", "Z"], () => rounded(pose())?.slice(0, 3) ?? null),
-    vectorRow(`${id}#${orientation}`, orientation, ["X", "Y", "Z", "W"], () => rounded(pose())?.slice(3) ?? null),
+    createVectorRow(`${id}#${position}`, position, ["X", "Y", "Z"], () => roundPose(readPose())?.slice(0, 3) ?? null),
+    createVectorRow(`${id}#${orientation}`, orientation, ["X", "Y", "Z", "W"], () => roundPose(readPose())?.slice(3) ?? null),
   ];
 }
 
 /** Rounds away what single precision adds to zeros. */
-function rounded(pose: PoseNumbers | null): number[] | null {
+function roundPose(pose: PoseNumbers | null): number[] | null {
   return pose && pose.map((part) => Math.round(part / ROUNDING) * ROUNDING);
 }
 
 /** Returns a row with numbers in RViz's notation, with one row for each number below it. */
-function vectorRow(
+function createVectorRow(
   key: string,
   name: string,
   parts: readonly string[],
-  numbers: () => readonly number[] | null,
+  readNumbers: () => readonly number[] | null,
 ): TreeItem {
   return {
-    ...textRow(key, name, () => numbers()?.map(formatNumber).join("; ") ?? ""),
+    ...createTextRow(key, name, () => readNumbers()?.map(formatNumber).join("; ") ?? ""),
     get value() {
-      return numbers()?.map(formatNumber).join("; ") ?? "";
+      return readNumbers()?.map(formatNumber).join("; ") ?? "";
     },
-    children: () => parts.map((part, i) => numberRow(`${key}/${part}`, part, () => numbers()?.[i] ?? null)),
+    children: () => parts.map((part, i) => numberRow(`${key}/${part}`, part, () => readNumbers()?.[i] ?? null)),
   };
 }
 
 function numberRow(key: string, name: string, number: () => number | null): TreeItem {
-  return textRow(key, name, () => {
+  return createTextRow(key, name, () => {
     const value = number();
     return value === null ? "" : formatNumber(value);
   });
 }
 
-function textRow(key: string, name: string, text: () => string): TreeItem {
+function createTextRow(key: string, name: string, readText: () => string): TreeItem {
   return {
     key,
     name,
     kind: "string",
     get value() {
-      return text();
+      return readText();
     },
     description: name in strings.details ? strings.details[name as DetailName] : "",
     readOnly: true,
@@ -129,15 +129,15 @@ function textRow(key: string, name: string, text: () => string): TreeItem {
 }
 
 function linkPose(name: string, display: DisplayState, { robots, frames }: Session): PoseNumbers | null {
-  const link = robots.get(display.id)?.links.find((each) => each.name === name);
+  const link = robots.get(display.id)?.links.find((candidate) => candidate.name === name);
   return link ? poseOf(frames, frames.rowOf(link.frame)) : null;
 }
 
 function jointPose(joint: JointScene, display: DisplayState, session: Session): PoseNumbers | null {
-  const above = linkPose(joint.parent, display, session);
+  const parentPose = linkPose(joint.parent, display, session);
   const [x = 0, y = 0, z = 0] = joint.position;
   const [qx = 0, qy = 0, qz = 0, qw = 1] = joint.quaternion;
-  return above && compose(above, [x, y, z, qx, qy, qz, qw]);
+  return parentPose && compose(parentPose, [x, y, z, qx, qy, qz, qw]);
 }
 
 function poseOf(frames: FrameStore, row: number): PoseNumbers | null {

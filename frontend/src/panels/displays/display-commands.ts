@@ -10,12 +10,12 @@ import { AddDialog } from "./add-dialog";
 export class DisplayCommands {
   constructor(
     private readonly session: Session,
-    private readonly selected: () => DisplayState | null,
-    private readonly all: () => readonly DisplayState[],
+    private readonly selectedDisplay: () => DisplayState | null,
+    private readonly selectedDisplays: () => readonly DisplayState[],
   ) {}
 
   add(): void {
-    const display = this.selected();
+    const display = this.selectedDisplay();
     new AddDialog(this.session, display?.isGroup === true ? display : null).open();
   }
 
@@ -30,36 +30,36 @@ export class DisplayCommands {
   }
 
   rename(): void {
-    const display = this.selected();
+    const display = this.selectedDisplay();
     if (!display) return;
     const { configuration } = this.session;
     const texts = strings.displays;
     askName(texts.renameTitle, texts.name, display.name, (name) => configuration.rename(display.id, name));
   }
 
-  group(): void {
+  groupSelected(): void {
     const ids = this.ids;
     if (ids.length > 0) this.session.configuration.group(ids, strings.displays.newGroup);
   }
 
   private get ids(): string[] {
-    return this.all().map(({ id }) => id);
+    return this.selectedDisplays().map(({ id }) => id);
   }
 
   /** Moves the display past its neighbor above or below, within its group. */
-  move(up: boolean): void {
-    const display = this.selected();
+  move(isUpward: boolean): void {
+    const display = this.selectedDisplay();
     if (!display) return;
     const { displays, configuration } = this.session;
     const siblings = displays.childrenOf(display.group);
     const index = siblings.indexOf(display);
     const group = display.group?.id ?? null;
-    if (up && index > 0) configuration.move([display.id], group, siblings[index - 1]?.id ?? null);
-    else if (!up && index < siblings.length - 1) configuration.move([display.id], group, siblings[index + 2]?.id ?? null);
+    if (isUpward && index > 0) configuration.move([display.id], group, siblings[index - 1]?.id ?? null);
+    else if (!isUpward && index < siblings.length - 1) configuration.move([display.id], group, siblings[index + 2]?.id ?? null);
   }
 
   /** Runs the command of a key and returns whether there was one. On the row of a property, only Add has a key. */
-  runKey(event: KeyboardEvent, onDisplay: boolean): boolean {
+  runKey(event: KeyboardEvent, isOnDisplay: boolean): boolean {
     const keys: readonly (readonly [keyof typeof SHORTCUTS, () => void])[] = [
       ["add", () => this.add()],
       ["addToo", () => this.add()],
@@ -69,14 +69,14 @@ export class DisplayCommands {
       ["moveUp", () => this.move(true)],
       ["moveDown", () => this.move(false)],
     ];
-    const found = keys.find(([name]) => matches(event, SHORTCUTS[name]));
-    if (!found || (!found[0].startsWith("add") && !onDisplay)) return false;
-    found[1]();
+    const command = keys.find(([name]) => matches(event, SHORTCUTS[name]));
+    if (!command || (!command[0].startsWith("add") && !isOnDisplay)) return false;
+    command[1]();
     return true;
   }
 
   /** Returns the context menu of a display. */
-  menu(display: DisplayState): MenuEntry[] {
+  createMenu(display: DisplayState): MenuEntry[] {
     const texts = strings.displays;
     const { session } = this;
     return [
@@ -84,14 +84,14 @@ export class DisplayCommands {
         label: display.isChecked ? texts.disable : texts.enable,
         icon: "check",
         run: () => {
-          for (const each of this.all()) session.setProperty(each.enabledId, !display.isChecked);
+          for (const candidate of this.selectedDisplays()) session.setProperty(candidate.enabledId, !display.isChecked);
         },
       },
       { label: texts.addHint, icon: "add", keys: keyText(SHORTCUTS.add), separate: true, run: () => this.add() },
       { label: texts.duplicate, icon: "duplicate", keys: keyText(SHORTCUTS.duplicate), run: () => this.duplicate() },
       { label: texts.rename, icon: "rename", keys: keyText(SHORTCUTS.rename), run: () => this.rename() },
       { label: texts.remove, icon: "remove", keys: keyText(SHORTCUTS.remove), run: () => this.remove() },
-      { label: texts.group, icon: "Group", separate: true, run: () => this.group() },
+      { label: texts.group, icon: "Group", separate: true, run: () => this.groupSelected() },
       { label: texts.moveUp, keys: keyText(SHORTCUTS.moveUp), run: () => this.move(true) },
       { label: texts.moveDown, keys: keyText(SHORTCUTS.moveDown), run: () => this.move(false) },
     ];

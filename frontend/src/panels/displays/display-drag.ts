@@ -5,7 +5,7 @@ export type DropPart = "before" | "inside" | "after";
 
 export interface DropPlace {
   group: string | null;
-  before: string | null;
+  nextSibling: string | null;
 }
 
 /** Returns the new place of a display that is dropped on another; null where it cannot go. */
@@ -18,12 +18,12 @@ export function dropPlace(
   if (target === dragged || target.isWithin(dragged)) return null;
   if (part === "inside") {
     const first = displays.find((display) => display.group === target && display !== dragged);
-    return target.isGroup ? { group: target.id, before: first?.id ?? null } : null;
+    return target.isGroup ? { group: target.id, nextSibling: first?.id ?? null } : null;
   }
   const group = target.group?.id ?? null;
-  if (part === "before") return { group, before: target.id };
+  if (part === "before") return { group, nextSibling: target.id };
   const siblings = displays.filter((display) => display.group === target.group && display !== dragged);
-  return { group, before: siblings[siblings.indexOf(target) + 1]?.id ?? null };
+  return { group, nextSibling: siblings[siblings.indexOf(target) + 1]?.id ?? null };
 }
 
 /** Returns the part of a row under the pointer; the middle of a group's row means into the group. */
@@ -38,27 +38,27 @@ interface Tree {
   /** Returns the display that an element belongs to, and its row if the element is in the display's own row. */
   displayAt(target: EventTarget | null): { display: DisplayState; row: HTMLElement | null } | null;
   displays(): readonly DisplayState[];
-  move(dragged: DisplayState, place: DropPlace): void;
+  move(display: DisplayState, place: DropPlace): void;
 }
 
 /** Makes the rows of displays draggable. */
 export class DisplayDrag {
-  private dragged: DisplayState | null = null;
-  private marked: HTMLElement | null = null;
+  private draggedDisplay: DisplayState | null = null;
+  private markedRow: HTMLElement | null = null;
 
   constructor(private readonly tree: Tree) {
     const { element } = tree;
     element.addEventListener("pointerdown", (event) => {
-      const found = tree.displayAt(event.target);
+      const item = tree.displayAt(event.target);
       // Fields and boxes in the row handle the mouse themselves.
-      const free = event.target instanceof Element && event.target.closest(".row-value, .twist") === null;
-      if (found?.row) found.row.draggable = free;
+      const isDraggable = event.target instanceof Element && event.target.closest(".row-value, .twist") === null;
+      if (item?.row) item.row.draggable = isDraggable;
     });
     element.addEventListener("dragstart", (event) => {
-      this.dragged = tree.displayAt(event.target)?.display ?? null;
-      if (!this.dragged || !event.dataTransfer) return;
+      this.draggedDisplay = tree.displayAt(event.target)?.display ?? null;
+      if (!this.draggedDisplay || !event.dataTransfer) return;
       event.dataTransfer.effectAllowed = "move";
-      event.dataTransfer.setData("text/plain", this.dragged.name);
+      event.dataTransfer.setData("text/plain", this.draggedDisplay.name);
     });
     element.addEventListener("dragover", (event) => this.onDragOver(event));
     element.addEventListener("dragleave", (event) => {
@@ -66,8 +66,8 @@ export class DisplayDrag {
     });
     element.addEventListener("drop", (event) => {
       const place = this.placeOf(event);
-      if (this.dragged && place) tree.move(this.dragged, place.place);
-      if (this.dragged) event.preventDefault();
+      if (this.draggedDisplay && place) tree.move(this.draggedDisplay, place.place);
+      if (this.draggedDisplay) event.preventDefault();
       this.end();
     });
     element.addEventListener("dragend", () => this.end());
@@ -82,23 +82,23 @@ export class DisplayDrag {
   }
 
   private placeOf(event: DragEvent): { place: DropPlace; part: DropPart; row: HTMLElement | null } | null {
-    const found = this.tree.displayAt(event.target);
-    if (!this.dragged || !found) return null;
-    const { display, row } = found;
+    const item = this.tree.displayAt(event.target);
+    if (!this.draggedDisplay || !item) return null;
+    const { display, row } = item;
     const box = row?.getBoundingClientRect();
     const part = box ? dropPart(event.clientY - box.top, box.height, display.isGroup) : "after";
-    const place = dropPlace(this.tree.displays(), this.dragged, display, part);
+    const place = dropPlace(this.tree.displays(), this.draggedDisplay, display, part);
     return place && { place, part, row };
   }
 
   private mark(row: HTMLElement | null, part?: DropPart): void {
-    if (this.marked && this.marked !== row) delete this.marked.dataset["drop"];
-    this.marked = row;
+    if (this.markedRow && this.markedRow !== row) delete this.markedRow.dataset["drop"];
+    this.markedRow = row;
     if (row && part) row.dataset["drop"] = part;
   }
 
   private end(): void {
     this.mark(null);
-    this.dragged = null;
+    this.draggedDisplay = null;
   }
 }

@@ -7,10 +7,10 @@ import { shortName } from "../../state/views/catalog";
 import { strings } from "../../strings";
 import { propertyItem } from "../../tree/property-item";
 import type { TreeItem } from "../../tree/tree-item";
-import { displayRows } from "./robot-rows";
+import { createDisplayRows } from "./robot-rows";
 
 /** Returns the rows of the Displays panel, read from the session each time the tree is drawn. */
-export function displayItems(session: Session): TreeItem[] {
+export function createDisplayItems(session: Session): TreeItem[] {
   const { displays } = session;
   if (!displays.isKnown) return [];
   const set = (id: string, value: PropertyValue): void => session.setProperty(id, value);
@@ -27,42 +27,42 @@ export function displayItems(session: Session): TreeItem[] {
       expanded: true,
       children: () => displays.globalOptions.nodes.map((node) => propertyItem(node, set)),
     },
-    statusItem("#status", strings.tree.globalStatus, displays.globalLevel, displays.globalStatus, true),
-    ...displays.childrenOf(null).map((display) => displayItem(session, display, set)),
+    createStatusItem("#status", strings.tree.globalStatus, displays.globalLevel, displays.globalStatus, true),
+    ...displays.childrenOf(null).map((display) => createDisplayItem(session, display, set)),
   ];
 }
 
-function displayItem(
+function createDisplayItem(
   session: Session,
   display: DisplayState,
   set: (id: string, value: PropertyValue) => void,
 ): TreeItem {
-  const drawn = isDrawn(display);
+  const hasDrawing = isDrawn(display);
   const status: TreeItem[] = [];
   if (display.isEnabled && display.status.length > 0) {
     const level = session.displays.levelOf(display);
     const name = `${strings.tree.status}: ${strings.tree.levels[level]}`;
-    status.push(statusItem(`${display.id}#status`, name, level, display.status, false));
+    status.push(createStatusItem(`${display.id}#status`, name, level, display.status, false));
   }
-  const within = (): TreeItem[] =>
-    session.displays.childrenOf(display).map((each) => displayItem(session, each, set));
-  const withTopics = (item: TreeItem): TreeItem =>
+  const childItems = (): TreeItem[] =>
+    session.displays.childrenOf(display).map((child) => createDisplayItem(session, child, set));
+  const addTopics = (item: TreeItem): TreeItem =>
     item.kind === "topic" ? { ...item, requestNames: (show) => offerTopics(session, display, item.name, show) } : item;
   return {
     key: display.id,
     name: display.name,
     kind: "bool",
     value: display.isChecked,
-    description: describe(display, drawn),
-    icon: drawn ? displayIcon(display.drawing) : "unknown",
+    description: describe(display, hasDrawing),
+    icon: hasDrawing ? displayIcon(display.drawing) : "unknown",
     strong: true,
     multiSelectable: true,
-    muted: !drawn || !display.isEnabled,
-    ...(drawn && display.isEnabled ? { level: worstWithin(session, display) } : {}),
-    ...(display.problems.length > 0 ? { hint: [display.name, ...display.problems.map(troubleText)].join("\n") } : {}),
-    ...(drawn ? {} : { badge: strings.tree.notDrawn }),
+    muted: !hasDrawing || !display.isEnabled,
+    ...(hasDrawing && display.isEnabled ? { level: worstLevelIn(session, display) } : {}),
+    ...(display.problems.length > 0 ? { hint: [display.name, ...display.problems.map(formatTrouble)].join("\n") } : {}),
+    ...(hasDrawing ? {} : { badge: strings.tree.notDrawn }),
     expanded: display.isGroup || (display.isEnabled && isOnlyContent(session, display)),
-    children: () => [...status, ...displayRows(display, session, set).map(withTopics), ...within()],
+    children: () => [...status, ...createDisplayRows(display, session, set).map(addTopics), ...childItems()],
     set: (value) => set(display.enabledId, value),
   };
 }
@@ -78,13 +78,13 @@ function offerTopics(
   show: (names: readonly string[]) => void,
 ): void {
   const { configuration } = session;
-  const own = display.rows.find(row)?.topics;
-  const words = own?.words ?? [];
+  const rowTopics = display.rows.find(row)?.topics;
+  const words = rowTopics?.words ?? [];
   const matchesWords = (topic: string): boolean => words.length === 0 || words.some((word) => topic.toLowerCase().includes(word));
   const forget = configuration.choicesArrived.on(({ classes, topics }) => {
     forget();
-    const known = own?.messages ?? classes.find((entry) => entry.cls === display.cls)?.messages ?? [];
-    const messages = known.length > 0 ? known : [DESCRIPTION_TYPE];
+    const messageTypes = rowTopics?.messages ?? classes.find((entry) => entry.cls === display.cls)?.messages ?? [];
+    const messages = messageTypes.length > 0 ? messageTypes : [DESCRIPTION_TYPE];
     show(topics.filter(({ topic, message }) => messages.includes(message) && matchesWords(topic)).map(({ topic }) => topic));
   });
   configuration.requestChoices();
@@ -95,16 +95,16 @@ function isDrawn(display: DisplayState): boolean {
 }
 
 /** Returns a status row as one line. */
-export function troubleText({ name, text }: StatusRow): string {
+export function formatTrouble({ name, text }: StatusRow): string {
   return `${name}: ${text}`;
 }
 
 /** Returns a description of a display, in a sentence or two. */
-export function describe(display: DisplayState, drawn = isDrawn(display)): string {
+export function describe(display: DisplayState, hasDrawing = isDrawn(display)): string {
   const name = display.cls.split("/").pop() ?? "";
   const about = (strings.displays.about as Readonly<Record<string, string | undefined>>)[name];
-  const rest = drawn ? (about ?? strings.tree.enabledHelp) : strings.tree.notDrawnHelp;
-  return `${display.cls}. ${rest}`;
+  const details = hasDrawing ? (about ?? strings.tree.enabledHelp) : strings.tree.notDrawnHelp;
+  return `${display.cls}. ${details}`;
 }
 
 /** Displays without messages; they are visible without their rows in the list. */
@@ -116,37 +116,37 @@ const SCENERY = ["Grid", "Axes", "TF", "Group"];
  */
 function isOnlyContent(session: Session, display: DisplayState): boolean {
   if (!display.cls.endsWith("/RobotModel")) return false;
-  return session.displays.displays.every((each) => each === display || SCENERY.includes(shortName(each.cls)));
+  return session.displays.displays.every((other) => other === display || SCENERY.includes(shortName(other.cls)));
 }
 
 /** Returns the worst status of a display and, for a group, of its members. */
-function worstWithin(session: Session, display: DisplayState): ShownLevel {
-  const levels = [display, ...session.displays.displays.filter((each) => each.isWithin(display))]
-    .filter((each) => each.isEnabled)
-    .map((each) => each.level);
+function worstLevelIn(session: Session, display: DisplayState): ShownLevel {
+  const levels = [display, ...session.displays.displays.filter((child) => child.isWithin(display))]
+    .filter((child) => child.isEnabled)
+    .map((child) => child.level);
   return levels.includes("error") ? "error" : levels.includes("warn") ? "warn" : "ok";
 }
 
-function statusItem(
+function createStatusItem(
   key: string,
   name: string,
   level: ShownLevel,
   rows: readonly StatusRow[],
-  strong: boolean,
+  isStrong: boolean,
 ): TreeItem {
   return {
     key,
-    name: strong ? `${name}: ${strings.tree.levels[level]}` : name,
+    name: isStrong ? `${name}: ${strings.tree.levels[level]}` : name,
     kind: "group",
     value: "",
     description: "",
     level,
     showLevelIcon: true,
-    strong,
+    strong: isStrong,
     wide: true,
     expanded: level === "error",
     children: () =>
-      worstFirst(rows).map((row) => ({
+      sortWorstFirst(rows).map((row) => ({
         key: `${key}/${row.name}`,
         name: row.name,
         kind: "group",
@@ -159,7 +159,7 @@ function statusItem(
 }
 
 /** Sorts status rows by severity: among hundreds of links, the one that fails must be visible. */
-function worstFirst(rows: readonly StatusRow[]): StatusRow[] {
+function sortWorstFirst(rows: readonly StatusRow[]): StatusRow[] {
   const order: Readonly<Record<StatusRow["level"], number>> = { error: 0, warn: 1, ok: 2 };
   return [...rows].sort((a, b) => order[a.level] - order[b.level]);
 }

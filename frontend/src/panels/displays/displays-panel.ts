@@ -11,7 +11,7 @@ import { keyText, SHORTCUTS } from "../../widgets/shortcuts";
 import type { Panel } from "../panel";
 import { DisplayCommands } from "./display-commands";
 import { DisplayDrag } from "./display-drag";
-import { describe, displayItems, troubleText } from "./display-items";
+import { describe, createDisplayItems, formatTrouble } from "./display-items";
 import { followLiveValues } from "./live-values";
 import { isExpansion, linkOfKey, linkRowPath } from "./robot-rows";
 
@@ -23,25 +23,25 @@ export class DisplaysPanel implements Panel {
   private readonly tree: TreeView;
   private readonly commands: DisplayCommands;
   private readonly filter = h("input", { class: "field" });
-  private readonly nothing = h("p", { class: "empty" }, strings.displays.nothingFound);
+  private readonly emptyNote = h("p", { class: "empty" }, strings.displays.nothingFound);
   /** Hidden until a row is selected. */
   private readonly help = h("div", { class: "help", aria: { live: "polite" } });
   private explained = "";
   private readonly needsDisplay: HTMLButtonElement[] = [];
 
   constructor(private readonly session: Session) {
-    this.tree = new TreeView(strings.panels.displays, () => this.items(), () => session.frames.names);
+    this.tree = new TreeView(strings.panels.displays, () => this.listItems(), () => session.frames.names);
     this.tree.preserveIn(session.memory, this.id);
-    this.commands = new DisplayCommands(session, () => this.selected, () => this.selectedAll);
-    this.nothing.hidden = this.help.hidden = true;
-    this.element = h("div", { class: "panel displays-panel" }, this.toolbar(), this.filterBar(), this.nothing, this.tree.element, this.help);
+    this.commands = new DisplayCommands(session, () => this.selectedDisplay, () => this.selectedAll);
+    this.emptyNote.hidden = this.help.hidden = true;
+    this.element = h("div", { class: "panel displays-panel" }, this.createToolbar(), this.filterBar(), this.emptyNote, this.tree.element, this.help);
     this.listen();
     this.bindKeysAndMouse();
     this.enableButtons();
   }
 
   /** The display to which the selected row belongs. */
-  private get selected(): DisplayState | null {
+  private get selectedDisplay(): DisplayState | null {
     return this.displayOf(this.tree.selection);
   }
 
@@ -51,10 +51,10 @@ export class DisplaysPanel implements Panel {
     return [...new Set(displays)];
   }
 
-  private toolbar(): HTMLElement {
+  private createToolbar(): HTMLElement {
     const texts = strings.displays;
     const { commands } = this;
-    const tool = (label: string, name: Parameters<typeof icon>[0], keys: string, run: () => void): HTMLButtonElement => {
+    const createTool = (label: string, name: Parameters<typeof icon>[0], keys: string, run: () => void): HTMLButtonElement => {
       const toolButton = button(`${label} (${keys})`, run, "tool bare", icon(name));
       this.needsDisplay.push(toolButton);
       return toolButton;
@@ -63,9 +63,9 @@ export class DisplaysPanel implements Panel {
       "div",
       { class: "toolbar", role: "toolbar", aria: { label: strings.panels.displays } },
       button(`${texts.addHint} (${keyText(SHORTCUTS.add)})`, () => commands.add(), "tool", icon("add"), texts.add),
-      tool(texts.duplicate, "duplicate", keyText(SHORTCUTS.duplicate), () => commands.duplicate()),
-      tool(texts.rename, "rename", keyText(SHORTCUTS.rename), () => commands.rename()),
-      tool(texts.remove, "remove", keyText(SHORTCUTS.remove), () => commands.remove()),
+      createTool(texts.duplicate, "duplicate", keyText(SHORTCUTS.duplicate), () => commands.duplicate()),
+      createTool(texts.rename, "rename", keyText(SHORTCUTS.rename), () => commands.rename()),
+      createTool(texts.remove, "remove", keyText(SHORTCUTS.remove), () => commands.remove()),
     );
   }
 
@@ -83,9 +83,9 @@ export class DisplaysPanel implements Panel {
     return h("div", { class: "search-box" }, icon("search"), this.filter);
   }
 
-  private items(): ReturnType<typeof filterItems> {
-    const items = filterItems(displayItems(this.session), this.filter.value);
-    this.nothing.hidden = items.length > 0;
+  private listItems(): ReturnType<typeof filterItems> {
+    const items = filterItems(createDisplayItems(this.session), this.filter.value);
+    this.emptyNote.hidden = items.length > 0;
     return items;
   }
 
@@ -96,8 +96,8 @@ export class DisplaysPanel implements Panel {
     }
     displays.valueChanged.on(({ node, display }) => {
       if (!display || !isExpansion(node)) return;
-      const below = [`${display.id}/Links/`, `${display.id}/Joints/`];
-      this.tree.resetExpansion((key) => below.some((start) => key.startsWith(start)));
+      const prefixes = [`${display.id}/Links/`, `${display.id}/Joints/`];
+      this.tree.resetExpansion((key) => prefixes.some((start) => key.startsWith(start)));
     });
     displays.statusChanged.on(this.tree.refresh);
     displays.statusChanged.on((display) => {
@@ -112,8 +112,8 @@ export class DisplaysPanel implements Panel {
     displays.enabledChanged.on(this.tree.refresh);
     displays.treeChanged.on(() => {
       this.enableButtons();
-      const { selected } = this;
-      if (selected && this.tree.selection === selected.id) this.explainDisplay(selected);
+      const { selectedDisplay } = this;
+      if (selectedDisplay && this.tree.selection === selectedDisplay.id) this.explainDisplay(selectedDisplay);
     });
     frames.tableChanged.on(this.tree.refresh);
     followLiveValues(this.tree, this.session);
@@ -132,38 +132,38 @@ export class DisplaysPanel implements Panel {
     tree.element.addEventListener(
       "keydown",
       (event) => {
-        const onRow = event.target instanceof Element && event.target.matches("[role=treeitem], .check");
-        const onDisplay = tree.selections.length > 0 && tree.selections.every((key) => session.displays.find(key));
-        if (!onRow || !commands.runKey(event, onDisplay)) return;
+        const isOnRow = event.target instanceof Element && event.target.matches("[role=treeitem], .check");
+        const isOnDisplay = tree.selections.length > 0 && tree.selections.every((key) => session.displays.find(key));
+        if (!isOnRow || !commands.runKey(event, isOnDisplay)) return;
         event.preventDefault();
         event.stopPropagation();
       },
       true,
     );
     tree.element.addEventListener("contextmenu", (event) => {
-      const found = tree.itemAt(event.target);
-      const display = this.displayOf(found?.item.key ?? null);
-      if (!found || !display || (event.target instanceof Element && event.target.matches("input[type=text]"))) return;
+      const item = tree.itemAt(event.target);
+      const display = this.displayOf(item?.item.key ?? null);
+      if (!item || !display || (event.target instanceof Element && event.target.matches("input[type=text]"))) return;
       event.preventDefault();
-      if (!tree.selections.includes(found.item.key)) found.element.focus();
+      if (!tree.selections.includes(item.item.key)) item.element.focus();
       const texts = strings.displays;
-      const box = found.element.getBoundingClientRect();
+      const box = item.element.getBoundingClientRect();
       const [x, y] = event.clientX === 0 && event.clientY === 0 ? [box.left + 24, box.bottom] : [event.clientX, event.clientY];
-      openMenuAt(x, y, found.element, [
-        ...commands.menu(display),
-        { label: texts.expandAll, icon: "expand", separate: true, run: () => tree.expandAll(found.item, true) },
-        { label: texts.collapseAll, icon: "collapse", run: () => tree.expandAll(found.item, false) },
+      openMenuAt(x, y, item.element, [
+        ...commands.createMenu(display),
+        { label: texts.expandAll, icon: "expand", separate: true, run: () => tree.expandAll(item.item, true) },
+        { label: texts.collapseAll, icon: "collapse", run: () => tree.expandAll(item.item, false) },
       ]);
     });
     new DisplayDrag({
       element: tree.element,
       displayAt: (target) => {
-        const found = tree.itemAt(target);
-        const display = this.displayOf(found?.item.key ?? null);
-        return found && display && { display, row: found.item.key === display.id ? found.element : null };
+        const item = tree.itemAt(target);
+        const display = this.displayOf(item?.item.key ?? null);
+        return item && display && { display, row: item.item.key === display.id ? item.element : null };
       },
       displays: () => session.displays.displays,
-      move: (display, { group, before }) => session.configuration.move([display.id], group, before),
+      move: (display, { group, nextSibling }) => session.configuration.move([display.id], group, nextSibling),
     });
   }
 
@@ -173,8 +173,8 @@ export class DisplaysPanel implements Panel {
   }
 
   private enableButtons(): void {
-    const none = this.selected === null;
-    for (const each of this.needsDisplay) each.disabled = none;
+    const isNoneSelected = this.selectedDisplay === null;
+    for (const control of this.needsDisplay) control.disabled = isNoneSelected;
   }
 
   private explain(name: string, description: string, troubles: readonly StatusRow[] = []): void {
@@ -184,7 +184,7 @@ export class DisplaysPanel implements Panel {
     this.tree.whenReleased(() => {
       if (key !== this.explained) return;
       this.help.hidden = description === "" && troubles.length === 0;
-      const problems = troubles.map((row) => h("p", { class: `trouble ${row.level}` }, icon(LEVEL_ICONS[row.level], `level-${row.level}`), troubleText(row)));
+      const problems = troubles.map((row) => h("p", { class: `trouble ${row.level}` }, icon(LEVEL_ICONS[row.level], `level-${row.level}`), formatTrouble(row)));
       this.help.replaceChildren(h("strong", {}, name), ...problems, h("p", {}, description));
     });
   }
@@ -195,12 +195,12 @@ export class DisplaysPanel implements Panel {
   }
 
   private selectLink(key: string): void {
-    const found = linkOfKey(this.session, key);
+    const linkName = linkOfKey(this.session, key);
     const { selectedLink } = this.session.selection;
     // Revealing the row of a selected link must not clear the selection of other links.
-    if (found && selectedLink?.display === found.display.id && selectedLink.link.name === found.link) return;
-    const link = found && this.session.robots.get(found.display.id)?.links.find((each) => each.name === found.link);
-    if (found && link) this.session.selection.select({ display: found.display.id, link });
+    if (linkName && selectedLink?.display === linkName.display.id && selectedLink.link.name === linkName.link) return;
+    const link = linkName && this.session.robots.get(linkName.display.id)?.links.find((candidate) => candidate.name === linkName.link);
+    if (linkName && link) this.session.selection.select({ display: linkName.display.id, link });
   }
 
   private showSelection(): void {

@@ -5,7 +5,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { propertyItem } from "../../tree/property-item";
 import type { TreeItem } from "../../tree/tree-item";
-import { detailRows } from "./detail-rows";
+import { createDetailRows } from "./detail-rows";
 
 type SetValue = (id: string, value: PropertyValue) => void;
 
@@ -15,21 +15,21 @@ const LINK_DETAILS = "Expand Link Details";
 const JOINT_DETAILS = "Expand Joint Details";
 
 /** RViz's Link Tree Styles: the title of the top row, whether it is a tree, and whether it lists links and joints. */
-const STYLES: Readonly<Record<string, { title: string; tree: boolean; links: boolean; joints: boolean }>> = {
-  "Links in Alphabetic Order": { title: "Links", tree: false, links: true, joints: false },
-  "Joints in Alphabetic Order": { title: "Joints", tree: false, links: false, joints: true },
-  "Tree of links": { title: "Link Tree", tree: true, links: true, joints: false },
-  "Tree of links and joints": { title: "Link/Joint Tree", tree: true, links: true, joints: true },
+const STYLES: Readonly<Record<string, { title: string; isTree: boolean; hasLinks: boolean; hasJoints: boolean }>> = {
+  "Links in Alphabetic Order": { title: "Links", isTree: false, hasLinks: true, hasJoints: false },
+  "Joints in Alphabetic Order": { title: "Joints", isTree: false, hasLinks: false, hasJoints: true },
+  "Tree of links": { title: "Link Tree", isTree: true, hasLinks: true, hasJoints: false },
+  "Tree of links and joints": { title: "Link/Joint Tree", isTree: true, hasLinks: true, hasJoints: true },
 };
 
 /**
  * Returns the rows of a display. Most are shown as the server sent them; the links and joints of a RobotModel arrive as
  * two lists and are arranged by its Link Tree Style.
  */
-export function displayRows(display: DisplayState, session: Session, set: SetValue): TreeItem[] {
+export function createDisplayRows(display: DisplayState, session: Session, set: SetValue): TreeItem[] {
   const robot = session.robots.get(display.id);
   return display.rows.nodes.flatMap((node) => {
-    if (!robot || !isRobotRow(node)) return [withDetails(node, display, session, set)];
+    if (!robot || !isRobotRow(node)) return [createRowWithDetails(node, display, session, set)];
     return node.name === "Links" ? [new RobotTree(display, session, robot, set).top] : [];
   });
 }
@@ -59,13 +59,13 @@ function isRobotRow(node: PropertyNode): boolean {
   return (node.name === "Links" || node.name === "Joints") && node.kind === "group";
 }
 
-function withDetails(node: PropertyNode, display: DisplayState, session: Session, set: SetValue): TreeItem {
+function createRowWithDetails(node: PropertyNode, display: DisplayState, session: Session, set: SetValue): TreeItem {
   if (node.children.length === 0 && node.details === null) return propertyItem(node, set);
   return {
     ...propertyItem(node, set),
     children: () => [
-      ...node.children.map((child) => withDetails(child, display, session, set)),
-      ...detailRows(node, display, session),
+      ...node.children.map((child) => createRowWithDetails(child, display, session, set)),
+      ...createDetailRows(node, display, session),
     ],
   };
 }
@@ -73,10 +73,10 @@ function withDetails(node: PropertyNode, display: DisplayState, session: Session
 /** The rows of one robot, arranged by its style. */
 class RobotTree {
   private readonly options: PropertyNode | undefined;
-  private readonly style: { title: string; tree: boolean; links: boolean; joints: boolean };
+  private readonly style: { title: string; isTree: boolean; hasLinks: boolean; hasJoints: boolean };
   private readonly links: ReadonlyMap<string, PropertyNode>;
   private readonly joints: ReadonlyMap<string, PropertyNode>;
-  private readonly below = new Map<string, JointScene[]>();
+  private readonly jointsByParent = new Map<string, JointScene[]>();
 
   constructor(
     private readonly display: DisplayState,
@@ -85,27 +85,27 @@ class RobotTree {
     private readonly set: SetValue,
   ) {
     this.options = display.rows.find("Links");
-    const standard = { title: "Links", tree: false, links: true, joints: false };
+    const standard = { title: "Links", isTree: false, hasLinks: true, hasJoints: false };
     this.style = STYLES[display.rows.text("", "Links", STYLE)] ?? standard;
-    const byName = (group: string): ReadonlyMap<string, PropertyNode> =>
+    const nodesByName = (group: string): ReadonlyMap<string, PropertyNode> =>
       new Map(display.rows.find(group)?.children.filter((row) => row.details).map((row) => [row.name, row]));
-    this.links = byName("Links");
-    this.joints = byName("Joints");
+    this.links = nodesByName("Links");
+    this.joints = nodesByName("Joints");
     for (const joint of robot.joints) {
-      const siblings = this.below.get(joint.parent);
+      const siblings = this.jointsByParent.get(joint.parent);
       if (siblings) siblings.push(joint);
-      else this.below.set(joint.parent, [joint]);
+      else this.jointsByParent.set(joint.parent, [joint]);
     }
   }
 
   /** The top row. */
   get top(): TreeItem {
     const { options, style } = this;
-    const shown = (node: PropertyNode): boolean =>
+    const isShown = (node: PropertyNode): boolean =>
       node.details === null &&
-      (node.name !== TREE || style.tree) &&
-      (node.name !== LINK_DETAILS || style.links) &&
-      (node.name !== JOINT_DETAILS || style.joints);
+      (node.name !== TREE || style.isTree) &&
+      (node.name !== LINK_DETAILS || style.hasLinks) &&
+      (node.name !== JOINT_DETAILS || style.hasJoints);
     return {
       key: options?.id ?? "",
       name: style.title,
@@ -113,8 +113,8 @@ class RobotTree {
       value: null,
       description: options?.description ?? "",
       children: () => [
-        ...(options?.children.filter(shown).map((node) => propertyItem(node, this.set)) ?? []),
-        ...this.rows(),
+        ...(options?.children.filter(isShown).map((node) => propertyItem(node, this.set)) ?? []),
+        ...this.createRows(),
       ],
     };
   }
@@ -124,18 +124,18 @@ class RobotTree {
     const path: string[] = [];
     for (let name: string | undefined = link; name !== undefined; ) {
       const joint: JointScene | undefined = parents.get(name);
-      const rows = [this.style.joints && joint ? this.joints.get(joint.name) : undefined];
-      if (this.style.links) rows.push(this.links.get(name));
+      const rows = [this.style.hasJoints && joint ? this.joints.get(joint.name) : undefined];
+      if (this.style.hasLinks) rows.push(this.links.get(name));
       path.unshift(...rows.flatMap((row) => (row ? [row.id] : [])));
-      name = this.style.tree ? joint?.parent : undefined;
+      name = this.style.isTree ? joint?.parent : undefined;
     }
     return path.length > 0 && this.options ? [this.display.id, this.options.id, ...path] : null;
   }
 
-  private rows(): TreeItem[] {
-    if (!this.style.tree) {
-      const nodes = this.style.links ? this.links : this.joints;
-      return [...nodes.values()].map((node) => this.row(node, () => []));
+  private createRows(): TreeItem[] {
+    if (!this.style.isTree) {
+      const nodes = this.style.hasLinks ? this.links : this.joints;
+      return [...nodes.values()].map((node) => this.createRow(node, () => []));
     }
     const children = new Set(this.robot.joints.map((joint) => joint.child));
     return this.robot.links.filter((link) => !children.has(link.name)).flatMap((link) => this.linkRow(link.name));
@@ -143,24 +143,24 @@ class RobotTree {
 
   private linkRow(link: string): TreeItem[] {
     const node = this.links.get(link);
-    const below = (): TreeItem[] => (this.below.get(link) ?? []).flatMap((joint) => this.jointRow(joint));
-    return node ? [this.row(node, below)] : below();
+    const childRows = (): TreeItem[] => (this.jointsByParent.get(link) ?? []).flatMap((joint) => this.createJointRow(joint));
+    return node ? [this.createRow(node, childRows)] : childRows();
   }
 
-  private jointRow(joint: JointScene): TreeItem[] {
-    const node = this.style.joints ? this.joints.get(joint.name) : undefined;
+  private createJointRow(joint: JointScene): TreeItem[] {
+    const node = this.style.hasJoints ? this.joints.get(joint.name) : undefined;
     if (!node) return this.linkRow(joint.child);
-    return [this.row(node, () => this.linkRow(joint.child))];
+    return [this.createRow(node, () => this.linkRow(joint.child))];
   }
 
   /** Returns the row of a link or joint. In a tree, its details are below a row of their own. */
-  private row(node: PropertyNode, below: () => TreeItem[]): TreeItem {
+  private createRow(node: PropertyNode, childRows: () => TreeItem[]): TreeItem {
     const { rows } = this.display;
-    const { tree } = this.style;
-    const open = rows.bool(false, "Links", node.details === "link" ? LINK_DETAILS : JOINT_DETAILS);
+    const { isTree } = this.style;
+    const isOpen = rows.bool(false, "Links", node.details === "link" ? LINK_DETAILS : JOINT_DETAILS);
     const details = (): TreeItem[] => [
       ...node.children.map((child) => propertyItem(child, this.set)),
-      ...detailRows(node, this.display, this.session),
+      ...createDetailRows(node, this.display, this.session),
     ];
     const group: TreeItem = {
       key: `${node.id}#Details`,
@@ -168,13 +168,13 @@ class RobotTree {
       kind: "group",
       value: null,
       description: strings.details.Details,
-      expanded: open,
+      expanded: isOpen,
       children: details,
     };
     return {
       ...propertyItem(node, this.set),
-      expanded: tree ? rows.bool(false, "Links", TREE) : open,
-      children: () => (tree ? [group, ...below()] : details()),
+      expanded: isTree ? rows.bool(false, "Links", TREE) : isOpen,
+      children: () => (isTree ? [group, ...childRows()] : details()),
     };
   }
 }

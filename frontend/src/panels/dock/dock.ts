@@ -204,7 +204,7 @@ export class Dock {
   private content(name: string): IContentRenderer {
     const panel = this.panels.get(name);
     if (!panel) throw new Error(`no panel '${name}'`);
-    return { element: panel.element, init: () => panel.opened?.(), dispose: () => panel.closed?.() };
+    return { element: panel.element, init: () => panel.onOpened?.(), dispose: () => panel.onClosed?.() };
   }
 
   private restore({ arrangement }: Layout): boolean {

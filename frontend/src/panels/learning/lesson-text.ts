@@ -2,7 +2,7 @@ import { button, h } from "../../dom";
 import { icon } from "../../icons";
 import { strings } from "../../strings";
 import { copyText } from "../../widgets/copy-text";
-import { safeHtml } from "../source-editor/safe-html";
+import { sanitizeHtml } from "../source-editor/safe-html";
 
 /** The class of blocks that show output. */
 const OUTPUT = "language-text";
@@ -10,7 +10,7 @@ const OUTPUT = "language-text";
 /** Returns the text of a lesson as an element; code blocks get a button that copies them, unless they show output. */
 export function lessonText(html: string, className: string): HTMLElement {
   const element = h("div", { class: className });
-  element.innerHTML = safeHtml(html, { allowsImages: true });
+  element.innerHTML = sanitizeHtml(html, { allowsImages: true });
   for (const code of element.querySelectorAll<HTMLElement>("pre > code")) {
     const box = h("div", { class: "lesson-code" });
     code.parentElement?.replaceWith(box);

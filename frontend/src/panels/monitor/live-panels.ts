@@ -9,15 +9,15 @@ import { TeleopPanel } from "./teleop-panel";
 import { TopicsPanel } from "./topics-panel";
 
 /** Creates the panels for live data; `open` brings one to the front, `showTopic` adds the display of a topic. */
-export function livePanels(monitor: MonitorState, open: (id: PanelId) => void, showTopic: (topic: string) => void): Panel[] {
+export function createLivePanels(monitor: MonitorState, open: (id: PanelId) => void, showTopic: (topic: string) => void): Panel[] {
   const { plots, topics } = monitor;
-  const plot = (topic: string, path: string): void => {
+  const plotField = (topic: string, path: string): void => {
     open("plot");
     plots.addSeries(plots.plots[0] ?? plots.addPlot(), { topic, path });
   };
   return [
     new PlotPanel(plots, topics),
-    new TopicsPanel(topics, plot, showTopic),
+    new TopicsPanel(topics, plotField, showTopic),
     new NodeGraphPanel(monitor.graph),
     new ParametersPanel(monitor.parameters),
     new LogPanel(monitor.log),

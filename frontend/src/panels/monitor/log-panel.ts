@@ -19,26 +19,26 @@ export class LogPanel implements Panel {
   private readonly list: VirtualList<LogLine>;
   private readonly node = h("select", { class: "choice", title: strings.monitor.log.node, aria: { label: strings.monitor.log.node } });
   private readonly pause: HTMLButtonElement;
-  private readonly newest: HTMLButtonElement;
+  private readonly newestButton: HTMLButtonElement;
   private readonly count = h("span", { class: "note" });
   private readonly details = h("div", { class: "log-details" });
-  private chosen: LogLine | null = null;
+  private chosenLine: LogLine | null = null;
   private nodes: string | null = null;
 
   constructor(private readonly state: LogState) {
     const texts = strings.monitor.log;
-    this.list = new VirtualList<LogLine>(ROW_PX, (line) => this.row(line), () => this.showFollowing());
+    this.list = new VirtualList<LogLine>(ROW_PX, (line) => this.createRow(line), () => this.showFollowing());
     this.list.element.setAttribute("role", "region");
     this.list.element.setAttribute("aria-label", texts.list);
     this.list.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.pause = button(texts.pauseHint, () => state.setPaused(!state.isPaused), "tool", strings.monitor.pause);
-    this.newest = button(texts.newestHint, () => this.list.follow(), "tool", icon("follow"), texts.newest);
+    this.newestButton = button(texts.newestHint, () => this.list.follow(), "tool", icon("follow"), texts.newest);
     const copy = button(texts.copyHint, () => this.copy(copy), "tool", icon("copy"), texts.copy);
     this.node.addEventListener("change", () => state.setNode(this.node.value));
     const filters = h(
       "div",
       { class: "toolbar" },
-      this.levels(),
+      this.createLevels(),
       this.node,
       textField(strings.monitor.filter, (text) => state.setText(text)),
       h("span", { class: "spacer" }),
@@ -51,7 +51,7 @@ export class LogPanel implements Panel {
       button(texts.clearHint, () => state.clear(), "tool", icon("clear"), strings.monitor.clear),
       copy,
       h("span", { class: "spacer" }),
-      this.newest,
+      this.newestButton,
     );
     const head = h("div", { class: "log-row log-head" });
     for (const text of [texts.level, texts.time, texts.node, texts.message, texts.location]) head.append(h("span", {}, text));
@@ -62,15 +62,15 @@ export class LogPanel implements Panel {
     this.showFollowing();
   }
 
-  opened(): void {
+  onOpened(): void {
     this.state.setOpen(true);
   }
 
-  closed(): void {
+  onClosed(): void {
     this.state.setOpen(false);
   }
 
-  private levels(): HTMLElement {
+  private createLevels(): HTMLElement {
     const group = h("div", { class: "segmented", role: "group", aria: { label: strings.monitor.log.level } });
     for (const level of LEVELS) {
       const name = strings.monitor.log.levels[level];
@@ -84,9 +84,9 @@ export class LogPanel implements Panel {
         name,
       );
       const mark = (): void => {
-        const on = this.state.levels.has(level);
-        toggle.classList.toggle("on", on);
-        toggle.setAttribute("aria-pressed", String(on));
+        const isOn = this.state.levels.has(level);
+        toggle.classList.toggle("on", isOn);
+        toggle.setAttribute("aria-pressed", String(isOn));
       };
       mark();
       group.append(toggle);
@@ -105,17 +105,17 @@ export class LogPanel implements Panel {
     const { nodes } = this.state;
     if (nodes.join("\n") === this.nodes) return;
     this.nodes = nodes.join("\n");
-    const chosen = this.node.value;
+    const chosenNode = this.node.value;
     this.node.replaceChildren(new Option(texts.allNodes, ""), ...nodes.map((name) => new Option(name)));
-    this.node.value = nodes.includes(chosen) ? chosen : "";
+    this.node.value = nodes.includes(chosenNode) ? chosenNode : "";
   }
 
   private showFollowing(): void {
-    this.newest.classList.toggle("on", this.list.isFollowing);
-    this.newest.setAttribute("aria-pressed", String(this.list.isFollowing));
+    this.newestButton.classList.toggle("on", this.list.isFollowing);
+    this.newestButton.setAttribute("aria-pressed", String(this.list.isFollowing));
   }
 
-  private row(line: LogLine): HTMLElement {
+  private createRow(line: LogLine): HTMLElement {
     const level = levelOf(line);
     const row = h(
       "div",
@@ -126,17 +126,17 @@ export class LogPanel implements Panel {
       h("span", { class: "log-message" }, line.message),
       h("span", { class: "note" }, placeOf(line)),
     );
-    row.classList.toggle("chosen", line === this.chosen);
-    row.addEventListener("click", () => this.choose(line === this.chosen ? null : line));
+    row.classList.toggle("chosen", line === this.chosenLine);
+    row.addEventListener("click", () => this.choose(line === this.chosenLine ? null : line));
     return row;
   }
 
   /** Moves to the previous or next record with the arrow keys. */
   private onKeyDown(event: KeyboardEvent): void {
     const { shownLines } = this.state;
-    const at = this.chosen ? shownLines.indexOf(this.chosen) : shownLines.length;
-    if (event.key === "ArrowUp") this.choose(shownLines[Math.max(0, at - 1)] ?? null);
-    else if (event.key === "ArrowDown") this.choose(shownLines[Math.min(shownLines.length - 1, at + 1)] ?? null);
+    const index = this.chosenLine ? shownLines.indexOf(this.chosenLine) : shownLines.length;
+    if (event.key === "ArrowUp") this.choose(shownLines[Math.max(0, index - 1)] ?? null);
+    else if (event.key === "ArrowDown") this.choose(shownLines[Math.min(shownLines.length - 1, index + 1)] ?? null);
     else if (event.key === "Escape") this.choose(null);
     else if (event.key === "End") this.list.follow();
     else return;
@@ -147,19 +147,19 @@ export class LogPanel implements Panel {
 
   /** Shows a record in full below the list. */
   private choose(line: LogLine | null): void {
-    this.chosen = line;
+    this.chosenLine = line;
     this.list.show(this.state.shownLines);
     this.details.hidden = line === null;
     if (!line) return;
-    const place = line.file === "" ? "" : `${line.file}:${line.line} ${line.function}`;
-    this.details.replaceChildren(h("pre", {}, line.message), h("div", { class: "note" }, place));
+    const source = line.file === "" ? "" : `${line.file}:${line.line} ${line.function}`;
+    this.details.replaceChildren(h("pre", {}, line.message), h("div", { class: "note" }, source));
   }
 
-  private copy(from: HTMLButtonElement): void {
+  private copy(button: HTMLButtonElement): void {
     const text = this.state.shownLines.map((line) => formatLine(line, strings.monitor.log.names[levelOf(line)])).join("\n");
-    void copyText(text).then((copied) => {
-      from.classList.toggle("done", copied);
-      from.title = copied ? strings.monitor.log.copied : strings.monitor.log.copyHint;
+    void copyText(text).then((isCopied) => {
+      button.classList.toggle("done", isCopied);
+      button.title = isCopied ? strings.monitor.log.copied : strings.monitor.log.copyHint;
     });
   }
 }

@@ -9,7 +9,7 @@ interface Row {
   readonly children: HTMLElement;
   readonly toggle: HTMLButtonElement | null;
   /** Shows the number of elements that are omitted. */
-  readonly omitted: HTMLElement;
+  readonly omittedNote: HTMLElement;
 }
 
 /** A message as a tree that unfolds row by row; a new message changes the values and keeps the unfolded rows. */
@@ -20,7 +20,7 @@ export class MessageTree {
   private fields: readonly MessageField[] = [];
 
   /** `plot` is called with the path of a numeric field whose plot button is clicked. */
-  constructor(private readonly plot: (path: string) => void) {}
+  constructor(private readonly plotField: (path: string) => void) {}
 
   show(fields: readonly MessageField[]): void {
     // Short messages are unfolded from the start.
@@ -32,31 +32,31 @@ export class MessageTree {
   private fill(box: HTMLElement, fields: readonly MessageField[], prefix: string, end: HTMLElement | null): void {
     const rows = fields.map((field) => {
       const path = field.name.startsWith("[") ? `${prefix}${field.name}` : prefix === "" ? field.name : `${prefix}.${field.name}`;
-      const row = this.row(path, field);
+      const row = this.rowFor(path, field);
       if (row.value.textContent !== field.value) row.value.textContent = field.value;
-      const open = this.openPaths.has(path);
-      row.toggle?.setAttribute("aria-expanded", String(open));
-      row.children.hidden = !open;
-      if (open) {
-        const omitted = field.omitted > 0 ? strings.monitor.topics.omitted(field.omitted) : "";
-        if (row.omitted.textContent !== omitted) row.omitted.textContent = omitted;
-        this.fill(row.children, field.children, path, row.omitted);
+      const isOpen = this.openPaths.has(path);
+      row.toggle?.setAttribute("aria-expanded", String(isOpen));
+      row.children.hidden = !isOpen;
+      if (isOpen) {
+        const omittedText = field.omitted > 0 ? strings.monitor.topics.omitted(field.omitted) : "";
+        if (row.omittedNote.textContent !== omittedText) row.omittedNote.textContent = omittedText;
+        this.fill(row.children, field.children, path, row.omittedNote);
       }
       return row.element;
     });
     if (end) rows.push(end);
-    const same = rows.length === box.childElementCount && rows.every((row, index) => row === box.children[index]);
-    if (!same) box.replaceChildren(...rows);
+    const isUnchanged = rows.length === box.childElementCount && rows.every((row, index) => row === box.children[index]);
+    if (!isUnchanged) box.replaceChildren(...rows);
   }
 
-  private row(path: string, field: MessageField): Row {
-    const known = this.rows.get(path);
-    const nests = field.children.length > 0;
-    if (known && (known.toggle !== null) === nests) return known;
+  private rowFor(path: string, field: MessageField): Row {
+    const existing = this.rows.get(path);
+    const hasChildren = field.children.length > 0;
+    if (existing && (existing.toggle !== null) === hasChildren) return existing;
     const value = h("span", { class: "message-value" });
     const children = h("div", { class: "message-children" });
-    const toggle = nests ? button(field.name, () => this.toggle(path), "expander", icon("chevron")) : null;
-    const numeric = !nests && isNumeric(field);
+    const toggle = hasChildren ? button(field.name, () => this.toggle(path), "expander", icon("chevron")) : null;
+    const isNumber = !hasChildren && isNumeric(field);
     const head = h(
       "div",
       { class: "message-row", title: field.kind },
@@ -64,10 +64,10 @@ export class MessageTree {
       h("span", { class: "message-name" }, field.name),
       value,
       h("span", { class: "note kind" }, field.kind),
-      numeric ? button(strings.monitor.topics.plot, () => this.plot(path), "tool bare", icon("plot")) : null,
+      isNumber ? button(strings.monitor.topics.plot, () => this.plotField(path), "tool bare", icon("plot")) : null,
     );
-    const omitted = h("div", { class: "note" });
-    const node = { element: h("div", {}, head, children), value, children, toggle, omitted };
+    const omittedNote = h("div", { class: "note" });
+    const node = { element: h("div", {}, head, children), value, children, toggle, omittedNote };
     this.rows.set(path, node);
     return node;
   }

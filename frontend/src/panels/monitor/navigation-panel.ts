@@ -20,15 +20,15 @@ export class NavigationPanel implements Panel {
 
   constructor(private readonly state: NavigationState) {
     const texts = strings.monitor.navigation;
-    const value = (): HTMLElement => h("output", { class: "navigation-value numeric" });
+    const createValue = (): HTMLElement => h("output", { class: "navigation-value numeric" });
     this.values = {
-      navigation: value(),
-      localization: value(),
-      goal: value(),
-      eta: value(),
-      distance: value(),
-      taken: value(),
-      recoveries: value(),
+      navigation: createValue(),
+      localization: createValue(),
+      goal: createValue(),
+      eta: createValue(),
+      distance: createValue(),
+      taken: createValue(),
+      recoveries: createValue(),
     };
     const make = (command: NavigationCommand): HTMLButtonElement =>
       button(texts.hints[command], () => state.sendCommand(command), "tool", texts.commands[command]);
@@ -51,7 +51,7 @@ export class NavigationPanel implements Panel {
       ),
     );
     state.changed.on(() => this.show());
-    onVisibilityChange(this.element, (seen) => state.setOpen(seen));
+    onVisibilityChange(this.element, (isVisible) => state.setOpen(isVisible));
     this.show();
   }
 
@@ -62,15 +62,15 @@ export class NavigationPanel implements Panel {
       this.values[row].textContent = text;
       this.values[row].dataset["state"] = kind;
     };
-    const seconds = (value: number | null | undefined): string => (value === null || value === undefined ? texts.none : texts.duration(value));
+    const formatSeconds = (value: number | null | undefined): string => (value === null || value === undefined ? texts.none : texts.duration(value));
     for (const manager of ["navigation", "localization"] as const) {
       const state = lastState?.[manager] ?? "unknown";
       put(manager, texts.states[state], state);
     }
     const goal = lastState?.goal ?? "none";
     put("goal", texts.goals[goal], goal);
-    put("eta", seconds(lastState?.eta));
-    put("taken", seconds(lastState?.taken));
+    put("eta", formatSeconds(lastState?.eta));
+    put("taken", formatSeconds(lastState?.taken));
     put("distance", lastState?.distance === null || lastState?.distance === undefined ? texts.none : `${lastState.distance.toFixed(2)} m`);
     put("recoveries", lastState?.recoveries === null || lastState?.recoveries === undefined ? texts.none : String(lastState.recoveries));
     this.problem.textContent = lastState?.problem ?? "";
@@ -81,13 +81,13 @@ export class NavigationPanel implements Panel {
   private enable(): void {
     const { lastState } = this.state;
     const managers = lastState ? [lastState.navigation, lastState.localization].filter((state) => state !== "unknown") : [];
-    const active = managers.includes("active");
-    const idle = managers.includes("inactive");
+    const isActive = managers.includes("active");
+    const isIdle = managers.includes("inactive");
     const can: Record<NavigationCommand, boolean> = {
-      startup: idle,
-      pause: active,
-      resume: idle,
-      reset: active || idle,
+      startup: isIdle,
+      pause: isActive,
+      resume: isIdle,
+      reset: isActive || isIdle,
       cancel: lastState?.goal === "active",
     };
     for (const [command, element] of Object.entries(this.buttons) as [NavigationCommand, HTMLButtonElement][]) {

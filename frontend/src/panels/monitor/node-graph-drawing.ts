@@ -22,7 +22,7 @@ export class NodeGraphDrawing {
    */
   private viewMode: "legible" | "all" | "chosen" = "legible";
   private boxes: ReadonlyMap<string, PlacedBox> = new Map();
-  private marked: string | null = null;
+  private markedId: string | null = null;
 
   constructor(
     label: string,
@@ -30,7 +30,7 @@ export class NodeGraphDrawing {
   ) {
     this.element.setAttribute("aria-label", label);
     const svg = make("svg", {});
-    svg.append(arrowHeads(), this.scene);
+    svg.append(createArrowHeads(), this.scene);
     this.element.append(svg);
     this.pan = new PanZoom(this.element, (x, y, scale) => this.onMoved(x, y, scale), () => this.fit());
     this.element.addEventListener("click", (event) => this.onClick(event.target as Element));
@@ -38,7 +38,7 @@ export class NodeGraphDrawing {
       if (event.key === "Escape") onChosen(null);
     });
     new ResizeObserver(() => {
-      this.place();
+      this.placeDrawing();
     }).observe(this.element);
   }
 
@@ -54,20 +54,20 @@ export class NodeGraphDrawing {
     const edges = layout.routes.map((route) => drawRoute(route, this.topicsOf(route)));
     const shapes = [...layout.boxes.values()].map((box) => this.drawBox(box, vertices.get(box.id)));
     this.scene.replaceChildren(...edges, ...shapes);
-    this.place();
+    this.placeDrawing();
   }
 
   /** Marks a vertex, its neighbors and the edges between them; null marks nothing. */
   mark(id: string | null): void {
-    this.marked = id;
+    this.markedId = id;
     const { edges } = this.graph;
-    const near = new Set(edges.flatMap(({ source, target }) => (source === id ? [target] : target === id ? [source] : [])));
+    const neighbors = new Set(edges.flatMap(({ source, target }) => (source === id ? [target] : target === id ? [source] : [])));
     this.element.classList.toggle("marked", id !== null);
     for (const shape of this.scene.querySelectorAll<SVGElement>("[data-id]")) {
-      const own = shape.dataset["id"] ?? "";
-      shape.classList.toggle("chosen", own === id);
-      shape.classList.toggle("near", near.has(own));
-      shape.setAttribute("aria-pressed", String(own === id));
+      const shapeId = shape.dataset["id"] ?? "";
+      shape.classList.toggle("chosen", shapeId === id);
+      shape.classList.toggle("near", neighbors.has(shapeId));
+      shape.setAttribute("aria-pressed", String(shapeId === id));
     }
     for (const edge of this.scene.querySelectorAll<SVGElement>("[data-from]")) {
       edge.classList.toggle("near", id !== null && (edge.dataset["from"] === id || edge.dataset["to"] === id));
@@ -81,16 +81,16 @@ export class NodeGraphDrawing {
     this.viewMode = "all";
   }
 
-  private place(): void {
+  private placeDrawing(): void {
     if (this.viewMode === "all") this.fit();
     if (this.viewMode !== "legible" || this.element.clientWidth === 0) return;
-    const box = this.boxes.get(this.marked ?? "") ?? this.busiest();
+    const box = this.boxes.get(this.markedId ?? "") ?? this.busiestBox();
     this.pan.showLegibly(...this.size, TEXT_PX, [box?.x ?? 0, box?.y ?? 0]);
     this.viewMode = "legible";
   }
 
   /** Returns the box of the vertex with the most edges. */
-  private busiest(): PlacedBox | undefined {
+  private busiestBox(): PlacedBox | undefined {
     const degrees = new Map<string, number>();
     for (const id of this.graph.edges.flatMap(({ source, target }) => [source, target])) degrees.set(id, (degrees.get(id) ?? 0) + 1);
     const [first] = [...degrees].sort(([, a], [, b]) => b - a);
@@ -120,7 +120,7 @@ export class NodeGraphDrawing {
   }
 
   private topicsOf({ source, target }: Route): string {
-    const edge = this.graph.edges.find((each) => each.source === source && each.target === target);
+    const edge = this.graph.edges.find((candidate) => candidate.source === source && candidate.target === target);
     return edge?.topics.join("\n") ?? "";
   }
 
@@ -147,10 +147,10 @@ function labelOf(vertex: GraphVertex | undefined): string {
 }
 
 function drawRoute({ source, target, points }: Route, topics: string): SVGElement {
-  const [first, ...rest] = points;
+  const [first, ...others] = points;
   let [x, y] = first ?? [0, 0];
   let path = `M${x} ${y}`;
-  for (const [nextX, nextY] of rest) {
+  for (const [nextX, nextY] of others) {
     const bend = (nextX - x) / 2;
     path += `C${x + bend} ${y} ${nextX - bend} ${nextY} ${nextX} ${nextY}`;
     [x, y] = [nextX, nextY];
@@ -164,7 +164,7 @@ function drawRoute({ source, target, points }: Route, topics: string): SVGElemen
   return edge;
 }
 
-function arrowHeads(): SVGElement {
+function createArrowHeads(): SVGElement {
   const marker = make("marker", {
     id: "graph-arrow",
     viewBox: "0 0 8 8",

@@ -23,7 +23,7 @@ export class NodeGraphPanel implements Panel {
     grouped: false,
     openGroups: new Set<string>(),
   };
-  private chosen: string | null = null;
+  private chosenId: string | null = null;
 
   constructor(private readonly state: NodeGraphState) {
     const texts = strings.monitor.graph;
@@ -39,8 +39,8 @@ export class NodeGraphPanel implements Panel {
     });
     mode.value = this.options.mode;
     const tick = (name: "debug" | "tf" | "grouped", text: string, hint: string): HTMLElement => {
-      const label = tickBox(text, hint, (ticked) => {
-        this.options[name] = ticked;
+      const label = tickBox(text, hint, (isTicked) => {
+        this.options[name] = isTicked;
         this.options.openGroups.clear();
         this.show();
       });
@@ -61,7 +61,7 @@ export class NodeGraphPanel implements Panel {
     stage.append(this.drawing.element);
     this.element = h("div", { class: "panel monitor" }, bar, stage, this.details);
     state.changed.on(() => this.show());
-    onVisibilityChange(this.element, (seen) => state.watch(seen));
+    onVisibilityChange(this.element, (isVisible) => state.watch(isVisible));
     this.show();
   }
 
@@ -69,8 +69,8 @@ export class NodeGraphPanel implements Panel {
     const graph = buildGraph(this.state.graph, this.options);
     this.empty.hidden = graph.vertices.length > 0;
     this.drawing.show(graph);
-    if (!graph.vertices.some(({ id }) => id === this.chosen)) this.chosen = null;
-    this.drawing.mark(this.chosen);
+    if (!graph.vertices.some(({ id }) => id === this.chosenId)) this.chosenId = null;
+    this.drawing.mark(this.chosenId);
     this.showDetails();
   }
 
@@ -80,14 +80,14 @@ export class NodeGraphPanel implements Panel {
       this.show();
       return;
     }
-    this.chosen = vertex?.id === this.chosen ? null : (vertex?.id ?? null);
-    this.drawing.mark(this.chosen);
+    this.chosenId = vertex?.id === this.chosenId ? null : (vertex?.id ?? null);
+    this.drawing.mark(this.chosenId);
     this.showDetails();
   }
 
   private showDetails(): void {
     const texts = strings.monitor.graph;
-    const [kind, name] = split(this.chosen);
+    const [kind, name] = split(this.chosenId);
     const { topics } = this.state.graph;
     const list = (text: string, names: readonly string[]): HTMLElement | null =>
       names.length === 0
@@ -98,7 +98,7 @@ export class NodeGraphPanel implements Panel {
       const subscribes = topics.filter((topic) => topic.subscribers.includes(name)).map((topic) => topic.name);
       this.fill(h("strong", {}, name), list(texts.publishes, publishes), list(texts.subscribes, subscribes));
     } else if (kind === "topic") {
-      const topic = topics.find((each) => each.name === name);
+      const topic = topics.find((candidate) => candidate.name === name);
       const types = h("code", { class: "code" }, topic?.types.join(", ") ?? "");
       const title = h("strong", {}, name, " ", types);
       const ends = [
@@ -119,12 +119,12 @@ export class NodeGraphPanel implements Panel {
       "tool",
       strings.monitor.graph.closeGroups,
     );
-    const opened = this.options.openGroups.size > 0 ? close : null;
-    this.details.replaceChildren(...[...children, opened].filter((child) => child !== null));
+    const closeButton = this.options.openGroups.size > 0 ? close : null;
+    this.details.replaceChildren(...[...children, closeButton].filter((child) => child !== null));
   }
 }
 
 function split(id: string | null): [string, string] {
-  const at = id?.indexOf(":") ?? -1;
-  return id === null ? ["", ""] : [id.slice(0, at), id.slice(at + 1)];
+  const colon = id?.indexOf(":") ?? -1;
+  return id === null ? ["", ""] : [id.slice(0, colon), id.slice(colon + 1)];
 }

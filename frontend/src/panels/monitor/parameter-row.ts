@@ -47,10 +47,10 @@ export class ParameterLine {
   }
 
   /** Whether this line can show a row: its editor suits one type and range only. */
-  suits(row: ParameterRow): boolean {
-    const facts = ({ kind, read_only, minimum, maximum, description }: ParameterRow): string =>
+  isSameParameter(row: ParameterRow): boolean {
+    const factsOf = ({ kind, read_only, minimum, maximum, description }: ParameterRow): string =>
       JSON.stringify([kind, read_only, minimum, maximum, description]);
-    return facts(row) === facts(this.row);
+    return factsOf(row) === factsOf(this.row);
   }
 
   /** Shows the value that the node has, except over text that the user is editing. */
@@ -62,11 +62,11 @@ export class ParameterLine {
   }
 
   /** Shows the result of setting the parameter: its current value, and the reason for a refusal. */
-  showResult(successful: boolean, reason: string): void {
-    this.problem.hidden = successful;
-    this.problem.textContent = successful ? "" : reason || strings.monitor.parameters.refused;
-    this.element.classList.toggle("wrong", !successful);
-    if (successful) return;
+  showResult(isSuccessful: boolean, reason: string): void {
+    this.problem.hidden = isSuccessful;
+    this.problem.textContent = isSuccessful ? "" : reason || strings.monitor.parameters.refused;
+    this.element.classList.toggle("wrong", !isSuccessful);
+    if (isSuccessful) return;
     if (this.row.kind === "bool") this.editor.checked = this.row.values[0] === "true";
     if (this.slider) this.slider.value = this.row.values[0] ?? "0";
   }
@@ -84,8 +84,8 @@ export class ParameterLine {
     slider.min = minimum;
     slider.max = maximum;
     slider.step = step !== "" ? step : kind === "integer" ? "1" : String((high - low) / 200);
-    slider.addEventListener("input", () => (this.editor.value = shortNumber(slider.value)));
-    slider.addEventListener("change", () => this.send([shortNumber(slider.value)]));
+    slider.addEventListener("input", () => (this.editor.value = shortenNumber(slider.value)));
+    slider.addEventListener("change", () => this.send([shortenNumber(slider.value)]));
     return slider;
   }
 
@@ -116,6 +116,6 @@ export class ParameterLine {
   }
 }
 
-function shortNumber(text: string): string {
+function shortenNumber(text: string): string {
   return String(Number(Number(text).toPrecision(10)));
 }

@@ -39,23 +39,23 @@ export class ParametersPanel implements Panel {
       if (error === null) saveText(file, text, "application/yaml");
       else this.showNote(error);
     });
-    onVisibilityChange(this.element, (seen) => state.watch(seen));
+    onVisibilityChange(this.element, (isVisible) => state.watch(isVisible));
     this.showNodes();
     this.show();
   }
 
   private showNodes(): void {
     const { nodes, node } = this.state;
-    const focused = this.nodes.contains(document.activeElement);
+    const hasFocus = this.nodes.contains(document.activeElement);
     const items = nodes.map((name) => {
       const item = h("li", { role: "option", title: name, tabIndex: name === (node ?? nodes[0]) ? 0 : -1 }, name);
       item.setAttribute("aria-selected", String(name === node));
       item.addEventListener("click", () => this.choose(name));
       return item;
     });
-    const nothing = h("li", { class: "note" }, strings.monitor.parameters.noNodes);
-    this.nodes.replaceChildren(...(items.length > 0 ? items : [nothing]));
-    if (focused) items[nodes.indexOf(node ?? "")]?.focus();
+    const emptyNote = h("li", { class: "note" }, strings.monitor.parameters.noNodes);
+    this.nodes.replaceChildren(...(items.length > 0 ? items : [emptyNote]));
+    if (hasFocus) items[nodes.indexOf(node ?? "")]?.focus();
   }
 
   private choose(name: string): void {
@@ -66,11 +66,11 @@ export class ParametersPanel implements Panel {
   private onKeyDown(event: KeyboardEvent): void {
     const { nodes } = this.state;
     const items = [...this.nodes.children] as HTMLElement[];
-    const at = items.indexOf(document.activeElement as HTMLElement);
-    const next = event.key === "ArrowDown" ? at + 1 : event.key === "ArrowUp" ? at - 1 : at;
+    const index = items.indexOf(document.activeElement as HTMLElement);
+    const next = event.key === "ArrowDown" ? index + 1 : event.key === "ArrowUp" ? index - 1 : index;
     const name = nodes[next];
-    if (name === undefined || at < 0) return;
-    if (next !== at) {
+    if (name === undefined || index < 0) return;
+    if (next !== index) {
       this.choose(name);
       (this.nodes.children[next] as HTMLElement).focus();
     } else if (event.key === "Enter" || event.key === " ") this.choose(name);
@@ -86,20 +86,20 @@ export class ParametersPanel implements Panel {
       this.lines.clear();
       this.shownNode = node;
     }
-    const shown = (parameters?.parameters ?? []).filter(({ name }) => name.toLowerCase().includes(this.filter));
-    const elements = shown.map((row) => {
+    const shownParameters = (parameters?.parameters ?? []).filter(({ name }) => name.toLowerCase().includes(this.filter));
+    const elements = shownParameters.map((row) => {
       let line = this.lines.get(row.name);
-      if (line?.suits(row) !== true) {
+      if (line?.isSameParameter(row) !== true) {
         line = new ParameterLine(row, (name, kind, values) => this.state.set(name, kind, values));
         this.lines.set(row.name, line);
       } else line.show(row);
       return line.element;
     });
-    const same = elements.length === this.rows.childElementCount && elements.every((element, at) => element === this.rows.children[at]);
-    if (!same) this.rows.replaceChildren(...elements);
+    const isUnchanged = elements.length === this.rows.childElementCount && elements.every((element, index) => element === this.rows.children[index]);
+    if (!isUnchanged) this.rows.replaceChildren(...elements);
     if (node === null) this.showNote(texts.choose);
     else if (parameters === null) this.showNote(texts.asking);
-    else this.showNote(parameters.error ?? (shown.length === 0 ? texts.none : ""));
+    else this.showNote(parameters.error ?? (shownParameters.length === 0 ? texts.none : ""));
   }
 
   private showNote(text: string): void {

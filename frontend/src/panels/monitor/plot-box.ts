@@ -108,7 +108,7 @@ export class PlotBox {
     const { range } = this.plot;
     const toggle = button(
       texts.rangeHint,
-      () => this.state.setRange(this.plot, range ? null : this.shownRange()),
+      () => this.state.setRange(this.plot, range ? null : this.readShownRange()),
       range ? "tool on" : "tool",
       range ? texts.fixed : texts.auto,
     );
@@ -123,23 +123,23 @@ export class PlotBox {
   }
 
   /** Returns the range of the visible values, rounded, as the initial fixed range. */
-  private shownRange(): [number, number] {
-    const [from, to] = this.state.window ?? [0, 0];
-    const shown = this.plot.series.flatMap(({ buffer }) => {
+  private readShownRange(): [number, number] {
+    const [from, end] = this.state.window ?? [0, 0];
+    const shownSeries = this.plot.series.flatMap(({ buffer }) => {
       const start = buffer.indexFrom(this.state.source, from);
-      return [...buffer.values.subarray(start, buffer.indexFrom(this.state.source, to) + 1)].filter(Number.isFinite);
+      return [...buffer.values.subarray(start, buffer.indexFrom(this.state.source, end) + 1)].filter(Number.isFinite);
     });
-    if (shown.length === 0) return [-1, 1];
-    const low = shown.reduce((a, b) => Math.min(a, b));
-    const high = shown.reduce((a, b) => Math.max(a, b));
+    if (shownSeries.length === 0) return [-1, 1];
+    const low = shownSeries.reduce((a, b) => Math.min(a, b));
+    const high = shownSeries.reduce((a, b) => Math.max(a, b));
     return high > low ? [Number(low.toPrecision(3)), Number(high.toPrecision(3))] : [low - 1, high + 1];
   }
 
   private saveCsv(): void {
-    const { window: shown, source } = this.state;
+    const { window: timeWindow, source } = this.state;
     const { series } = this.plot;
-    if (!shown) return;
-    const text = formatCsv(series.map(formatField), series.map((each) => each.buffer), source, ...shown);
+    if (!timeWindow) return;
+    const text = formatCsv(series.map(formatField), series.map((plotSeries) => plotSeries.buffer), source, ...timeWindow);
     saveText("plot.csv", text, "text/csv");
   }
 }

@@ -21,14 +21,14 @@ export class PlotChart {
   /** The values at the pointer, by series; null while the pointer is elsewhere. */
   atCursor: readonly (number | null)[] | null = null;
   private library: typeof uPlot | null = null;
-  private fetching = false;
+  private isFetching = false;
   private chart: uPlot | null = null;
   private count = -1;
 
   constructor(
     private readonly state: PlotsState,
     private readonly plot: Plot,
-    private readonly cursorMoved: () => void,
+    private readonly onCursorMoved: () => void,
   ) {
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
@@ -45,12 +45,12 @@ export class PlotChart {
     if (this.count !== plot.series.length) this.rebuild(this.library, width, height);
     const { chart } = this;
     if (!chart) return;
-    const [from, to] = state.window ?? [0, state.seconds];
+    const [start, end] = state.window ?? [0, state.seconds];
     const columns = Math.max(16, Math.round(width - Y_AXIS_PX));
-    const table = tabulatePlot(plot.series.map((each) => each.buffer), state.source, from, to, columns);
+    const table = tabulatePlot(plot.series.map((series) => series.buffer), state.source, start, end, columns);
     chart.batch(() => {
       chart.setData(table, false);
-      chart.setScale("x", { min: from, max: to });
+      chart.setScale("x", { min: start, max: end });
       const [low, high] = plot.range ?? rangeOf(table);
       chart.setScale("y", { min: low, max: high });
     });
@@ -70,15 +70,15 @@ export class PlotChart {
   }
 
   private fetchLibrary(): void {
-    if (this.fetching) return;
-    this.fetching = true;
+    if (this.isFetching) return;
+    this.isFetching = true;
     import("./plot-library").then(
       ({ UPlot }) => {
         this.library = UPlot;
         this.draw();
       },
       // The server is gone. Once it is back, the next values trigger another attempt.
-      () => (this.fetching = false),
+      () => (this.isFetching = false),
     );
   }
 
@@ -111,7 +111,7 @@ export class PlotChart {
           })),
         ],
         axes: [
-          { ...axis, size: 24, space: 70, values: (_, times) => times.map(timeText) },
+          { ...axis, size: 24, space: 70, values: (_, times) => times.map(formatTime) },
           { ...axis, size: Y_AXIS_PX, values: (_, values) => values.map((value) => formatValue(value)) },
         ],
         hooks: {
@@ -135,7 +135,7 @@ export class PlotChart {
         return buffer.values[Math.max(0, index - 1)] ?? null;
       });
     }
-    this.cursorMoved();
+    this.onCursorMoved();
   }
 
   private zoomToSelection(chart: uPlot): void {
@@ -162,10 +162,10 @@ function rangeOf([, ...columns]: ReturnType<typeof tabulatePlot>): [number, numb
 }
 
 /** Returns the label of a time on the axis: the time of day, or seconds if it is not a calendar time. */
-function timeText(time: number): string {
+function formatTime(time: number): string {
   if (time < MIN_CALENDAR_TIME) return `${Number(time.toFixed(3))} s`;
-  const whole = new Date(time * 1000);
-  const parts = [whole.getHours(), whole.getMinutes(), whole.getSeconds()].map((each) => String(each).padStart(2, "0"));
-  const rest = Math.round((time % 1) * 1000) / 1000;
-  return parts.join(":") + (rest > 0 && rest < 1 ? String(rest).slice(1) : "");
+  const date = new Date(time * 1000);
+  const parts = [date.getHours(), date.getMinutes(), date.getSeconds()].map((field) => String(field).padStart(2, "0"));
+  const fraction = Math.round((time % 1) * 1000) / 1000;
+  return parts.join(":") + (fraction > 0 && fraction < 1 ? String(fraction).slice(1) : "");
 }

@@ -53,12 +53,12 @@ export class PlotPanel implements Panel {
     this.show();
   }
 
-  opened(): void {
+  onOpened(): void {
     if (this.state.plots.length === 0) this.state.addPlot();
     this.state.setOpen(true);
   }
 
-  closed(): void {
+  onClosed(): void {
     this.state.setOpen(false);
   }
 

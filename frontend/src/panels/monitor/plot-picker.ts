@@ -20,20 +20,20 @@ export class PlotPicker {
   private readonly input = h("input", { class: "field", role: "combobox", aria: { autocomplete: "list" } });
   private readonly list = h("ul", { class: "picker-list", role: "listbox" });
   private offers: Offer[] = [];
-  private active = 0;
+  private activeIndex = 0;
   private fields: TopicFields | null = null;
-  private asked: string | null = null;
+  private requestedTopic: string | null = null;
   private readonly unsubscribe: (() => void)[];
 
   constructor(
     private readonly plots: PlotsState,
     private readonly topics: TopicsState,
-    private readonly chosen: (field: FieldName) => void,
-    private readonly closed: () => void,
+    private readonly onChosen: (field: FieldName) => void,
+    private readonly onClosed: () => void,
   ) {
     const texts = strings.monitor.plot;
     this.input.placeholder = texts.choose;
-    for (const each of [this.input, this.list]) each.setAttribute("aria-label", texts.choose);
+    for (const element of [this.input, this.list]) element.setAttribute("aria-label", texts.choose);
     this.list.id = "picker-list";
     this.input.setAttribute("aria-controls", this.list.id);
     this.input.setAttribute("aria-expanded", "true");
@@ -48,7 +48,7 @@ export class PlotPicker {
     this.unsubscribe = [
       topics.listChanged.on(() => this.updateOffers()),
       plots.fieldsArrived.on((fields) => {
-        if (fields.topic !== this.asked) return;
+        if (fields.topic !== this.requestedTopic) return;
         this.fields = fields;
         this.updateOffers();
       }),
@@ -66,38 +66,38 @@ export class PlotPicker {
     this.topics.watchList(this, false);
     this.plots.requestFields(null);
     this.element.remove();
-    this.closed();
+    this.onClosed();
   }
 
   private onInput(): void {
     const topic = this.typedTopic();
-    if (topic !== this.asked) {
-      this.asked = topic;
+    if (topic !== this.requestedTopic) {
+      this.requestedTopic = topic;
       this.fields = null;
       this.plots.requestFields(topic);
     }
-    this.active = 0;
+    this.activeIndex = 0;
     this.updateOffers();
   }
 
   /** Returns the topic whose fields are to be offered: the text before the dot. */
   private typedTopic(): string | null {
-    const at = this.input.value.indexOf(".");
-    return at > 0 ? this.input.value.slice(0, at).trim() : null;
+    const dot = this.input.value.indexOf(".");
+    return dot > 0 ? this.input.value.slice(0, dot).trim() : null;
   }
 
   private updateOffers(): void {
-    const written = this.input.value.trim().toLowerCase();
+    const query = this.input.value.trim().toLowerCase();
     this.offers =
-      this.asked === null
+      this.requestedTopic === null
         ? this.topics.topics.map(({ name, types }) => ({ text: name, note: types.join(", "), isField: false }))
         : (this.fields?.fields ?? []).map(({ path, kind }) => ({
-            text: formatField({ topic: this.asked ?? "", path }),
+            text: formatField({ topic: this.requestedTopic ?? "", path }),
             note: kind,
             isField: true,
           }));
-    this.offers = this.offers.filter(({ text }) => text.toLowerCase().includes(written)).slice(0, MAX_OFFERS);
-    this.active = Math.min(this.active, Math.max(0, this.offers.length - 1));
+    this.offers = this.offers.filter(({ text }) => text.toLowerCase().includes(query)).slice(0, MAX_OFFERS);
+    this.activeIndex = Math.min(this.activeIndex, Math.max(0, this.offers.length - 1));
     this.show();
   }
 
@@ -106,22 +106,22 @@ export class PlotPicker {
     const rows = this.offers.map((offer, index) => {
       const row = h("li", { role: "option" }, h("span", {}, offer.text), h("span", { class: "note" }, offer.note));
       row.id = `picker-${index}`;
-      row.setAttribute("aria-selected", String(index === this.active));
+      row.setAttribute("aria-selected", String(index === this.activeIndex));
       row.addEventListener("click", () => this.choose(offer));
       return row;
     });
-    const nothing = this.asked === null ? (this.topics.isKnown ? texts.noTopics : texts.asking) : this.fields ? (this.fields.error ?? texts.noFields) : texts.waiting;
-    this.list.replaceChildren(...(rows.length > 0 ? rows : [h("li", { class: "note", role: "option", aria: { disabled: "true" } }, nothing)]));
-    this.input.setAttribute("aria-activedescendant", rows.length > 0 ? `picker-${this.active}` : "");
-    rows[this.active]?.scrollIntoView({ block: "nearest" });
+    const emptyText = this.requestedTopic === null ? (this.topics.isKnown ? texts.noTopics : texts.asking) : this.fields ? (this.fields.error ?? texts.noFields) : texts.waiting;
+    this.list.replaceChildren(...(rows.length > 0 ? rows : [h("li", { class: "note", role: "option", aria: { disabled: "true" } }, emptyText)]));
+    this.input.setAttribute("aria-activedescendant", rows.length > 0 ? `picker-${this.activeIndex}` : "");
+    rows[this.activeIndex]?.scrollIntoView({ block: "nearest" });
   }
 
   private onKeyDown(event: KeyboardEvent): void {
-    const last = this.offers.length - 1;
-    if (event.key === "ArrowDown") this.active = Math.min(last, this.active + 1);
-    else if (event.key === "ArrowUp") this.active = Math.max(0, this.active - 1);
+    const lastIndex = this.offers.length - 1;
+    if (event.key === "ArrowDown") this.activeIndex = Math.min(lastIndex, this.activeIndex + 1);
+    else if (event.key === "ArrowUp") this.activeIndex = Math.max(0, this.activeIndex - 1);
     else if (event.key === "Enter") this.enter();
-    else if (event.key === "Tab" && this.offers[this.active]?.isField === false) this.choose(this.offers[this.active]);
+    else if (event.key === "Tab" && this.offers[this.activeIndex]?.isField === false) this.choose(this.offers[this.activeIndex]);
     else if (event.key === "Escape") this.close();
     else {
       event.stopPropagation();
@@ -135,7 +135,7 @@ export class PlotPicker {
   /** Accepts a field that is typed in full even if it is not offered: arrays have more elements than are listed. */
   private enter(): void {
     const field = parseField(this.input.value);
-    const offer = this.offers[this.active];
+    const offer = this.offers[this.activeIndex];
     const written = this.offers.find(({ text }) => text === this.input.value.trim());
     if (offer && !written) this.choose(offer);
     else if (field) this.accept(field);
@@ -154,7 +154,7 @@ export class PlotPicker {
   }
 
   private accept(field: FieldName): void {
-    this.chosen(field);
+    this.onChosen(field);
     this.close();
   }
 }

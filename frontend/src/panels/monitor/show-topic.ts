@@ -9,7 +9,7 @@ export function showTopic(session: Session, topic: string): void {
   if (displays.displays.some(({ isEnabled, rows }) => isEnabled && rows.text("", "Topic") === topic)) return;
   const stop = configuration.choicesArrived.on(() => {
     stop();
-    const choice = configuration.choices?.topics.find((each) => each.topic === topic && each.classes.length > 0);
+    const choice = configuration.choices?.topics.find((candidate) => candidate.topic === topic && candidate.classes.length > 0);
     const cls = choice ? obviousDisplay(choice) : null;
     if (cls === null) showNotice(topic, strings.displays.topicNotShown);
     else configuration.add(cls, cls.slice(cls.lastIndexOf("/") + 1), null, topic);

@@ -16,24 +16,24 @@ export class TeleopGamepad {
   ) {}
 
   /** Starts or stops reading the gamepad. */
-  run(wanted: boolean): void {
+  run(isWanted: boolean): void {
     cancelAnimationFrame(this.frame);
     this.frame = 0;
-    if (wanted) this.read();
+    if (isWanted) this.readGamepad();
     else this.state.move("gamepad", STILL);
   }
 
-  private read(): void {
-    this.frame = requestAnimationFrame(() => this.read());
+  private readGamepad(): void {
+    this.frame = requestAnimationFrame(() => this.readGamepad());
     const pad = navigator.getGamepads().find((gamepad) => gamepad !== null && gamepad.connected) ?? null;
     const name = pad?.id ?? null;
     if (name !== this.lastName) {
       this.lastName = name;
       this.nameChanged(name);
     }
-    const held = pad !== null && DEAD_MAN_BUTTONS.some((button) => pad.buttons[button]?.pressed === true);
-    const axis = (index: number): number => computeDeflection(pad?.axes[index] ?? 0);
-    const motion = held ? { x: -axis(1), y: -axis(2), z: 0, turn: -axis(0) } : STILL;
+    const isHeld = pad !== null && DEAD_MAN_BUTTONS.some((button) => pad.buttons[button]?.pressed === true);
+    const deflectionOf = (index: number): number => computeDeflection(pad?.axes[index] ?? 0);
+    const motion = isHeld ? { x: -deflectionOf(1), y: -deflectionOf(2), z: 0, turn: -deflectionOf(0) } : STILL;
     this.state.move("gamepad", { ...motion, x: motion.x || 0, y: motion.y || 0, turn: motion.turn || 0 });
   }
 }

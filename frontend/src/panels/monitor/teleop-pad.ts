@@ -31,17 +31,17 @@ export class TeleopPad {
       if (this.heldKeys.delete(event.code)) this.moveKeys();
     });
     // Losing the focus must stop the robot.
-    element.addEventListener("blur", () => this.letGo());
-    window.addEventListener("blur", () => this.letGo());
-    window.addEventListener("pagehide", () => this.letGo());
+    element.addEventListener("blur", () => this.release());
+    window.addEventListener("blur", () => this.release());
+    window.addEventListener("pagehide", () => this.release());
     document.addEventListener("visibilitychange", () => {
-      if (document.hidden) this.letGo();
+      if (document.hidden) this.release();
     });
     state.changed.on(() => this.show());
     this.show();
   }
 
-  letGo(): void {
+  release(): void {
     this.heldKeys.clear();
     this.pointer = null;
     this.state.stop();
@@ -67,12 +67,12 @@ export class TeleopPad {
   private onPointerMove(event: PointerEvent): void {
     if (event.pointerId !== this.pointer) return;
     const box = this.element.getBoundingClientRect();
-    const part = (value: number, start: number, length: number): number =>
+    const percentOf = (value: number, start: number, length: number): number =>
       Math.min(1, Math.max(-1, (1 - (2 * (value - start)) / length) / 0.84));
-    const forward = part(event.clientY, box.top, box.height);
-    const left = part(event.clientX, box.left, box.width);
+    const forward = percentOf(event.clientY, box.top, box.height);
+    const left = percentOf(event.clientX, box.left, box.width);
     // Leave a dead zone in the middle: pressing there must not move the robot yet.
-    const motion = { ...STILL, x: withDeadZone(forward), [event.shiftKey ? "y" : "turn"]: withDeadZone(left) };
+    const motion = { ...STILL, x: applyDeadZone(forward), [event.shiftKey ? "y" : "turn"]: applyDeadZone(left) };
     this.state.move("pad", motion);
   }
 
@@ -90,7 +90,7 @@ export class TeleopPad {
         this.heldKeys.set(event.code, motion);
         this.moveKeys();
       }
-    } else if (event.key === " " || event.key === "k" || event.key === "K") this.letGo();
+    } else if (event.key === " " || event.key === "k" || event.key === "K") this.release();
     else if (event.key === "q" || event.key === "Q") this.scale(FASTER);
     else if (event.key === "z" || event.key === "Z") this.scale(1 / FASTER);
     else return;
@@ -104,11 +104,11 @@ export class TeleopPad {
 
   private scale(factor: number): void {
     const { linear, angular } = this.state.settings;
-    const scaled = (value: number): number => Number((value * factor).toPrecision(3));
-    this.state.configure({ linear: scaled(linear), angular: scaled(angular) });
+    const scale = (value: number): number => Number((value * factor).toPrecision(3));
+    this.state.configure({ linear: scale(linear), angular: scale(angular) });
   }
 }
 
-function withDeadZone(value: number): number {
+function applyDeadZone(value: number): number {
   return Math.abs(value) < 0.06 ? 0 : value;
 }

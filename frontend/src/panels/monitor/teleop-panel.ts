@@ -40,7 +40,7 @@ export class TeleopPanel implements Panel {
       linear: numberField(texts.linearHint, settings.linear, [0, FASTEST], (linear) => state.configure({ linear })),
       angular: numberField(texts.angularHint, settings.angular, [0, FASTEST], (angular) => state.configure({ angular })),
     };
-    const stop = button(texts.stopHint, () => this.pad.letGo(), "tool stop", icon("stop"), texts.stop);
+    const stop = button(texts.stopHint, () => this.pad.release(), "tool stop", icon("stop"), texts.stop);
     const focus = h("div", { class: "note teleop-focus" }, this.focus.active, this.focus.inactive);
     const side = h("div", { class: "teleop-side" }, this.velocity, stop, focus);
     this.element = h(
@@ -52,22 +52,22 @@ export class TeleopPanel implements Panel {
         h("div", { class: "teleop-main" }, this.pad.element, side),
         h("p", { class: "note" }, texts.keys),
         this.aim,
-        this.form(),
+        this.createForm(),
       ),
     );
     for (const event of ["focus", "blur"]) this.pad.element.addEventListener(event, () => this.showFocus());
     state.changed.on(() => this.show());
-    onVisibilityChange(this.element, (seen) => {
-      this.isVisible = seen;
-      if (!seen) this.pad.letGo();
-      state.setOpen(seen);
-      this.gamepad.run(seen && state.settings.usesGamepad);
+    onVisibilityChange(this.element, (isVisible) => {
+      this.isVisible = isVisible;
+      if (!isVisible) this.pad.release();
+      state.setOpen(isVisible);
+      this.gamepad.run(isVisible && state.settings.gamepad);
     });
     this.show();
     this.showFocus();
   }
 
-  private form(): HTMLElement {
+  private createForm(): HTMLElement {
     const texts = strings.monitor.teleop;
     const { settings } = this.state;
     const topic = h("input", { class: "field", aria: { label: texts.topic } });
@@ -77,28 +77,28 @@ export class TeleopPanel implements Panel {
     topic.addEventListener("change", () => this.state.configure({ topic: topic.value.trim() }));
     frame.addEventListener("change", () => this.state.configure({ frameId: frame.value.trim() }));
     const kinds = (["auto", "Twist", "TwistStamped"] as const).map((kind) => [kind, texts.types[kind]] as const);
-    const kind = choice<TwistKind>(texts.type, kinds, (chosen) => this.state.configure({ kind: chosen }));
+    const kind = choice<TwistKind>(texts.type, kinds, (kind) => this.state.configure({ kind }));
     kind.value = settings.kind;
     const rates = RATES.map((rate) => [String(rate), texts.hertz(rate)] as const);
-    const rate = choice(texts.rateHint, rates, (chosen) => this.state.configure({ rate: Number(chosen) }));
+    const rate = choice(texts.rateHint, rates, (rateText) => this.state.configure({ rate: Number(rateText) }));
     rate.value = String(settings.rate);
-    const gamepad = tickBox(texts.gamepad, texts.gamepadHint, (ticked) => {
-      this.state.configure({ usesGamepad: ticked });
-      this.gamepad.run(ticked && this.isVisible);
-      if (!ticked) this.gamepadName.textContent = "";
+    const gamepad = tickBox(texts.gamepad, texts.gamepadHint, (isTicked) => {
+      this.state.configure({ gamepad: isTicked });
+      this.gamepad.run(isTicked && this.isVisible);
+      if (!isTicked) this.gamepadName.textContent = "";
     });
-    gamepad.box.checked = settings.usesGamepad;
-    const row = (text: string, ...parts: readonly (HTMLElement | string)[]): HTMLElement =>
+    gamepad.box.checked = settings.gamepad;
+    const createRow = (text: string, ...parts: readonly (HTMLElement | string)[]): HTMLElement =>
       h("label", { class: "teleop-row" }, h("span", { class: "toolbar-label" }, text), h("span", {}, ...parts));
     return h(
       "div",
       { class: "teleop-form" },
-      row(texts.linear, this.limits.linear, h("span", { class: "unit" }, texts.linearUnit)),
-      row(texts.angular, this.limits.angular, h("span", { class: "unit" }, texts.angularUnit)),
-      row(texts.topic, topic),
-      row(texts.type, kind),
-      row(texts.frame, frame),
-      row(texts.rate, rate),
+      createRow(texts.linear, this.limits.linear, h("span", { class: "unit" }, texts.linearUnit)),
+      createRow(texts.angular, this.limits.angular, h("span", { class: "unit" }, texts.angularUnit)),
+      createRow(texts.topic, topic),
+      createRow(texts.type, kind),
+      createRow(texts.frame, frame),
+      createRow(texts.rate, rate),
       h("div", { class: "teleop-row" }, gamepad, this.gamepadName),
     );
   }
@@ -118,8 +118,8 @@ export class TeleopPanel implements Panel {
   }
 
   private showFocus(): void {
-    const active = document.activeElement === this.pad.element;
-    this.focus.active.classList.toggle("unseen", !active);
-    this.focus.inactive.classList.toggle("unseen", active);
+    const hasFocus = document.activeElement === this.pad.element;
+    this.focus.active.classList.toggle("unseen", !hasFocus);
+    this.focus.inactive.classList.toggle("unseen", hasFocus);
   }
 }

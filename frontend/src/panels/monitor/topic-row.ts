@@ -7,11 +7,11 @@ import { MessageTree } from "./message-tree";
 
 /** The user's actions on a row of the topic monitor. */
 export interface TopicRowEvents {
-  measured(topic: string, ticked: boolean): void;
-  opened(topic: string, open: boolean): void;
-  plotted(topic: string, path: string): void;
+  onMeasured(topic: string, isTicked: boolean): void;
+  onOpened(topic: string, isOpen: boolean): void;
+  onPlotted(topic: string, path: string): void;
   /** Called when the topic is to be shown in the scene. */
-  shown(topic: string): void;
+  onShown(topic: string): void;
 }
 
 /** A topic of the monitor, and while it is open, its last message below it. */
@@ -21,7 +21,7 @@ export class TopicLine {
   private readonly box = h("input", { class: "check" });
   private readonly expander: HTMLButtonElement;
   private readonly cells: Record<"type" | "publishers" | "subscribers" | "rate" | "bandwidth", HTMLElement>;
-  private readonly received = h("div", { class: "note" }, strings.monitor.topics.waiting);
+  private readonly receivedNote = h("div", { class: "note" }, strings.monitor.topics.waiting);
   private readonly tree: MessageTree;
 
   constructor(
@@ -31,9 +31,9 @@ export class TopicLine {
     const texts = strings.monitor.topics;
     this.box.type = "checkbox";
     this.box.setAttribute("aria-label", texts.measure(name));
-    this.box.addEventListener("change", () => events.measured(name, this.box.checked));
-    this.expander = button(texts.open(name), () => events.opened(name, this.body.hidden === true), "expander", icon("chevron"));
-    this.tree = new MessageTree((path) => events.plotted(name, path));
+    this.box.addEventListener("change", () => events.onMeasured(name, this.box.checked));
+    this.expander = button(texts.open(name), () => events.onOpened(name, this.body.hidden === true), "expander", icon("chevron"));
+    this.tree = new MessageTree((path) => events.onPlotted(name, path));
     this.cells = {
       type: h("td", { class: "note" }),
       publishers: h("td", { class: "numeric" }),
@@ -41,12 +41,12 @@ export class TopicLine {
       rate: h("td", { class: "numeric" }),
       bandwidth: h("td", { class: "numeric" }),
     };
-    const label = button(texts.show, () => events.shown(name), "text-link", name);
+    const label = button(texts.show, () => events.onShown(name), "text-link", name);
     const title = h("span", { class: "topic-title" }, this.box, this.expander, label);
     this.head = h("tr", { data: { topic: name } }, h("td", { title: name }, title), ...Object.values(this.cells));
-    const inside = h("td", {}, this.received, this.tree.element);
-    inside.colSpan = 6;
-    this.body = h("tr", { class: "topic-message" }, inside);
+    const cell = h("td", {}, this.receivedNote, this.tree.element);
+    cell.colSpan = 6;
+    this.body = h("tr", { class: "topic-message" }, cell);
     this.body.hidden = true;
   }
 
@@ -59,10 +59,10 @@ export class TopicLine {
   }
 
   /** Sets the tick box and the expander. */
-  setState(measured: boolean, opened: boolean): void {
-    this.box.checked = measured || opened;
-    this.expander.setAttribute("aria-expanded", String(opened));
-    this.body.hidden = !opened;
+  setState(isMeasured: boolean, isOpen: boolean): void {
+    this.box.checked = isMeasured || isOpen;
+    this.expander.setAttribute("aria-expanded", String(isOpen));
+    this.body.hidden = !isOpen;
   }
 
   showTraffic(traffic: TopicTraffic | undefined): void {
@@ -71,11 +71,11 @@ export class TopicLine {
     rate.textContent = typeof traffic?.rate !== "number" ? "" : strings.monitor.topics.hertz(formatRate(traffic.rate));
     bandwidth.textContent = typeof traffic?.bandwidth !== "number" ? "" : formatBandwidth(traffic.bandwidth);
     this.head.classList.toggle("wrong", error !== null);
-    if (error !== null) this.received.textContent = error;
+    if (error !== null) this.receivedNote.textContent = error;
   }
 
   showMessage({ received, fields }: TopicMessage): void {
-    this.received.textContent = strings.monitor.topics.ago(formatClock(received));
+    this.receivedNote.textContent = strings.monitor.topics.ago(formatClock(received));
     this.tree.show(fields);
   }
 }

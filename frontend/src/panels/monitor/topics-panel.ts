@@ -15,14 +15,14 @@ export class TopicsPanel implements Panel {
   private readonly body = h("tbody");
   private readonly empty = h("p", { class: "empty" }, strings.monitor.topics.none);
   private readonly lines = new Map<string, TopicLine>();
-  private readonly measured = new Set<string>();
-  private readonly unfolded = new Set<string>();
+  private readonly measuredTopics = new Set<string>();
+  private readonly unfoldedTopics = new Set<string>();
   private filter = "";
   private showsHidden = false;
 
   constructor(
     private readonly state: TopicsState,
-    private readonly plot: (topic: string, path: string) => void,
+    private readonly plotField: (topic: string, path: string) => void,
     private readonly showInScene: (topic: string) => void,
   ) {
     const texts = strings.monitor.topics;
@@ -30,13 +30,13 @@ export class TopicsPanel implements Panel {
       this.filter = text.trim().toLowerCase();
       this.show();
     });
-    const hidden = tickBox(texts.hidden, texts.hiddenHint, (ticked) => {
-      this.showsHidden = ticked;
+    const hiddenBox = tickBox(texts.hidden, texts.hiddenHint, (isTicked) => {
+      this.showsHidden = isTicked;
       this.show();
     });
-    const bar = h("div", { class: "toolbar" }, filter, h("span", { class: "spacer" }), hidden);
-    const head = (text: string, hint = text, numeric = true): HTMLElement =>
-      h("th", { class: numeric ? "numeric" : "", title: hint }, text);
+    const bar = h("div", { class: "toolbar" }, filter, h("span", { class: "spacer" }), hiddenBox);
+    const createHead = (text: string, hint = text, isNumeric = true): HTMLElement =>
+      h("th", { class: isNumeric ? "numeric" : "", title: hint }, text);
     const table = h(
       "table",
       { class: "topic-table" },
@@ -46,12 +46,12 @@ export class TopicsPanel implements Panel {
         h(
           "tr",
           {},
-          head(texts.name, texts.measureHint, false),
-          head(texts.type, texts.type, false),
-          head(texts.publishers, texts.publishersHint),
-          head(texts.subscribers, texts.subscribersHint),
-          head(texts.rate),
-          head(texts.bandwidth),
+          createHead(texts.name, texts.measureHint, false),
+          createHead(texts.type, texts.type, false),
+          createHead(texts.publishers, texts.publishersHint),
+          createHead(texts.subscribers, texts.subscribersHint),
+          createHead(texts.rate),
+          createHead(texts.bandwidth),
         ),
       ),
       this.body,
@@ -61,22 +61,22 @@ export class TopicsPanel implements Panel {
     state.listChanged.on(() => this.show());
     state.figuresChanged.on(() => this.showFigures());
     state.messageArrived.on((message) => this.lines.get(message.topic)?.showMessage(message));
-    onVisibilityChange(this.element, (seen) => {
-      state.watchList(this, seen);
-      state.watch(seen ? this.measured : [], seen ? this.unfolded : []);
+    onVisibilityChange(this.element, (isVisible) => {
+      state.watchList(this, isVisible);
+      state.watch(isVisible ? this.measuredTopics : [], isVisible ? this.unfoldedTopics : []);
     });
   }
 
   private show(): void {
-    const shown = this.state.topics.filter((topic) => this.isShown(topic));
-    const rows = shown.flatMap((topic) => {
-      const line = this.line(topic.name);
+    const shownTopics = this.state.topics.filter((topic) => this.isShown(topic));
+    const rows = shownTopics.flatMap((topic) => {
+      const line = this.lineFor(topic.name);
       line.show(topic);
-      line.setState(this.measured.has(topic.name), this.unfolded.has(topic.name));
+      line.setState(this.measuredTopics.has(topic.name), this.unfoldedTopics.has(topic.name));
       return [line.head, line.body];
     });
-    const same = rows.length === this.body.childElementCount && rows.every((row, at) => row === this.body.children[at]);
-    if (!same) this.body.replaceChildren(...rows);
+    const isUnchanged = rows.length === this.body.childElementCount && rows.every((row, index) => row === this.body.children[index]);
+    if (!isUnchanged) this.body.replaceChildren(...rows);
     this.empty.hidden = rows.length > 0;
   }
 
@@ -85,28 +85,28 @@ export class TopicsPanel implements Panel {
     return this.showsHidden || !name.split("/").some((part) => part.startsWith("_"));
   }
 
-  private line(name: string): TopicLine {
-    const known = this.lines.get(name);
-    if (known) return known;
+  private lineFor(name: string): TopicLine {
+    const existing = this.lines.get(name);
+    if (existing) return existing;
     const line = new TopicLine(name, {
-      measured: (topic, ticked) => {
-        setMember(this.measured, topic, ticked);
-        if (!ticked) this.unfolded.delete(topic);
+      onMeasured: (topic, isTicked) => {
+        setMember(this.measuredTopics, topic, isTicked);
+        if (!isTicked) this.unfoldedTopics.delete(topic);
         this.watch();
       },
-      opened: (topic, open) => {
-        setMember(this.unfolded, topic, open);
+      onOpened: (topic, isOpen) => {
+        setMember(this.unfoldedTopics, topic, isOpen);
         this.watch();
       },
-      plotted: (topic, path) => this.plot(topic, path),
-      shown: (topic) => this.showInScene(topic),
+      onPlotted: (topic, path) => this.plotField(topic, path),
+      onShown: (topic) => this.showInScene(topic),
     });
     this.lines.set(name, line);
     return line;
   }
 
   private watch(): void {
-    this.state.watch(this.measured, this.unfolded);
+    this.state.watch(this.measuredTopics, this.unfoldedTopics);
     this.show();
   }
 
@@ -118,14 +118,14 @@ export class TopicsPanel implements Panel {
   private onKeyDown(event: KeyboardEvent): void {
     if (event.key !== "ArrowDown" && event.key !== "ArrowUp") return;
     const stops = [...this.body.querySelectorAll<HTMLElement>(":scope > tr[data-topic] .expander")];
-    const at = stops.indexOf(document.activeElement as HTMLElement);
-    if (at < 0) return;
-    stops[at + (event.key === "ArrowDown" ? 1 : -1)]?.focus();
+    const index = stops.indexOf(document.activeElement as HTMLElement);
+    if (index < 0) return;
+    stops[index + (event.key === "ArrowDown" ? 1 : -1)]?.focus();
     event.preventDefault();
   }
 }
 
-function setMember(set: Set<string>, member: string, wanted: boolean): void {
-  if (wanted) set.add(member);
+function setMember(set: Set<string>, member: string, isMember: boolean): void {
+  if (isMember) set.add(member);
   else set.delete(member);
 }

@@ -1,5 +1,5 @@
 import { coalesced, h } from "../../dom";
-import { bytesText } from "../../scene/meshes/mesh-error";
+import { formatBytes } from "../../scene/meshes/mesh-error";
 import type { MeshLoad, MeshProgress } from "../../state/mesh-progress";
 import { strings } from "../../strings";
 
@@ -29,5 +29,5 @@ export class MeshNotice {
 export function progressText({ bytes, total, stage }: Readonly<MeshLoad>): string {
   const texts = strings.meshes.progress;
   if (stage === "reading") return texts.reading;
-  return total === null ? bytesText(bytes) : texts.of(bytesText(bytes), bytesText(total));
+  return total === null ? formatBytes(bytes) : texts.of(formatBytes(bytes), formatBytes(total));
 }

@@ -51,36 +51,36 @@ export class CodeActions {
   }
 
   private async list(view: EditorView, { from, to }: { from: number; to: number }): Promise<void> {
-    const { shown } = this.documents;
-    if (!shown || shown.whyNot !== "") return;
+    const { shownDocument } = this.documents;
+    if (!shownDocument || shownDocument.readOnlyReason !== "") return;
     this.client.sync();
     const { doc } = view.state;
     const range = { start: placeOf(doc, from), end: placeOf(doc, to) };
     const [first, last] = [range.start.line, range.end.line];
-    const diagnostics = this.findingsOf(shown.uri).filter((finding) => finding.range.start.line <= last && finding.range.end.line >= first);
-    const asked = { textDocument: { uri: shown.uri }, range, context: { diagnostics } };
-    const actions = (await this.client.request<object, CodeAction[] | null>("textDocument/codeAction", asked)) ?? [];
-    if (shown !== this.documents.shown) return;
+    const diagnostics = this.findingsOf(shownDocument.uri).filter((finding) => finding.range.start.line <= last && finding.range.end.line >= first);
+    const request = { textDocument: { uri: shownDocument.uri }, range, context: { diagnostics } };
+    const actions = (await this.client.request<object, CodeAction[] | null>("textDocument/codeAction", request)) ?? [];
+    if (shownDocument !== this.documents.shownDocument) return;
     const color = colorChoice(view, from);
     if (actions.length === 0 && color === null) {
       this.tell(strings.sourceEditor.noActions);
       return;
     }
-    const at = view.coordsAtPos(Math.min(from, view.state.doc.length)) ?? view.dom.getBoundingClientRect();
-    openMenuAt(at.left, at.bottom + 2, view.contentDOM, [
+    const anchor = view.coordsAtPos(Math.min(from, view.state.doc.length)) ?? view.dom.getBoundingClientRect();
+    openMenuAt(anchor.left, anchor.bottom + 2, view.contentDOM, [
       ...(color === null ? [] : [{ label: strings.sourceEditor.chooseColor, run: color }]),
-      ...this.entries(actions),
+      ...this.createEntries(actions),
     ]);
   }
 
-  private entries(actions: readonly CodeAction[]): MenuEntry[] {
-    const ordered = [...actions].sort((a, b) => rank(a) - rank(b));
-    return ordered.map((action, index) => {
-      const before = ordered[index - 1];
+  private createEntries(actions: readonly CodeAction[]): MenuEntry[] {
+    const sortedActions = [...actions].sort((a, b) => rankOf(a) - rankOf(b));
+    return sortedActions.map((action, index) => {
+      const previous = sortedActions[index - 1];
       return {
         label: action.title,
         hint: action.title,
-        separate: before !== undefined && groupOf(before) !== groupOf(action),
+        separate: previous !== undefined && groupOf(previous) !== groupOf(action),
         run: () => void this.run(action).then(this.tell, (error: unknown) => this.tell(messageOf(error))),
       };
     });
@@ -88,19 +88,19 @@ export class CodeActions {
 
   private async run(action: CodeAction): Promise<string> {
     const { edit } = action.edit ? action : await this.client.request<CodeAction, CodeAction>("codeAction/resolve", action);
-    const changed = edit ? await applyWorkspaceEdit(this.client, edit, this.documents, "action") : [];
-    const [only] = changed;
+    const changedDocuments = edit ? await applyWorkspaceEdit(this.client, edit, this.documents, "action") : [];
+    const [document] = changedDocuments;
     // The result may be in another file, such as the xacro that is made of a URDF.
-    if (only && changed.length === 1 && only !== this.documents.shown) await this.documents.show(only.path);
-    return strings.sourceEditor.acted(action.title, changed.length);
+    if (document && changedDocuments.length === 1 && document !== this.documents.shownDocument) await this.documents.show(document.path);
+    return strings.sourceEditor.acted(action.title, changedDocuments.length);
   }
 }
 
 function groupOf({ kind = "" }: CodeAction): number {
-  return KINDS.findIndex((each) => kind === each || kind.startsWith(`${each}.`)) < 2 ? 0 : 1;
+  return KINDS.findIndex((known) => kind === known || kind.startsWith(`${known}.`)) < 2 ? 0 : 1;
 }
 
-function rank(action: CodeAction): number {
+function rankOf(action: CodeAction): number {
   const kind = action.kind ?? "";
   return groupOf(action) * 4 + (kind === "source.fixAll" ? 2 : 0) + (action.isPreferred === true ? 0 : 1);
 }

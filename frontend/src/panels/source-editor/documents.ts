@@ -15,7 +15,7 @@ export interface ServerFinding {
 export interface Documents {
   readonly open: readonly SourceDocument[];
   readonly view: EditorView;
-  readonly shown: SourceDocument | null;
+  readonly shownDocument: SourceDocument | null;
   /** Shows a file, and returns whether it can be shown. */
   show(path: string): Promise<boolean>;
   /** Opens a file without showing it; null if it cannot be read. */
@@ -25,5 +25,5 @@ export interface Documents {
   /** Changes a document, whether it is shown or not. */
   change(document: SourceDocument, spec: TransactionSpec): void;
   /** Receives the findings of a file. */
-  findings(uri: string, findings: readonly ServerFinding[]): void;
+  onFindings(uri: string, onFindings: readonly ServerFinding[]): void;
 }

@@ -18,14 +18,14 @@ export class EditorPane {
   private editor: SourceEditor | null = null;
   private isWanted: boolean;
   /** Loads the editor; null before and after. */
-  private loading: Promise<void> | null = null;
+  private loadPromise: Promise<void> | null = null;
   /** The folder whose files can be edited without a description; empty if there is none. */
   private workspace = "";
   private failure = "";
   /** The file that is to be shown. */
   private file: string | null = null;
   private highlights: readonly Highlight[] = [];
-  private marked = "";
+  private markedKey = "";
   /** The line to scroll to once the file is shown. */
   private line: { file: string; line: number } | null = null;
 
@@ -49,7 +49,7 @@ export class EditorPane {
 
   /** Whether the editor is in place of the text. */
   get isShown(): boolean {
-    return this.isWanted && this.editor !== null && !this.editor.whyNot && (this.editor.shown !== null || this.hasWorkspace);
+    return this.isWanted && this.editor !== null && !this.editor.unavailableReason && (this.editor.shownDocument !== null || this.hasWorkspace);
   }
 
   /** Whether files can be edited without a description. */
@@ -98,15 +98,15 @@ export class EditorPane {
   show(file: string | null, highlights: readonly Highlight[], line: number | null): boolean {
     this.file = file;
     this.highlights = highlights;
-    if (this.isWanted && file !== null && this.loading === null) {
+    if (this.isWanted && file !== null && this.loadPromise === null) {
       if (this.editor === null) void this.load();
-      else if (this.editor.shown?.path !== file) void this.editor.show(file);
+      else if (this.editor.shownDocument?.path !== file) void this.editor.show(file);
     }
     if (file !== null && line !== null) this.line = { file, line };
-    const isEdited = this.isShown && (file === null ? this.hasWorkspace : this.editor?.shown?.path === file);
+    const isEdited = this.isShown && (file === null ? this.hasWorkspace : this.editor?.shownDocument?.path === file);
     if (isEdited) this.mark();
     this.element.hidden = !isEdited;
-    this.notice.textContent = this.failure || (this.editor?.whyNot ?? "");
+    this.notice.textContent = this.failure || (this.editor?.unavailableReason ?? "");
     this.notice.hidden = !this.isWanted || file === null || this.notice.textContent === "";
     return isEdited;
   }
@@ -118,8 +118,8 @@ export class EditorPane {
   private mark(): void {
     const key = JSON.stringify([this.file, this.highlights]);
     const line = this.line?.file === this.file ? this.line.line : null;
-    if (key === this.marked && line === null) return;
-    [this.marked, this.line] = [key, null];
+    if (key === this.markedKey && line === null) return;
+    [this.markedKey, this.line] = [key, null];
     this.editor?.mark(this.highlights, line);
   }
 
@@ -138,8 +138,8 @@ export class EditorPane {
   }
 
   private load(): Promise<void> {
-    this.loading ??= this.loadEditor();
-    return this.loading;
+    this.loadPromise ??= this.loadEditor();
+    return this.loadPromise;
   }
 
   private async loadEditor(): Promise<void> {
@@ -149,16 +149,16 @@ export class EditorPane {
     } catch {
       this.failure = strings.sourceEditor.failed;
     }
-    this.loading = null;
+    this.loadPromise = null;
     const { editor } = this;
     if (editor !== null) {
       this.element.append(editor.element);
       if (this.hasWorkspace) editor.openWorkspace(this.workspace);
-      let last = "";
+      let lastKey = "";
       editor.changed.on(() => {
-        const now = `${String(editor.whyNot)} ${editor.shown?.path ?? ""} ${editor.open.length}`;
-        if (now !== last) this.onChanged(editor.shown?.path ?? null);
-        last = now;
+        const now = `${String(editor.unavailableReason)} ${editor.shownDocument?.path ?? ""} ${editor.open.length}`;
+        if (now !== lastKey) this.onChanged(editor.shownDocument?.path ?? null);
+        lastKey = now;
       });
     }
     this.onChanged(this.file);

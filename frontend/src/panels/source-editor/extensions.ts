@@ -7,13 +7,13 @@ import { EditorState, type Extension } from "@codemirror/state";
 import { drawSelection, EditorView, highlightActiveLine, highlightSpecialChars, keymap, lineNumbers, tooltips } from "@codemirror/view";
 import { strings } from "../../strings";
 import { shortPath } from "../place";
-import { indentation, syntaxOf } from "./languages";
+import { detectIndentation, syntaxOf } from "./languages";
 import { markedLines } from "./marks";
 import { phrases } from "./phrases";
 import { pageTheme } from "./theme";
 
 /** Returns everything of an editor that needs no language server. */
-export function baseExtensions(path: string, text: string, isReadOnly: boolean): Extension {
+export function createBaseExtensions(path: string, text: string, isReadOnly: boolean): Extension {
   const texts = strings.sourceEditor;
   const label = texts.text(shortPath(path, 2));
   return [
@@ -39,7 +39,7 @@ export function baseExtensions(path: string, text: string, isReadOnly: boolean):
       ...lintKeymap,
       indentWithTab,
     ]),
-    indentUnit.of(indentation(text)),
+    indentUnit.of(detectIndentation(text)),
     EditorState.phrases.of(phrases),
     EditorState.readOnly.of(isReadOnly),
     EditorView.contentAttributes.of({ "aria-label": label, "aria-description": texts.keys, tabindex: "0" }),

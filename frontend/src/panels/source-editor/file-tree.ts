@@ -16,10 +16,10 @@ export class FileTree {
   private readonly list = h("div", { class: "file-tree-list", role: "tree", aria: { label: strings.sourceEditor.tree } });
   private readonly name = h("input", { class: "field file-tree-name" });
   private readonly folders = new Map<string, Folder>();
-  private readonly expanded = new Set<string>();
+  private readonly expandedFolders = new Set<string>();
   private root = "";
   private current = "";
-  private unsaved: ReadonlySet<string> = new Set();
+  private unsavedPaths: ReadonlySet<string> = new Set();
   /** The path of the item that the Tab key reaches. */
   private reachable = "";
 
@@ -74,15 +74,15 @@ export class FileTree {
   }
 
   setUnsaved(paths: readonly string[]): void {
-    if (paths.length === this.unsaved.size && paths.every((path) => this.unsaved.has(path))) return;
-    this.unsaved = new Set(paths);
+    if (paths.length === this.unsavedPaths.size && paths.every((path) => this.unsavedPaths.has(path))) return;
+    this.unsavedPaths = new Set(paths);
     this.draw();
   }
 
   /** Reads the folders again that are shown. */
   reload(): void {
     if (this.element.hidden || this.root === "") return;
-    for (const path of [this.root, ...this.expanded]) this.request(path);
+    for (const path of [this.root, ...this.expandedFolders]) this.request(path);
   }
 
   private request(path: string): void {
@@ -95,8 +95,8 @@ export class FileTree {
     let folder = this.root;
     for (const part of parts.slice(0, -1)) {
       folder = join(folder, part);
-      if (this.expanded.has(folder)) continue;
-      this.expanded.add(folder);
+      if (this.expandedFolders.has(folder)) continue;
+      this.expandedFolders.add(folder);
       if (!this.element.hidden) this.request(folder);
     }
   }
@@ -119,20 +119,20 @@ export class FileTree {
   }
 
   private addItems(items: HTMLElement[], folder: string, level: number): void {
-    const known = this.folders.get(folder);
-    if (!known) return;
-    for (const name of known.folders) {
+    const entries = this.folders.get(folder);
+    if (!entries) return;
+    for (const name of entries.folders) {
       const path = join(folder, name);
-      const isOpen = this.expanded.has(path);
-      const item = treeItem(path, level, icon("chevron"), name);
+      const isOpen = this.expandedFolders.has(path);
+      const item = createTreeItem(path, level, icon("chevron"), name);
       item.setAttribute("aria-expanded", String(isOpen));
       items.push(item);
       if (isOpen) this.addItems(items, path, level + 1);
     }
-    for (const name of known.files) {
+    for (const name of entries.files) {
       const path = join(folder, name);
-      const isUnsaved = this.unsaved.has(path);
-      const item = treeItem(path, level, icon("file"), name);
+      const isUnsaved = this.unsavedPaths.has(path);
+      const item = createTreeItem(path, level, icon("file"), name);
       item.setAttribute("aria-selected", String(path === this.current));
       if (isUnsaved) item.append(h("span", { class: "file-tree-unsaved", title: strings.sourceEditor.unsaved, aria: { label: strings.sourceEditor.unsaved }, role: "img" }, "●"));
       items.push(item);
@@ -146,14 +146,14 @@ export class FileTree {
     if (!item.hasAttribute("aria-expanded")) {
       this.draw();
       this.onChosen(path);
-    } else this.expand(path, !this.expanded.has(path));
+    } else this.expand(path, !this.expandedFolders.has(path));
   }
 
   private expand(path: string, isOpen: boolean): void {
     if (isOpen) {
-      this.expanded.add(path);
+      this.expandedFolders.add(path);
       this.request(path);
-    } else this.expanded.delete(path);
+    } else this.expandedFolders.delete(path);
     this.draw();
     this.focus(path);
   }
@@ -163,8 +163,8 @@ export class FileTree {
     const path = item?.dataset["path"];
     if (!item || path === undefined) return;
     const items = [...this.list.querySelectorAll<HTMLElement>("[role=treeitem]")];
-    const at = items.indexOf(item);
-    const next = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: items.length - 1 }[event.key];
+    const index = items.indexOf(item);
+    const next = { ArrowDown: index + 1, ArrowUp: index - 1, Home: 0, End: items.length - 1 }[event.key];
     const isOpen = item.getAttribute("aria-expanded");
     if (next !== undefined) this.focus(items[next]?.dataset["path"] ?? path);
     else if (event.key === "Enter" || event.key === " ") this.activate(item);
@@ -177,15 +177,15 @@ export class FileTree {
 
   private focus(path: string): void {
     const items = [...this.list.querySelectorAll<HTMLElement>("[role=treeitem]")];
-    const item = items.find((each) => each.dataset["path"] === path);
+    const item = items.find((candidate) => candidate.dataset["path"] === path);
     if (!item) return;
     this.reachable = path;
-    for (const each of items) each.tabIndex = each === item ? 0 : -1;
+    for (const candidate of items) candidate.tabIndex = candidate === item ? 0 : -1;
     item.focus();
   }
 }
 
-function treeItem(path: string, level: number, ...content: (Node | string)[]): HTMLElement {
+function createTreeItem(path: string, level: number, ...content: (Node | string)[]): HTMLElement {
   const item = h("div", { class: "file-tree-item", role: "treeitem", title: path, data: { path }, aria: { level: String(level) } }, ...content);
   item.style.setProperty("--level", String(level));
   return item;

@@ -3,7 +3,7 @@ import type { EditorState, TransactionSpec } from "@codemirror/state";
 import type { EditorView } from "@codemirror/view";
 import { strings } from "../../strings";
 import type { ServerFinding } from "./documents";
-import { positionIn } from "./server-places";
+import { offsetOf } from "./server-places";
 
 const SEVERITIES = ["error", "error", "warning", "info", "hint"] as const;
 
@@ -21,7 +21,7 @@ export function showFindings(state: EditorState, findings: readonly ServerFindin
 }
 
 function diagnosticOf({ doc }: EditorState, { range, severity = 1, code, message }: ServerFinding): Diagnostic {
-  const [from, to] = [positionIn(doc, range.start), positionIn(doc, range.end)];
+  const [from, to] = [offsetOf(doc, range.start), offsetOf(doc, range.end)];
   return {
     from,
     to: Math.max(from, to),

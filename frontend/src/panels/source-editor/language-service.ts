@@ -6,11 +6,11 @@ import type { Connection } from "../../connection/connection";
 import { Signal } from "../../signal";
 import { ACTION_CAPABILITIES } from "./code-actions";
 import type { Documents, ServerFinding } from "./documents";
-import { languageId } from "./languages";
-import { fitsMessage } from "./message-size";
-import { MEANING_CAPABILITIES, meanings } from "./meanings";
+import { languageOf } from "./languages";
+import { isWithinMessageSize } from "./message-size";
+import { MEANING_CAPABILITIES, createMeanings } from "./meanings";
 import { pathOf } from "./server-places";
-import { safeHtml } from "./safe-html";
+import { sanitizeHtml } from "./safe-html";
 import type { SourceDocument } from "./source-document";
 
 const TIMEOUT_MS = 20_000;
@@ -47,7 +47,7 @@ class DocumentFile implements WorkspaceFile {
     private readonly documents: Documents,
   ) {
     this.doc = document.state.doc;
-    this.languageId = languageId(document.path);
+    this.languageId = languageOf(document.path);
     this.unsynced = ChangeSet.empty(this.doc.length);
   }
 
@@ -56,7 +56,7 @@ class DocumentFile implements WorkspaceFile {
   }
 
   getView(): EditorView | null {
-    return this.documents.shown === this.document ? this.documents.view : null;
+    return this.documents.shownDocument === this.document ? this.documents.view : null;
   }
 }
 
@@ -78,13 +78,13 @@ class DocumentWorkspace extends Workspace {
   }
 
   record(document: SourceDocument, changes: ChangeSet): void {
-    const file = this.files.find((each) => each.document === document);
+    const file = this.files.find((candidate) => candidate.document === document);
     if (file) file.unsynced = file.unsynced.compose(changes);
   }
 
   override syncFiles(): { file: DocumentFile; prevDoc: Text; changes: ChangeSet }[] {
-    const changed = this.files.filter(({ unsynced }) => !unsynced.empty);
-    return changed.map((file) => {
+    const changedFiles = this.files.filter(({ unsynced }) => !unsynced.empty);
+    return changedFiles.map((file) => {
       const result = { file, prevDoc: file.doc, changes: file.unsynced };
       file.doc = file.document.state.doc;
       file.unsynced = ChangeSet.empty(file.doc.length);
@@ -107,7 +107,7 @@ class DocumentWorkspace extends Workspace {
   override async requestFile(uri: string): Promise<DocumentFile | null> {
     const path = pathOf(uri);
     const document = path === null ? null : await this.documents.load(path);
-    return this.files.find((each) => each.document === document) ?? null;
+    return this.files.find((candidate) => candidate.document === document) ?? null;
   }
 
   override async displayFile(uri: string): Promise<EditorView | null> {
@@ -116,7 +116,7 @@ class DocumentWorkspace extends Workspace {
   }
 
   override updateFile(uri: string, update: TransactionSpec): void {
-    const file = this.files.find((each) => each.uri === uri);
+    const file = this.files.find((candidate) => candidate.uri === uri);
     if (file) this.documents.change(file.document, update);
   }
 }
@@ -137,12 +137,12 @@ export class LanguageService {
     let workspace: DocumentWorkspace | undefined;
     this.config = {
       timeout: TIMEOUT_MS,
-      sanitizeHTML: safeHtml,
+      sanitizeHTML: sanitizeHtml,
       workspace: (client) => (workspace = new DocumentWorkspace(client, documents)),
       notificationHandlers: {
         "textDocument/publishDiagnostics": (_, { uri, version, diagnostics }: { uri: string; version?: number | null; diagnostics: ServerFinding[] }) => {
           const file = this.workspace.getFile(uri);
-          if (file && (version === undefined || version === null || version === file.version)) documents.findings(uri, diagnostics);
+          if (file && (version === undefined || version === null || version === file.version)) documents.onFindings(uri, diagnostics);
           return true;
         },
         "window/showMessage": (_, { message }: { message: string }) => {
@@ -174,7 +174,7 @@ export class LanguageService {
     }
     client.connect({
       // Without the text of such a file, the server reads it from the disk.
-      send: (content) => fitsMessage(content) && connection.send({ type: "ask_language_server", content }),
+      send: (content) => isWithinMessageSize(content) && connection.send({ type: "ask_language_server", content }),
       subscribe: (handler) => (this.receive = handler),
       unsubscribe: () => (this.receive = () => undefined),
     });
@@ -190,18 +190,18 @@ export class LanguageService {
   }
 
   /** Notifies the server of files that were written, by the editor or another program. */
-  filesChanged(uris: readonly string[]): void {
+  onFilesChanged(uris: readonly string[]): void {
     const changes = uris.map((uri) => ({ uri, type: 2 }));
     if (changes.length > 0) this.client.notification("workspace/didChangeWatchedFiles", { changes });
   }
 
   /** Returns what makes a view of a document use the server. */
-  extension(document: { uri: string; path: string }): Extension {
+  extensionFor(document: { uri: string; path: string }): Extension {
     return [
-      this.client.plugin(document.uri, languageId(document.path)),
+      this.client.plugin(document.uri, languageOf(document.path)),
       serverCompletion({ override: true }),
       hoverTooltips(),
-      meanings(this.client, document.uri),
+      createMeanings(this.client, document.uri),
       ViewPlugin.define(() => new Synchronizer(this.client)),
       keymap.of([{ key: "Shift-Alt-f", run: formatDocument, preventDefault: true }]),
     ];

@@ -15,14 +15,14 @@ export function syntaxOf(path: string): Extension {
 }
 
 /** Returns the language server's name of a file's language. */
-export function languageId(path: string): string {
+export function languageOf(path: string): string {
   if (XML.test(path)) return "xml";
   if (YAML.test(path)) return "yaml";
   return PYTHON.test(path) ? "python" : "plaintext";
 }
 
 /** Returns one step of the indentation that a text uses, two spaces by default. */
-export function indentation(text: string): string {
+export function detectIndentation(text: string): string {
   const first = /^(\t|  +)\S/m.exec(text)?.[1];
   return first === undefined || first.length > 8 ? "  " : first;
 }

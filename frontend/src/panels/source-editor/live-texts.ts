@@ -1,6 +1,6 @@
 import type { Connection } from "../../connection/connection";
 import type { UnsavedTextEdited, UnsavedTextShown } from "../../protocol";
-import { fitsMessage } from "./message-size";
+import { isWithinMessageSize } from "./message-size";
 import type { SourceDocument } from "./source-document";
 
 /** A text is sent this time after its last change, ms. */
@@ -20,7 +20,7 @@ export class LiveTexts {
   private timer: ReturnType<typeof setTimeout> | undefined;
   private number = 0;
   /** The files whose unsaved texts the server has, with the newest of their numbers. */
-  private readonly sent = new Map<string, number>();
+  private readonly sentVersions = new Map<string, number>();
   private readonly outcomes = new Map<string, UnsavedTextShown["outcome"]>();
 
   /** @param onOutcome - called when the server has shown a text, or could not. */
@@ -40,14 +40,14 @@ export class LiveTexts {
   }
 
   /** Sends the texts that have changed, after a pause. */
-  changed(): void {
+  scheduleSending(): void {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.send(), PAUSE_MS);
   }
 
   /** Sends all unsaved texts to a program that has none of them. */
   restart(): void {
-    this.sent.clear();
+    this.sentVersions.clear();
     this.outcomes.clear();
     for (const document of this.documents.open) document.described = null;
     this.send();
@@ -56,11 +56,11 @@ export class LiveTexts {
   private send(): void {
     for (const document of this.documents.open) {
       const { path } = document;
-      const wasSent = this.sent.has(path);
+      const wasSent = this.sentVersions.has(path);
       if (document.isUnsaved && this.documents.isShownInScene(path)) {
-        if (document.newestSent?.since.empty === true) continue;
+        if (document.newestSent?.changes.empty === true) continue;
         const text = document.state.doc.toString();
-        if (!fitsMessage(text)) continue;
+        if (!isWithinMessageSize(text)) continue;
         this.number += 1;
         document.beginShowing(this.number);
         this.request(path, text);
@@ -73,19 +73,19 @@ export class LiveTexts {
   }
 
   private request(path: string, text: string | null): void {
-    this.sent.set(path, this.number);
+    this.sentVersions.set(path, this.number);
     this.connection.send({ type: "show_unsaved_text", number: this.number, path, text });
   }
 
   private onShown({ number, path, outcome }: UnsavedTextShown): void {
-    const document = this.documents.open.find((each) => each.path === path);
+    const document = this.documents.open.find((candidate) => candidate.path === path);
     if (!document) return;
     document.endShowing(number, outcome === "shown");
-    if (this.sent.get(path) !== number) return;
+    if (this.sentVersions.get(path) !== number) return;
     if (document.isUnsaved) this.outcomes.set(path, outcome);
     else {
       this.outcomes.delete(path);
-      this.sent.delete(path);
+      this.sentVersions.delete(path);
       document.described = null;
     }
     this.onOutcome();

@@ -9,9 +9,9 @@ const LOOKS = { focus: Decoration.line({ class: "cm-focus-line" }), problem: Dec
 /** The marked lines, which move with the text. */
 const marks = StateField.define<DecorationSet>({
   create: () => Decoration.none,
-  update: (old, transaction) => {
-    const effect = transaction.effects.find((each) => each.is(setMarks));
-    return effect ? effect.value : old.map(transaction.changes);
+  update: (decorations, transaction) => {
+    const effect = transaction.effects.find((candidate) => candidate.is(setMarks));
+    return effect ? effect.value : decorations.map(transaction.changes);
   },
   provide: (field) => EditorView.decorations.from(field),
 });
@@ -21,19 +21,19 @@ export const markedLines: Extension = marks;
 /** Returns the effect that marks lines, given as lines of the text that the shown description was read from. */
 export function marksOf(document: SourceDocument, highlights: readonly Highlight[]): StateEffect<DecorationSet> {
   const ranges: Range<Decoration>[] = [];
-  for (const { from, to, look } of highlights) {
-    const [first, last] = [from, to].map((line) => document.state.doc.lineAt(document.lineNow(line)).number);
-    for (let line = first ?? 1; line <= (last ?? 0); line += 1) ranges.push(LOOKS[look].range(document.state.doc.line(line).from));
+  for (const { firstLine, lastLine, kind } of highlights) {
+    const [first, last] = [firstLine, lastLine].map((line) => document.state.doc.lineAt(document.currentLineOf(line)).number);
+    for (let line = first ?? 1; line <= (last ?? 0); line += 1) ranges.push(LOOKS[kind].range(document.state.doc.line(line).from));
   }
   return setMarks.of(Decoration.set(ranges, true));
 }
 
 /** Returns the first and last marked line of each look, for tests. */
 export function inspectMarks(state: EditorState): { line: number; look: string }[] {
-  const found: { line: number; look: string }[] = [];
+  const lines: { line: number; look: string }[] = [];
   state.field(marks, false)?.between(0, state.doc.length, (from, _, { spec }) => {
-    const look = (spec as { class: string }).class === "cm-focus-line" ? "focus" : "problem";
-    found.push({ line: state.doc.lineAt(from).number, look });
+    const kind = (spec as { class: string }).class === "cm-focus-line" ? "focus" : "problem";
+    lines.push({ line: state.doc.lineAt(from).number, look: kind });
   });
-  return found;
+  return lines;
 }

@@ -4,8 +4,8 @@ import { Prec, RangeSet, StateEffect, type Extension, type Range, type Text } fr
 import { Decoration, EditorView, ViewPlugin, WidgetType, type DecorationSet, type ViewUpdate } from "@codemirror/view";
 import { h } from "../../dom";
 import { strings } from "../../strings";
-import { colorOf, hexOf, tokenRanges, type Color, type Legend } from "./server-meanings";
-import { positionIn, placeOf, type ServerRange } from "./server-places";
+import { colorOf, hexOf, decodeTokens, type Color, type Legend } from "./server-meanings";
+import { offsetOf, placeOf, type ServerRange } from "./server-places";
 import type { TextEdit } from "./workspace-edit";
 
 /** The meaning of a text is requested this time after its last change, ms. */
@@ -29,7 +29,7 @@ export const MEANING_CAPABILITIES = {
   },
 };
 
-const arrived = StateEffect.define<DecorationSet>();
+const decorationsArrived = StateEffect.define<DecorationSet>();
 
 /** The value of an expression, or the name of a parameter, beside the text. */
 class HintWidget extends WidgetType {
@@ -50,23 +50,23 @@ class HintWidget extends WidgetType {
 /** A color before the text that writes it; a click changes it. */
 class ColorWidget extends WidgetType {
   constructor(
-    private readonly written: WrittenColor,
-    private readonly choose: (view: EditorView, written: WrittenColor, swatch: HTMLElement) => void,
+    private readonly writtenColor: WrittenColor,
+    private readonly choose: (view: EditorView, writtenColor: WrittenColor, swatch: HTMLElement) => void,
   ) {
     super();
   }
 
   override eq(other: ColorWidget): boolean {
-    return JSON.stringify(other.written) === JSON.stringify(this.written);
+    return JSON.stringify(other.writtenColor) === JSON.stringify(this.writtenColor);
   }
 
   toDOM(view: EditorView): HTMLElement {
     const swatch = h("span", { class: "cm-color", title: strings.sourceEditor.chooseColor, aria: { hidden: "true" } }, h("i"));
-    const { red, green, blue, alpha } = this.written.color;
+    const { red, green, blue, alpha } = this.writtenColor.color;
     (swatch.firstElementChild as HTMLElement).style.background = `rgb(${red * 255} ${green * 255} ${blue * 255} / ${alpha})`;
     swatch.addEventListener("mousedown", (event) => {
       event.preventDefault();
-      this.choose(view, this.written, swatch);
+      this.choose(view, this.writtenColor, swatch);
     });
     return swatch;
   }
@@ -88,14 +88,14 @@ class Meanings {
     private readonly client: LSPClient,
     private readonly uri: string,
   ) {
-    this.later();
+    this.requestLater();
   }
 
   update({ docChanged, viewportChanged, changes, transactions }: ViewUpdate): void {
     if (docChanged) this.decorations = this.decorations.map(changes);
-    const effects = transactions.flatMap((each) => each.effects);
-    for (const effect of effects) if (effect.is(arrived)) this.decorations = effect.value;
-    if (docChanged || viewportChanged || effects.some((effect) => effect.is(setDiagnosticsEffect))) this.later();
+    const effects = transactions.flatMap((transaction) => transaction.effects);
+    for (const effect of effects) if (effect.is(decorationsArrived)) this.decorations = effect.value;
+    if (docChanged || viewportChanged || effects.some((effect) => effect.is(setDiagnosticsEffect))) this.requestLater();
   }
 
   destroy(): void {
@@ -104,14 +104,14 @@ class Meanings {
   }
 
   /** Opens the browser's choice of colors for a color of the text. */
-  choose(written: WrittenColor, anchor: DOMRect): void {
+  choose(writtenColor: WrittenColor, anchor: DOMRect): void {
     const field = h("input", { class: "cm-color-field", aria: { label: strings.sourceEditor.chooseColor } });
     field.type = "color";
-    field.value = hexOf(written.color);
+    field.value = hexOf(writtenColor.color);
     field.style.left = `${anchor.left}px`;
     field.style.top = `${anchor.bottom}px`;
     document.body.append(field);
-    field.addEventListener("change", () => void this.write(written, field.value).finally(() => field.remove()));
+    field.addEventListener("change", () => void this.write(writtenColor, field.value).finally(() => field.remove()));
     field.addEventListener("blur", () => field.remove());
     field.focus();
     field.showPicker();
@@ -120,15 +120,15 @@ class Meanings {
   private async write({ range, color }: WrittenColor, hex: string): Promise<void> {
     this.client.sync();
     const { doc } = this.view.state;
-    const asked = { textDocument: { uri: this.uri }, range, color: { ...colorOf(hex), alpha: color.alpha } };
-    const [first] = (await this.client.request<object, { label: string; textEdit?: TextEdit }[] | null>("textDocument/colorPresentation", asked)) ?? [];
+    const request = { textDocument: { uri: this.uri }, range, color: { ...colorOf(hex), alpha: color.alpha } };
+    const [first] = (await this.client.request<object, { label: string; textEdit?: TextEdit }[] | null>("textDocument/colorPresentation", request)) ?? [];
     if (this.isClosed || first === undefined || this.view.state.doc !== doc) return;
     const edit = first.textEdit ?? { range, newText: first.label };
-    this.view.dispatch({ changes: { from: positionIn(doc, edit.range.start), to: positionIn(doc, edit.range.end), insert: edit.newText }, userEvent: "action" });
+    this.view.dispatch({ changes: { from: offsetOf(doc, edit.range.start), to: offsetOf(doc, edit.range.end), insert: edit.newText }, userEvent: "action" });
     this.view.focus();
   }
 
-  private later(): void {
+  private requestLater(): void {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => void this.request().catch(() => undefined), PAUSE_MS); // the next change asks again
   }
@@ -140,39 +140,39 @@ class Meanings {
     const { doc } = view.state;
     const { from, to } = view.viewport;
     const textDocument = { uri: this.uri };
-    const asked = { textDocument, range: { start: placeOf(doc, from), end: placeOf(doc, to) } };
+    const request = { textDocument, range: { start: placeOf(doc, from), end: placeOf(doc, to) } };
     const [hints, tokens, colors] = await Promise.all([
-      this.ask<Hint[]>("textDocument/inlayHint", asked),
-      this.ask<{ data: number[] }>("textDocument/semanticTokens/range", asked),
+      this.ask<Hint[]>("textDocument/inlayHint", request),
+      this.ask<{ data: number[] }>("textDocument/semanticTokens/range", request),
       this.ask<WrittenColor[]>("textDocument/documentColor", { textDocument }),
     ]);
     if (this.isClosed || view.state.doc !== doc) return;
     this.colors = colors ?? [];
     const provider = client.serverCapabilities?.semanticTokensProvider as { legend: Legend } | undefined;
-    const found = [
+    const ranges = [
       ...(hints ?? []).map((hint) => hintAt(doc, hint)),
-      ...(provider ? tokenRanges(doc, tokens?.data ?? [], provider.legend).map(({ from, to, names }) => markOf(names).range(from, to)) : []),
-      ...this.colors.map((color) => this.swatch(doc, color)),
+      ...(provider ? decodeTokens(doc, tokens?.data ?? [], provider.legend).map(({ from, to, names }) => markOf(names).range(from, to)) : []),
+      ...this.colors.map((color) => this.createSwatch(doc, color)),
     ];
-    const decorations = RangeSet.of(found, true);
+    const decorations = RangeSet.of(ranges, true);
     if (RangeSet.eq([decorations], [this.decorations])) return; // drawing the same again would close a tooltip
-    view.dispatch({ effects: arrived.of(decorations) });
+    view.dispatch({ effects: decorationsArrived.of(decorations) });
   }
 
-  private swatch(doc: Text, written: WrittenColor): Range<Decoration> {
+  private createSwatch(doc: Text, writtenColor: WrittenColor): Range<Decoration> {
     const choose = (_: EditorView, color: WrittenColor, element: HTMLElement): void => this.choose(color, element.getBoundingClientRect());
-    return Decoration.widget({ widget: new ColorWidget(written, choose), side: -1 }).range(positionIn(doc, written.range.start));
+    return Decoration.widget({ widget: new ColorWidget(writtenColor, choose), side: -1 }).range(offsetOf(doc, writtenColor.range.start));
   }
 
   /** Returns the answer of the server; null if it has none because the text has changed. */
-  private ask<Result>(method: string, asked: object): Promise<Result | null> {
-    return this.client.request<object, Result | null>(method, asked).catch(() => null);
+  private ask<Result>(method: string, request: object): Promise<Result | null> {
+    return this.client.request<object, Result | null>(method, request).catch(() => null);
   }
 }
 
 let plugin: ViewPlugin<Meanings, { client: LSPClient; uri: string }> | undefined;
 
-function meaningsPlugin(): ViewPlugin<Meanings, { client: LSPClient; uri: string }> {
+function createPlugin(): ViewPlugin<Meanings, { client: LSPClient; uri: string }> {
   plugin ??= ViewPlugin.define<Meanings, { client: LSPClient; uri: string }>((view, { client, uri }) => new Meanings(view, client, uri), {
     decorations: ({ decorations }) => decorations,
   });
@@ -180,24 +180,24 @@ function meaningsPlugin(): ViewPlugin<Meanings, { client: LSPClient; uri: string
 }
 
 /** Returns what shows values of expressions, names by their meaning, and colors in a text. */
-export function meanings(client: LSPClient, uri: string): Extension {
+export function createMeanings(client: LSPClient, uri: string): Extension {
   // The meaning of a name counts more than its syntax: the color of the inner element is seen.
-  return Prec.highest(meaningsPlugin().of({ client, uri }));
+  return Prec.highest(createPlugin().of({ client, uri }));
 }
 
 /** Returns what lets the user choose the color on the line of a position; null if there is none. */
 export function colorChoice(view: EditorView, position: number): (() => void) | null {
-  const found = view.plugin(meaningsPlugin());
+  const plugin = view.plugin(createPlugin());
   const line = view.state.doc.lineAt(position).number - 1;
-  const written = found?.colors.find(({ range }) => range.start.line === line);
-  if (!found || !written) return null;
-  const at = view.coordsAtPos(positionIn(view.state.doc, written.range.start)) ?? view.dom.getBoundingClientRect();
-  return () => found.choose(written, new DOMRect(at.left, at.top, 0, at.bottom - at.top));
+  const writtenColor = plugin?.colors.find(({ range }) => range.start.line === line);
+  if (!plugin || !writtenColor) return null;
+  const anchor = view.coordsAtPos(offsetOf(view.state.doc, writtenColor.range.start)) ?? view.dom.getBoundingClientRect();
+  return () => plugin.choose(writtenColor, new DOMRect(anchor.left, anchor.top, 0, anchor.bottom - anchor.top));
 }
 
 function hintAt(doc: Text, { position, label }: Hint): Range<Decoration> {
   const text = typeof label === "string" ? label : label.map(({ value }) => value).join("");
-  return Decoration.widget({ widget: new HintWidget(text), side: 1 }).range(positionIn(doc, position));
+  return Decoration.widget({ widget: new HintWidget(text), side: 1 }).range(offsetOf(doc, position));
 }
 
 function markOf(names: readonly string[]): Decoration {

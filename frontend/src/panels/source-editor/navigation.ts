@@ -5,7 +5,7 @@ import { strings } from "../../strings";
 import { shortPath } from "../place";
 import type { Documents } from "./documents";
 import type { ListedFile, ListedPlace, PlaceList } from "./place-list";
-import { pathOf, placeOf, positionIn, type ServerRange } from "./server-places";
+import { pathOf, placeOf, offsetOf, type ServerRange } from "./server-places";
 import type { SourceDocument } from "./source-document";
 import { messageOf } from "./workspace-edit";
 
@@ -26,9 +26,9 @@ const CONTEXT = 80;
 
 /** Definitions, references, and the way back to the places before. */
 export class Navigation {
-  private readonly back: Bookmark[] = [];
+  private readonly history: Bookmark[] = [];
   private readonly forward: Bookmark[] = [];
-  private listed: Bookmark[] = [];
+  private listedPlaces: Bookmark[] = [];
   private isReturning = false;
 
   /** @param tell - called with messages for the user. */
@@ -42,11 +42,11 @@ export class Navigation {
   /** Goes to the definition of the name at a position; lists the definitions if there are several. */
   goToDefinition(view: EditorView, position = view.state.selection.main.head): boolean {
     const texts = strings.sourceEditor;
-    void this.ask(view, "textDocument/definition", position, {}).then(async (found) => {
-      const [first, ...others] = found;
+    void this.ask(view, "textDocument/definition", position, {}).then(async (locations) => {
+      const [first, ...others] = locations;
       if (!first) this.tell(texts.noDefinition);
       else if (others.length === 0) await this.open(first);
-      else await this.show(texts.definitions(found.length), found);
+      else await this.show(texts.definitions(locations.length), locations);
     }).catch((error: unknown) => this.tell(messageOf(error)));
     return true;
   }
@@ -55,9 +55,9 @@ export class Navigation {
   listReferences(view: EditorView): boolean {
     const texts = strings.sourceEditor;
     const { head } = view.state.selection.main;
-    void this.ask(view, "textDocument/references", head, { context: { includeDeclaration: true } }).then(async (found) => {
-      if (found.length === 0) this.tell(texts.noReferences);
-      else await this.show(texts.references(found.length), found);
+    void this.ask(view, "textDocument/references", head, { context: { includeDeclaration: true } }).then(async (locations) => {
+      if (locations.length === 0) this.tell(texts.noReferences);
+      else await this.show(texts.references(locations.length), locations);
     }).catch((error: unknown) => this.tell(messageOf(error)));
     return true;
   }
@@ -66,30 +66,30 @@ export class Navigation {
   async open({ uri, range }: ServerLocation): Promise<void> {
     const path = pathOf(uri);
     const document = path === null ? null : await this.documents.load(path);
-    if (document) await this.go(document, positionIn(document.state.doc, range.start));
+    if (document) await this.go(document, offsetOf(document.state.doc, range.start));
   }
 
   /** Remembers the place of the cursor, to which `goBack` returns. */
   leave(): void {
-    const here = this.here();
-    const last = this.back.at(-1);
-    if (!here || this.isReturning || (last?.document === here.document && last.position === here.position)) return;
-    this.back.push(here);
+    const bookmark = this.currentBookmark();
+    const last = this.history.at(-1);
+    if (!bookmark || this.isReturning || (last?.document === bookmark.document && last.position === bookmark.position)) return;
+    this.history.push(bookmark);
     this.forward.length = 0;
-    if (this.back.length > MAX_BACK) this.back.shift();
+    if (this.history.length > MAX_BACK) this.history.shift();
   }
 
   goBack(): boolean {
-    return this.goTo(this.back, this.forward);
+    return this.goTo(this.history, this.forward);
   }
 
   goForward(): boolean {
-    return this.goTo(this.forward, this.back);
+    return this.goTo(this.forward, this.history);
   }
 
   /** Moves the remembered places with the text of a document. */
   record(document: SourceDocument, changes: ChangeSet): void {
-    for (const bookmark of [...this.back, ...this.forward, ...this.listed]) {
+    for (const bookmark of [...this.history, ...this.forward, ...this.listedPlaces]) {
       if (bookmark.document === document) bookmark.position = changes.mapPos(bookmark.position);
     }
   }
@@ -103,60 +103,60 @@ export class Navigation {
     view.focus();
   }
 
-  private goTo(from: Bookmark[], to: Bookmark[]): boolean {
-    const here = this.here();
-    const target = from.pop();
+  private goTo(source: Bookmark[], destination: Bookmark[]): boolean {
+    const bookmark = this.currentBookmark();
+    const target = source.pop();
     if (!target) return true;
-    if (here) to.push(here);
+    if (bookmark) destination.push(bookmark);
     this.isReturning = true;
     void this.go(target.document, target.position).finally(() => (this.isReturning = false));
     return true;
   }
 
-  private here(): Bookmark | null {
-    const { shown, view } = this.documents;
-    return shown && { document: shown, position: view.state.selection.main.head };
+  private currentBookmark(): Bookmark | null {
+    const { shownDocument, view } = this.documents;
+    return shownDocument && { document: shownDocument, position: view.state.selection.main.head };
   }
 
-  private async ask(view: EditorView, method: string, position: number, more: object): Promise<ServerLocation[]> {
-    const { shown } = this.documents;
-    if (!shown) return [];
+  private async ask(view: EditorView, method: string, position: number, parameters: object): Promise<ServerLocation[]> {
+    const { shownDocument } = this.documents;
+    if (!shownDocument) return [];
     this.client.sync();
-    const asked = { textDocument: { uri: shown.uri }, position: placeOf(view.state.doc, position), ...more };
-    const found = await this.client.request<object, ServerLocation | ServerLocation[] | null>(method, asked);
-    return found === null ? [] : [found].flat();
+    const request = { textDocument: { uri: shownDocument.uri }, position: placeOf(view.state.doc, position), ...parameters };
+    const locations = await this.client.request<object, ServerLocation | ServerLocation[] | null>(method, request);
+    return locations === null ? [] : [locations].flat();
   }
 
   private async show(heading: string, locations: readonly ServerLocation[]): Promise<void> {
     const files = new Map<string, ServerLocation[]>();
     for (const location of locations) files.set(location.uri, [...(files.get(location.uri) ?? []), location]);
-    this.listed = [];
-    const listed: ListedFile[] = [];
-    for (const [uri, own] of files) {
+    this.listedPlaces = [];
+    const listedFiles: ListedFile[] = [];
+    for (const [uri, ranges] of files) {
       const path = pathOf(uri);
       const document = path === null ? null : await this.documents.load(path);
-      if (document) listed.push({ name: shortPath(document.path), path: document.path, places: own.map(({ range }) => this.listedPlace(document, range)) });
+      if (document) listedFiles.push({ name: shortPath(document.path), path: document.path, places: ranges.map(({ range }) => this.listPlace(document, range)) });
     }
-    this.list.show(heading, listed);
+    this.list.show(heading, listedFiles);
   }
 
-  private listedPlace(document: SourceDocument, range: ServerRange): ListedPlace {
+  private listPlace(document: SourceDocument, range: ServerRange): ListedPlace {
     const { doc } = document.state;
-    const bookmark = { document, position: positionIn(doc, range.start) };
-    this.listed.push(bookmark);
-    return { ...excerpt(document, range), open: () => void this.go(document, bookmark.position) };
+    const bookmark = { document, position: offsetOf(doc, range.start) };
+    this.listedPlaces.push(bookmark);
+    return { ...excerptOf(document, range), open: () => void this.go(document, bookmark.position) };
   }
 }
 
 /** Returns the line of a range, in three parts. */
-export function excerpt({ state: { doc } }: SourceDocument, range: ServerRange): Omit<ListedPlace, "open"> {
-  const [from, to] = [positionIn(doc, range.start), positionIn(doc, range.end)];
+export function excerptOf({ state: { doc } }: SourceDocument, range: ServerRange): Omit<ListedPlace, "open"> {
+  const [from, to] = [offsetOf(doc, range.start), offsetOf(doc, range.end)];
   const line = doc.lineAt(from);
   const end = Math.min(to, line.to);
   return {
     line: line.number,
-    before: doc.sliceString(Math.max(line.from, from - CONTEXT), from).trimStart(),
+    textBefore: doc.sliceString(Math.max(line.from, from - CONTEXT), from).trimStart(),
     name: doc.sliceString(from, end),
-    after: doc.sliceString(end, Math.min(line.to, end + CONTEXT)),
+    textAfter: doc.sliceString(end, Math.min(line.to, end + CONTEXT)),
   };
 }

@@ -5,9 +5,9 @@ import { strings } from "../../strings";
 /** A line of a file in a list; `name` is the emphasized part of its text. */
 export interface ListedPlace {
   readonly line: number;
-  readonly before: string;
+  readonly textBefore: string;
   readonly name: string;
-  readonly after: string;
+  readonly textAfter: string;
   readonly open: () => void;
 }
 
@@ -72,9 +72,9 @@ export class PlaceList {
   }
 
   private select(index: number): void {
-    for (const [at, option] of this.options.entries()) {
-      option.tabIndex = at === index ? 0 : -1;
-      option.setAttribute("aria-selected", String(at === index));
+    for (const [position, option] of this.options.entries()) {
+      option.tabIndex = position === index ? 0 : -1;
+      option.setAttribute("aria-selected", String(position === index));
     }
   }
 
@@ -85,11 +85,11 @@ export class PlaceList {
 
   private onKeyDown(event: KeyboardEvent): void {
     const { options } = this;
-    const at = options.findIndex((option) => option.tabIndex === 0);
+    const index = options.findIndex((option) => option.tabIndex === 0);
     const last = options.length - 1;
-    const next = { ArrowDown: Math.min(at + 1, last), ArrowUp: Math.max(at - 1, 0), Home: 0, End: last }[event.key];
+    const next = { ArrowDown: Math.min(index + 1, last), ArrowUp: Math.max(index - 1, 0), Home: 0, End: last }[event.key];
     if (next !== undefined) this.focus(next);
-    else if (event.key === "Enter" || event.key === " ") this.choose(at);
+    else if (event.key === "Enter" || event.key === " ") this.choose(index);
     else if (event.key === "Escape") this.close();
     else return;
     event.preventDefault();
@@ -97,11 +97,11 @@ export class PlaceList {
   }
 }
 
-function optionOf({ line, before, name, after }: ListedPlace): HTMLElement {
+function optionOf({ line, textBefore, name, textAfter }: ListedPlace): HTMLElement {
   return h(
     "div",
     { class: "place-list-place", role: "option", tabIndex: -1 },
     h("span", { class: "place-list-line" }, String(line)),
-    h("code", {}, before, h("strong", {}, name), after),
+    h("code", {}, textBefore, h("strong", {}, name), textAfter),
   );
 }

@@ -2,7 +2,7 @@ import { h } from "../../dom";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
 import { shortPath } from "../place";
-import { excerpt } from "./navigation";
+import { excerptOf } from "./navigation";
 import type { SourceDocument } from "./source-document";
 import type { TextEdit } from "./workspace-edit";
 
@@ -24,9 +24,9 @@ export function confirmRename(name: string, newName: string, files: readonly Ren
   const count = files.reduce((sum, { edits }) => sum + edits.length, 0);
   let left = MAX_LINES;
   const lists = files.flatMap(({ document, edits }) => {
-    const shown = edits.slice(0, left);
-    left -= shown.length;
-    return shown.length === 0 ? [] : [fileList(document, shown)];
+    const shownEdits = edits.slice(0, left);
+    left -= shownEdits.length;
+    return shownEdits.length === 0 ? [] : [createFileList(document, shownEdits)];
   });
   const region = h("div", { class: "rename-lines", role: "group", tabIndex: 0, aria: { label: texts.changedLines } }, ...lists);
   if (count > MAX_LINES) region.append(h("p", {}, texts.moreLines(count - MAX_LINES)));
@@ -45,10 +45,10 @@ export function confirmRename(name: string, newName: string, files: readonly Ren
   });
 }
 
-function fileList(document: SourceDocument, edits: readonly TextEdit[]): HTMLElement {
+function createFileList(document: SourceDocument, edits: readonly TextEdit[]): HTMLElement {
   const lines = [...edits].sort((a, b) => a.range.start.line - b.range.start.line || a.range.start.character - b.range.start.character).map(({ range, newText }) => {
-    const { line, before, name, after } = excerpt(document, range);
-    const code = h("code", {}, before, h("del", {}, name), h("ins", {}, newText), after);
+    const { line, textBefore, name, textAfter } = excerptOf(document, range);
+    const code = h("code", {}, textBefore, h("del", {}, name), h("ins", {}, newText), textAfter);
     return h("li", {}, h("span", { class: "place-list-line" }, String(line)), code);
   });
   return h("section", {}, h("h3", { title: document.path }, shortPath(document.path)), h("ul", {}, ...lines));

@@ -4,7 +4,7 @@ import type { Documents } from "./documents";
 import type { LanguageService } from "./language-service";
 import { confirmRename, type RenamedFile } from "./rename-preview";
 import { pathOf, placeOf, rangeText, type ServerRange } from "./server-places";
-import { applyWorkspaceEdit, editsByFile, messageOf, type WorkspaceEdit } from "./workspace-edit";
+import { applyWorkspaceEdit, groupByFile, messageOf, type WorkspaceEdit } from "./workspace-edit";
 
 /** The place of a symbol that can be renamed, with its name unless that is the text there. */
 type RenamedPlace = ServerRange | { readonly range: ServerRange; readonly placeholder: string };
@@ -20,33 +20,33 @@ export function renameAtCursor(view: EditorView, service: LanguageService, docum
 
 async function rename(view: EditorView, { client, message }: LanguageService, documents: Documents): Promise<string> {
   const texts = strings.sourceEditor;
-  const { shown } = documents;
-  if (!shown) return "";
+  const { shownDocument } = documents;
+  if (!shownDocument) return "";
   client.sync();
-  const place = { textDocument: { uri: shown.uri }, position: placeOf(view.state.doc, view.state.selection.main.head) };
-  const named = await client.request<object, RenamedPlace | null>("textDocument/prepareRename", place);
-  if (named === null) return texts.nothingToRename;
-  const oldName = "placeholder" in named ? named.placeholder : rangeText(view.state.doc, named);
+  const request = { textDocument: { uri: shownDocument.uri }, position: placeOf(view.state.doc, view.state.selection.main.head) };
+  const renamedPlace = await client.request<object, RenamedPlace | null>("textDocument/prepareRename", request);
+  if (renamedPlace === null) return texts.nothingToRename;
+  const oldName = "placeholder" in renamedPlace ? renamedPlace.placeholder : rangeText(view.state.doc, renamedPlace);
   const newName = await askName(view, oldName);
   if (newName === null || newName === oldName) return "";
   client.sync();
   const remarks: string[] = [];
   const stop = message.on((remark) => remarks.push(remark));
-  const edit = await client.request<object, WorkspaceEdit | null>("textDocument/rename", { ...place, newName }).finally(stop);
-  const files = edit === null ? [] : await renamedFiles(edit, documents);
+  const edit = await client.request<object, WorkspaceEdit | null>("textDocument/rename", { ...request, newName }).finally(stop);
+  const files = edit === null ? [] : await listRenamedFiles(edit, documents);
   if (edit === null || files.length === 0) return [texts.nothingToRename, ...remarks].join(" ");
   if (!(await confirmRename(oldName, newName, files, remarks))) return texts.notRenamed;
-  const changed = await applyWorkspaceEdit(client, edit, documents, "rename");
-  return texts.renamed(newName, changed.length);
+  const changedDocuments = await applyWorkspaceEdit(client, edit, documents, "rename");
+  return texts.renamed(newName, changedDocuments.length);
 }
 
-async function renamedFiles(edit: WorkspaceEdit, documents: Documents): Promise<RenamedFile[]> {
+async function listRenamedFiles(edit: WorkspaceEdit, documents: Documents): Promise<RenamedFile[]> {
   const files: RenamedFile[] = [];
-  for (const [uri, edits] of editsByFile(edit).edits) {
+  for (const [uri, edits] of groupByFile(edit).edits) {
     const path = pathOf(uri);
     const document = path === null ? null : await documents.load(path);
     if (!document) throw new Error(strings.sourceEditor.notEditable(path ?? uri, ""));
-    if (document === documents.shown) files.unshift({ document, edits });
+    if (document === documents.shownDocument) files.unshift({ document, edits });
     else files.push({ document, edits });
   }
   return files;

@@ -7,7 +7,7 @@ const IMAGE_ADDRESS = /^data:image\/(?:png|jpeg|webp|gif);base64,/i;
  * Returns HTML with nothing but formatted text and links to web pages: what is shown comes from the files of packages,
  * which strangers write. With `allowsImages`, images that are part of the HTML remain.
  */
-export function safeHtml(html: string, { allowsImages = false } = {}): string {
+export function sanitizeHtml(html: string, { allowsImages = false } = {}): string {
   const { body } = new DOMParser().parseFromString(html, "text/html");
   clean(body, allowsImages);
   return body.innerHTML;

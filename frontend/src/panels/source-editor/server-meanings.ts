@@ -1,5 +1,5 @@
 import type { Text } from "@codemirror/state";
-import { positionIn } from "./server-places";
+import { offsetOf } from "./server-places";
 
 const TOKEN_FIELDS = 5;
 
@@ -23,16 +23,16 @@ interface TokenRange {
 }
 
 /** Returns the ranges of semantic tokens, with their types and modifiers, from the relative numbers of the protocol. */
-export function tokenRanges(doc: Text, data: readonly number[], { tokenTypes, tokenModifiers }: Legend): TokenRange[] {
+export function decodeTokens(doc: Text, data: readonly number[], { tokenTypes, tokenModifiers }: Legend): TokenRange[] {
   const ranges: TokenRange[] = [];
   let [line, character] = [0, 0];
-  for (let at = 0; at + TOKEN_FIELDS <= data.length; at += TOKEN_FIELDS) {
-    const [lines = 0, characters = 0, length = 0, type = 0, modifiers = 0] = data.slice(at, at + TOKEN_FIELDS);
+  for (let index = 0; index + TOKEN_FIELDS <= data.length; index += TOKEN_FIELDS) {
+    const [lines = 0, characters = 0, length = 0, type = 0, modifiers = 0] = data.slice(index, index + TOKEN_FIELDS);
     character = lines === 0 ? character + characters : characters;
     line += lines;
     const names = [tokenTypes[type] ?? "", ...tokenModifiers.filter((_, bit) => (modifiers >> bit) & 1)];
-    const from = positionIn(doc, { line, character });
-    const to = positionIn(doc, { line, character: character + length });
+    const from = offsetOf(doc, { line, character });
+    const to = offsetOf(doc, { line, character: character + length });
     if (to > from) ranges.push({ from, to, names });
   }
   return ranges;
@@ -45,6 +45,6 @@ export function hexOf({ red, green, blue }: Color): string {
 
 /** Returns the color of `#rrggbb`, opaque. */
 export function colorOf(hex: string): Color {
-  const [red = 0, green = 0, blue = 0] = [1, 3, 5].map((at) => Math.round((parseInt(hex.slice(at, at + 2), 16) / 255) * 1000) / 1000);
+  const [red = 0, green = 0, blue = 0] = [1, 3, 5].map((start) => Math.round((parseInt(hex.slice(start, start + 2), 16) / 255) * 1000) / 1000);
   return { red, green, blue, alpha: 1 };
 }

@@ -7,10 +7,10 @@ export interface ServerRange {
 }
 
 /** Returns the position of a place in a text; one beyond the text is its end. */
-export function positionIn(text: Text, { line, character }: ServerRange["start"]): number {
+export function offsetOf(text: Text, { line, character }: ServerRange["start"]): number {
   if (line >= text.lines) return text.length;
-  const found = text.line(line + 1);
-  return Math.min(found.from + character, found.to);
+  const textLine = text.line(line + 1);
+  return Math.min(textLine.from + character, textLine.to);
 }
 
 /** Returns the place of a position in a text. */
@@ -21,7 +21,7 @@ export function placeOf(text: Text, position: number): ServerRange["start"] {
 
 /** Returns the text of a range. */
 export function rangeText(text: Text, { start, end }: ServerRange): string {
-  return text.sliceString(positionIn(text, start), positionIn(text, end));
+  return text.sliceString(offsetOf(text, start), offsetOf(text, end));
 }
 
 /** Returns the path of a file's URI; null for other URIs. */

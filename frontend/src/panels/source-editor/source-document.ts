@@ -1,6 +1,6 @@
 import { isolateHistory } from "@codemirror/commands";
 import { Annotation, ChangeSet, type EditorState, type Text, type Transaction, type TransactionSpec } from "@codemirror/state";
-import { mergeChanges, smallestChange, textOf } from "./document-changes";
+import { mergeChanges, findSmallestChange, textOf } from "./document-changes";
 
 /** Marks a transaction that brings a change of the file into the editor. */
 const fromDisk = Annotation.define<ChangeSet>();
@@ -13,20 +13,20 @@ interface Conflict {
 
 /** A text that a document had, and its changes since. */
 class FormerText {
-  since: ChangeSet;
+  changes: ChangeSet;
 
   constructor(readonly text: Text) {
-    this.since = ChangeSet.empty(text.length);
+    this.changes = ChangeSet.empty(text.length);
   }
 
   /** Returns the place in the present text of a place in the former one. */
   placeNow(position: number): number {
-    return this.since.mapPos(Math.min(position, this.text.length));
+    return this.changes.mapPos(Math.min(position, this.text.length));
   }
 
   /** Returns the place in the former text of a place in the present one. */
   placeThen(position: number): number {
-    return this.since.invertedDesc.mapPos(position);
+    return this.changes.invertedDesc.mapPos(position);
   }
 }
 
@@ -34,19 +34,19 @@ class FormerText {
 export class SourceDocument {
   conflict: Conflict | null = null;
   /** Why the file cannot be read or written; empty if it can be edited. */
-  whyNot = "";
+  readOnlyReason = "";
   /** Whether the file does not exist yet; saving creates it. */
   isNew = false;
   /** The position of the first visible line when the document was last shown. */
   scrolledTo = 0;
   /** The text that the shown description was read from; null for the text on the disk. */
   described: FormerText | null = null;
-  private saved: Text;
-  private unsaved: ChangeSet;
+  private diskText: Text;
+  private unsavedChanges: ChangeSet;
   /** The texts that were sent to be shown in the scene, by their numbers, until the scene shows a newer one. */
-  private readonly sent = new Map<number, FormerText>();
+  private readonly sentTexts = new Map<number, FormerText>();
   /** The text that was sent to be written, and the changes since; null while nothing is being written. */
-  private writing: { text: Text; since: ChangeSet } | null = null;
+  private writing: { text: Text; changes: ChangeSet } | null = null;
 
   constructor(
     readonly path: string,
@@ -54,12 +54,12 @@ export class SourceDocument {
     public version: number,
     public state: EditorState,
   ) {
-    this.saved = state.doc;
-    this.unsaved = ChangeSet.empty(state.doc.length);
+    this.diskText = state.doc;
+    this.unsavedChanges = ChangeSet.empty(state.doc.length);
   }
 
   get isUnsaved(): boolean {
-    return !this.state.doc.eq(this.saved);
+    return !this.state.doc.eq(this.diskText);
   }
 
   get isWriting(): boolean {
@@ -68,38 +68,38 @@ export class SourceDocument {
 
   /** The text on the disk, as far as it was merged. */
   get savedText(): Text {
-    return this.saved;
+    return this.diskText;
   }
 
   /** The text that was sent last to be shown in the scene. */
   get newestSent(): FormerText | undefined {
-    return [...this.sent.values()].at(-1);
+    return [...this.sentTexts.values()].at(-1);
   }
 
   /** Returns the position where a line of the shown description is now; 1-based. */
-  lineNow(line: number): number {
-    const text = this.described?.text ?? this.saved;
+  currentLineOf(line: number): number {
+    const text = this.described?.text ?? this.diskText;
     const position = text.line(Math.max(1, Math.min(line, text.lines))).from;
-    return this.described ? this.described.placeNow(position) : this.unsaved.mapPos(position);
+    return this.described ? this.described.placeNow(position) : this.unsavedChanges.mapPos(position);
   }
 
   /** Returns the line of the shown description that a position was on; 1-based. */
-  lineThen(position: number): number {
-    const text = this.described?.text ?? this.saved;
-    const then = this.described ? this.described.placeThen(position) : this.unsaved.invertedDesc.mapPos(position);
+  describedLineOf(position: number): number {
+    const text = this.described?.text ?? this.diskText;
+    const then = this.described ? this.described.placeThen(position) : this.unsavedChanges.invertedDesc.mapPos(position);
     return text.lineAt(Math.min(then, text.length)).number;
   }
 
   /** Notes that the text is sent to be shown in the scene. */
   beginShowing(number: number): void {
-    this.sent.set(number, new FormerText(this.state.doc));
+    this.sentTexts.set(number, new FormerText(this.state.doc));
   }
 
   /** Notes that the scene shows a text, or cannot show it. */
   endShowing(number: number, isShown: boolean): void {
     if (!isShown) return;
-    this.described = this.sent.get(number) ?? this.described;
-    for (const older of this.sent.keys()) if (older < number) this.sent.delete(older);
+    this.described = this.sentTexts.get(number) ?? this.described;
+    for (const older of this.sentTexts.keys()) if (older < number) this.sentTexts.delete(older);
   }
 
   /**
@@ -108,10 +108,10 @@ export class SourceDocument {
    *
    * @param base - the number of the text that was edited; 0 for the one on the disk.
    */
-  robotEdited(content: string, base: number): TransactionSpec | null {
-    const former = this.sent.get(base);
-    const edit = smallestChange(former?.text ?? this.saved, textOf(content));
-    const merged = mergeChanges(edit, former?.since ?? this.unsaved);
+  onRobotEdited(content: string, base: number): TransactionSpec | null {
+    const formerText = this.sentTexts.get(base);
+    const edit = findSmallestChange(formerText?.text ?? this.diskText, textOf(content));
+    const merged = mergeChanges(edit, formerText?.changes ?? this.unsavedChanges);
     return merged && { changes: merged.edit, annotations: [isolateHistory.of("full")], userEvent: "robot" };
   }
 
@@ -120,16 +120,16 @@ export class SourceDocument {
     this.state = transaction.state;
     if (!transaction.docChanged) return;
     const { changes } = transaction;
-    this.unsaved = transaction.annotation(fromDisk) ?? this.unsaved.compose(changes);
-    if (this.writing) this.writing.since = this.writing.since.compose(changes);
-    for (const former of new Set([...this.sent.values(), ...(this.described ? [this.described] : [])])) former.since = former.since.compose(changes);
+    this.unsavedChanges = transaction.annotation(fromDisk) ?? this.unsavedChanges.compose(changes);
+    if (this.writing) this.writing.changes = this.writing.changes.compose(changes);
+    for (const formerText of new Set([...this.sentTexts.values(), ...(this.described ? [this.described] : [])])) formerText.changes = formerText.changes.compose(changes);
   }
 
   /**
    * Takes over a new text of the file; returns the transaction that brings it into the editor, or null if there is none
    * or there is a conflict.
    */
-  diskChanged(content: string, version: number): TransactionSpec | null {
+  onDiskChanged(content: string, version: number): TransactionSpec | null {
     const text = textOf(content);
     this.version = version;
     this.isNew = false;
@@ -137,16 +137,16 @@ export class SourceDocument {
       this.rebase(text);
       return null;
     }
-    const disk = smallestChange(this.saved, text);
+    const disk = findSmallestChange(this.diskText, text);
     if (disk.empty && this.conflict === null) return null;
-    const merged = mergeChanges(disk, this.unsaved);
+    const merged = mergeChanges(disk, this.unsavedChanges);
     if (merged === null) {
       this.conflict = { text, version };
       return null;
     }
-    this.saved = text;
+    this.diskText = text;
     this.conflict = null;
-    return { changes: merged.edit, annotations: [fromDisk.of(merged.unsaved), isolateHistory.of("full")], userEvent: "disk" };
+    return { changes: merged.edit, annotations: [fromDisk.of(merged.unsavedChanges), isolateHistory.of("full")], userEvent: "disk" };
   }
 
   /** Settles a conflict for the edited text, which is unsaved then. */
@@ -158,23 +158,23 @@ export class SourceDocument {
   takeDisk(): TransactionSpec | null {
     const { conflict } = this;
     if (!conflict) return null;
-    const changes = smallestChange(this.state.doc, conflict.text);
+    const changes = findSmallestChange(this.state.doc, conflict.text);
     this.rebase(conflict.text);
-    const unsaved = ChangeSet.empty(conflict.text.length);
-    return { changes, annotations: [fromDisk.of(unsaved), isolateHistory.of("full")], userEvent: "disk" };
+    const noChanges = ChangeSet.empty(conflict.text.length);
+    return { changes, annotations: [fromDisk.of(noChanges), isolateHistory.of("full")], userEvent: "disk" };
   }
 
   /** Returns the text to write. */
   beginWriting(): string {
-    this.writing = { text: this.state.doc, since: ChangeSet.empty(this.state.doc.length) };
+    this.writing = { text: this.state.doc, changes: ChangeSet.empty(this.state.doc.length) };
     return this.state.doc.toString();
   }
 
   /** Ends writing: with the version of the file, or null if it was not written. */
   endWriting(version: number | null): void {
     if (this.writing && version !== null) {
-      this.saved = this.writing.text;
-      this.unsaved = this.writing.since;
+      this.diskText = this.writing.text;
+      this.unsavedChanges = this.writing.changes;
       this.version = version;
       this.isNew = false;
     }
@@ -182,8 +182,8 @@ export class SourceDocument {
   }
 
   private rebase(text: Text): void {
-    this.saved = text;
-    this.unsaved = smallestChange(text, this.state.doc);
+    this.diskText = text;
+    this.unsavedChanges = findSmallestChange(text, this.state.doc);
     this.conflict = null;
   }
 }

@@ -12,7 +12,7 @@ import { strings } from "../../strings";
 import type { Highlight } from "../description/source-view";
 import { CodeActions } from "./code-actions";
 import type { Documents, ServerFinding } from "./documents";
-import { baseExtensions } from "./extensions";
+import { createBaseExtensions } from "./extensions";
 import { FileTree } from "./file-tree";
 import { showFindings } from "./findings";
 import { LanguageService } from "./language-service";
@@ -39,13 +39,13 @@ export class SourceEditor implements Documents {
   readonly view: EditorView;
   /** A document was opened, shown, changed or saved. */
   readonly changed = new Signal();
-  shown: SourceDocument | null = null;
-  private readonly found = new Map<string, readonly ServerFinding[]>();
+  shownDocument: SourceDocument | null = null;
+  private readonly findingsByUri = new Map<string, readonly ServerFinding[]>();
   private readonly files: SourceFiles;
   private readonly service: LanguageService;
   private readonly actions: CodeActions;
   private readonly navigation: Navigation;
-  private readonly live: LiveTexts;
+  private readonly liveTexts: LiveTexts;
   private readonly places = new PlaceList(() => this.view.focus());
   private readonly tree: FileTree;
   private readonly notice = h("div", { class: "editor-notice", role: "alert" });
@@ -70,9 +70,9 @@ export class SourceEditor implements Documents {
     const tell = (message: string): void => this.tell(message);
     this.service = new LanguageService(connection, this);
     this.service.message.on(tell);
-    this.actions = new CodeActions(this.service.client, this, (uri) => this.found.get(uri) ?? [], tell);
+    this.actions = new CodeActions(this.service.client, this, (uri) => this.findingsByUri.get(uri) ?? [], tell);
     this.navigation = new Navigation(this.service.client, this, this.places, tell);
-    this.live = new LiveTexts(connection, this, () => this.changed.emit());
+    this.liveTexts = new LiveTexts(connection, this, () => this.changed.emit());
     this.save = button(texts.saveHint, () => this.saveAll(), "tool framed editor-save", icon("save"), texts.save);
     this.list = button(texts.findingsHint, () => openLintPanel(this.view), "tool framed", texts.findings(0));
     this.tree = new FileTree(connection, (path) => void this.show(path), (path) => void this.createAndShow(path));
@@ -91,31 +91,31 @@ export class SourceEditor implements Documents {
     this.files = new SourceFiles(session, {
       stateOf: (path, uri, text, isReadOnly) => this.stateOf(path, uri, text, isReadOnly),
       change: (document, spec) => this.change(document, spec),
-      opened: (folder, uri) => {
+      onWorkspaceOpened: (folder, uri) => {
         this.service.connect(uri);
         this.tree.setFolder(folder);
         this.status.textContent = "";
-        this.live.restart();
+        this.liveTexts.restart();
       },
-      added: (document) => this.service.add(document),
-      written: (document, isOwn) => this.onWritten(document, isOwn),
-      created: () => this.tree.reload(),
+      onAdded: (document) => this.service.add(document),
+      onWritten: (document, isOwn) => this.onWritten(document, isOwn),
+      onCreated: () => this.tree.reload(),
       tell,
     });
     this.files.changed.on(() => this.changed.emit());
     this.changed.on(coalesced(() => this.refresh()));
     connection.on("description_changed", () => {
-      if (this.live.outcome !== null) return; // the language server has the unsaved texts
+      if (this.liveTexts.outcome !== null) return; // the language server has the unsaved texts
       const shownFiles = session.description.modelOf(this.shownDisplay)?.description.files ?? [];
-      this.service.filesChanged(this.open.filter(({ path }) => shownFiles.includes(path)).map(({ uri }) => uri));
+      this.service.onFilesChanged(this.open.filter(({ path }) => shownFiles.includes(path)).map(({ uri }) => uri));
     });
     // a course checks its step again when programs, such as those in the terminal, changed files
     connection.on("step_checks", () => this.tree.reload());
     this.refresh();
   }
 
-  get whyNot(): string | null {
-    return this.files.whyNot;
+  get unavailableReason(): string | null {
+    return this.files.unavailableReason;
   }
 
   get open(): readonly SourceDocument[] {
@@ -123,7 +123,7 @@ export class SourceEditor implements Documents {
   }
 
   get hasUnsaved(): boolean {
-    return this.files.unsaved.length > 0;
+    return this.files.unsavedDocuments.length > 0;
   }
 
   /** Writes all files that have changed. */
@@ -136,7 +136,7 @@ export class SourceEditor implements Documents {
     this.requestedFile = path;
     const document = await load(path);
     if (document === null || this.requestedFile !== path) return document !== null;
-    if (document !== this.shown) this.display(document);
+    if (document !== this.shownDocument) this.displayDocument(document);
     return true;
   }
 
@@ -162,13 +162,13 @@ export class SourceEditor implements Documents {
   }
 
   change(document: SourceDocument, spec: TransactionSpec): void {
-    if (document === this.shown) this.view.dispatch(spec);
+    if (document === this.shownDocument) this.view.dispatch(spec);
     else this.record(document, document.state.update(spec));
   }
 
-  findings(uri: string, findings: readonly ServerFinding[]): void {
-    this.found.set(uri, findings);
-    if (this.shown?.uri === uri) this.showFindings(this.shown);
+  onFindings(uri: string, onFindings: readonly ServerFinding[]): void {
+    this.findingsByUri.set(uri, onFindings);
+    if (this.shownDocument?.uri === uri) this.showFindings(this.shownDocument);
     this.changed.emit();
   }
 
@@ -180,7 +180,7 @@ export class SourceEditor implements Documents {
   /** Applies an edit that was made in the scene to the unsaved text. */
   applyEdit({ path, base, text }: UnsavedTextEdited): void {
     void this.load(path).then((document) => {
-      const spec = document?.robotEdited(text, base);
+      const spec = document?.onRobotEdited(text, base);
       if (document && spec) this.change(document, spec);
       else this.tell(strings.sourceEditor.robotNotEdited);
     });
@@ -188,13 +188,13 @@ export class SourceEditor implements Documents {
 
   /** Marks lines of the shown file, and scrolls to one of them; lines are those of the shown description. */
   mark(highlights: readonly Highlight[], line: number | null): void {
-    const document = this.shown;
+    const document = this.shownDocument;
     if (!document) return;
     this.view.dispatch({ effects: [marksOf(document, highlights)] });
     if (line === null || line < 1) return;
-    const at = document.lineNow(line);
+    const currentLine = document.currentLineOf(line);
     this.navigation.leave();
-    this.view.dispatch({ selection: { anchor: at }, effects: EditorView.scrollIntoView(at, { y: "center" }) });
+    this.view.dispatch({ selection: { anchor: currentLine }, effects: EditorView.scrollIntoView(currentLine, { y: "center" }) });
   }
 
   /** The text that Undo and Redo of the robot's edits change while it is not saved; null if all texts are saved. */
@@ -208,17 +208,17 @@ export class SourceEditor implements Documents {
 
   /** Returns the state of the editor, for tests. */
   inspect(): object {
-    const { view, shown } = this;
+    const { view, shownDocument } = this;
     return {
-      file: shown?.path ?? "",
+      file: shownDocument?.path ?? "",
       text: view.state.doc.toString(),
       marks: inspectMarks(view.state),
-      findings: this.found.get(shown?.uri ?? "")?.map(({ code }) => code) ?? [],
-      unsaved: this.files.unsaved.map(({ path }) => path),
-      isConflict: shown?.conflict !== null && shown !== null,
-      whyNot: this.whyNot,
+      findings: this.findingsByUri.get(shownDocument?.uri ?? "")?.map(({ code }) => code) ?? [],
+      unsaved: this.files.unsavedDocuments.map(({ path }) => path),
+      isConflict: shownDocument?.conflict !== null && shownDocument !== null,
+      whyNot: this.unavailableReason,
       cursor: view.state.doc.lineAt(view.state.selection.main.head).number,
-      scene: this.live.outcome,
+      scene: this.liveTexts.outcome,
     };
   }
 
@@ -228,8 +228,8 @@ export class SourceEditor implements Documents {
 
   private onWritten(document: SourceDocument, isOwn: boolean): void {
     if (isOwn) this.service.client.notification("textDocument/didSave", { textDocument: { uri: document.uri } });
-    else this.service.filesChanged([document.uri]);
-    this.live.changed();
+    else this.service.onFilesChanged([document.uri]);
+    this.liveTexts.scheduleSending();
   }
 
   private searchSymbols(): boolean {
@@ -267,9 +267,9 @@ export class SourceEditor implements Documents {
       },
     });
     const followCursor = EditorView.updateListener.of(({ transactions }) => {
-      if (transactions.some((each) => each.isUserEvent("select"))) this.followCursor();
+      if (transactions.some((transaction) => transaction.isUserEvent("select"))) this.followCursor();
     });
-    return EditorState.create({ doc, extensions: [keys, baseExtensions(path, doc, isReadOnly), this.service.extension({ uri, path }), clicks, followCursor] });
+    return EditorState.create({ doc, extensions: [keys, createBaseExtensions(path, doc, isReadOnly), this.service.extensionFor({ uri, path }), clicks, followCursor] });
   }
 
   /** Reports the line of the cursor once the cursor rests. */
@@ -277,37 +277,37 @@ export class SourceEditor implements Documents {
     clearTimeout(this.lineTimer);
     this.lineTimer = setTimeout(() => {
       const { main } = this.view.state.selection;
-      if (this.shown && main.empty) this.onLine(this.shown.path, this.shown.lineThen(main.head));
+      if (this.shownDocument && main.empty) this.onLine(this.shownDocument.path, this.shownDocument.describedLineOf(main.head));
     }, LINE_MS);
   }
 
-  private display(document: SourceDocument): void {
+  private displayDocument(document: SourceDocument): void {
     this.service.client.sync();
     this.navigation.leave();
-    if (this.shown) this.shown.scrolledTo = this.view.elementAtHeight(this.view.scrollDOM.scrollTop).from;
-    this.shown = document;
+    if (this.shownDocument) this.shownDocument.scrolledTo = this.view.elementAtHeight(this.view.scrollDOM.scrollTop).from;
+    this.shownDocument = document;
     this.view.setState(document.state);
     this.showFindings(document);
-    const at = Math.min(document.scrolledTo, document.state.doc.length);
-    this.view.dispatch({ effects: EditorView.scrollIntoView(at, { y: "start" }) });
+    const position = Math.min(document.scrolledTo, document.state.doc.length);
+    this.view.dispatch({ effects: EditorView.scrollIntoView(position, { y: "start" }) });
     this.status.textContent = "";
     this.tree.setCurrent(document.path);
     this.changed.emit();
   }
 
-  private showFindings({ uri, whyNot }: SourceDocument): void {
-    const fix = whyNot === "" ? (view: EditorView, range: { from: number; to: number }) => void this.actions.open(view, range) : null;
-    this.view.dispatch(showFindings(this.view.state, this.found.get(uri) ?? [], fix));
+  private showFindings({ uri, readOnlyReason }: SourceDocument): void {
+    const fix = readOnlyReason === "" ? (view: EditorView, range: { from: number; to: number }) => void this.actions.open(view, range) : null;
+    this.view.dispatch(showFindings(this.view.state, this.findingsByUri.get(uri) ?? [], fix));
   }
 
   private apply(document: SourceDocument, transaction: Transaction): void {
-    if (document === this.shown) this.view.dispatch(transaction);
+    if (document === this.shownDocument) this.view.dispatch(transaction);
     else this.record(document, transaction);
   }
 
   private dispatch(transactions: readonly Transaction[], view: EditorView): void {
     view.update(transactions);
-    if (this.shown) for (const transaction of transactions) this.record(this.shown, transaction);
+    if (this.shownDocument) for (const transaction of transactions) this.record(this.shownDocument, transaction);
   }
 
   private record(document: SourceDocument, transaction: Transaction): void {
@@ -316,7 +316,7 @@ export class SourceEditor implements Documents {
     this.service.record(document, transaction.changes);
     this.navigation.record(document, transaction.changes);
     this.changedLast = document;
-    this.live.changed();
+    this.liveTexts.scheduleSending();
     this.changed.emit();
   }
 
@@ -326,43 +326,43 @@ export class SourceEditor implements Documents {
 
   private refresh(): void {
     const texts = strings.sourceEditor;
-    const { shown } = this;
-    const { unsaved } = this.files;
-    this.save.disabled = unsaved.every(({ conflict }) => conflict !== null);
-    this.element.classList.toggle("unsaved", unsaved.length > 0);
-    this.save.lastChild?.replaceWith(unsaved.length > 1 ? texts.saveMany(unsaved.length) : texts.save);
+    const { shownDocument } = this;
+    const { unsavedDocuments } = this.files;
+    this.save.disabled = unsavedDocuments.every(({ conflict }) => conflict !== null);
+    this.element.classList.toggle("unsaved", unsavedDocuments.length > 0);
+    this.save.lastChild?.replaceWith(unsavedDocuments.length > 1 ? texts.saveMany(unsavedDocuments.length) : texts.save);
     const count = diagnosticCount(this.view.state);
     this.list.replaceChildren(texts.findings(count));
     this.list.disabled = count === 0;
-    const { outcome } = this.live;
+    const { outcome } = this.liveTexts;
     const scene = outcome === null ? "" : texts.scene[outcome];
     if (this.scene.textContent !== scene) this.scene.textContent = scene;
     this.scene.classList.toggle("errors", outcome === "errors");
-    this.showNotice(shown);
-    this.tree.setUnsaved(unsaved.map(({ path }) => path));
+    this.showNotice(shownDocument);
+    this.tree.setUnsaved(unsavedDocuments.map(({ path }) => path));
     this.session.editing.setTextHistory(this.history);
   }
 
-  private showNotice(shown: SourceDocument | null): void {
+  private showNotice(document: SourceDocument | null): void {
     const texts = strings.sourceEditor;
-    this.notice.hidden = !shown || (shown.conflict === null && shown.whyNot === "" && !shown.isNew);
-    if (!shown || this.notice.hidden) return;
-    this.notice.classList.toggle("plain", shown.isNew);
-    if (shown.conflict === null) {
-      this.notice.replaceChildren(shown.whyNot || texts.isNew);
+    this.notice.hidden = !document || (document.conflict === null && document.readOnlyReason === "" && !document.isNew);
+    if (!document || this.notice.hidden) return;
+    this.notice.classList.toggle("plain", document.isNew);
+    if (document.conflict === null) {
+      this.notice.replaceChildren(document.readOnlyReason || texts.isNew);
       return;
     }
     const settle = (spec: TransactionSpec | null): void => {
-      if (spec) this.change(shown, spec);
+      if (spec) this.change(document, spec);
       this.changed.emit();
       this.view.focus();
     };
     const keep = (): void => {
-      shown.keepMine();
+      document.keepMine();
       settle(null);
     };
-    const mine = button(texts.keepMineHint, keep, "tool framed", texts.keepMine);
-    const theirs = button(texts.takeDiskHint, () => settle(shown.takeDisk()), "tool framed", texts.takeDisk);
-    this.notice.replaceChildren(h("span", {}, texts.conflict), mine, theirs);
+    const keepButton = button(texts.keepMineHint, keep, "tool framed", texts.keepMine);
+    const theirs = button(texts.takeDiskHint, () => settle(document.takeDisk()), "tool framed", texts.takeDisk);
+    this.notice.replaceChildren(h("span", {}, texts.conflict), keepButton, theirs);
   }
 }

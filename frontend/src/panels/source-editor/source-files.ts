@@ -4,7 +4,7 @@ import { Signal } from "../../signal";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { nameOf } from "../place";
-import { fitsMessage } from "./message-size";
+import { isWithinMessageSize } from "./message-size";
 import { SourceDocument } from "./source-document";
 
 const RESTARTS = 3;
@@ -16,11 +16,11 @@ interface FilesHost {
   stateOf(path: string, uri: string, text: string, isReadOnly: boolean): EditorState;
   change(document: SourceDocument, spec: TransactionSpec): void;
   /** The workspace was opened, for the first time or again. */
-  opened(folder: string, uri: string): void;
-  added(document: SourceDocument): void;
+  onWorkspaceOpened(folder: string, uri: string): void;
+  onAdded(document: SourceDocument): void;
   /** The file of a document was written by the editor, or by another program. */
-  written(document: SourceDocument, isOwn: boolean): void;
-  created(): void;
+  onWritten(document: SourceDocument, isOwn: boolean): void;
+  onCreated(): void;
   tell(message: string): void;
 }
 
@@ -29,9 +29,9 @@ export class SourceFiles {
   /** A document was opened, changed on the disk or written. */
   readonly changed = new Signal();
   /** Why nothing can be edited; empty if files can, null before the server has answered. */
-  whyNot: string | null = null;
+  unavailableReason: string | null = null;
   private readonly documents = new Map<string, SourceDocument>();
-  private readonly awaited = new Map<string, ((document: SourceDocument | null) => void)[]>();
+  private readonly waitingCallbacks = new Map<string, ((document: SourceDocument | null) => void)[]>();
   private readonly writing = new Map<number, SourceDocument>();
   /** The files that are opened even if they do not exist. */
   private readonly mayBeNew = new Set<string>();
@@ -53,7 +53,7 @@ export class SourceFiles {
     return [...this.documents.values()];
   }
 
-  get unsaved(): readonly SourceDocument[] {
+  get unsavedDocuments(): readonly SourceDocument[] {
     return this.open.filter((document) => document.isUnsaved);
   }
 
@@ -65,14 +65,14 @@ export class SourceFiles {
 
   /** Opens a file, and the workspace if it is the first one; null if it cannot be read. */
   load(path: string): Promise<SourceDocument | null> {
-    const known = this.documents.get(path);
-    if (known) return Promise.resolve(known);
-    if (this.whyNot !== "") this.main = path;
+    const document = this.documents.get(path);
+    if (document) return Promise.resolve(document);
+    if (this.unavailableReason !== "") this.main = path;
     return new Promise((resolve) => {
-      const waiting = this.awaited.get(path);
-      if (waiting) waiting.push(resolve);
+      const callbacks = this.waitingCallbacks.get(path);
+      if (callbacks) callbacks.push(resolve);
       else {
-        this.awaited.set(path, [resolve]);
+        this.waitingCallbacks.set(path, [resolve]);
         if (this.isOpen) this.session.connection.send({ type: "ask_source_file", path });
         else this.requestWorkspace();
       }
@@ -102,10 +102,10 @@ export class SourceFiles {
       this.host.tell(texts.disconnected);
       return;
     }
-    for (const document of this.unsaved) {
+    for (const document of this.unsavedDocuments) {
       if (document.conflict !== null || document.isWriting) continue;
       const text = document.beginWriting();
-      if (!fitsMessage(text)) {
+      if (!isWithinMessageSize(text)) {
         document.endWriting(null);
         this.host.tell(texts.tooLong(nameOf(document.path)));
         continue;
@@ -131,7 +131,7 @@ export class SourceFiles {
       this.host.tell(strings.sourceEditor.ended);
       if (this.restarts <= RESTARTS) setTimeout(() => this.reopen(), RESTART_MS);
     });
-    window.addEventListener("beforeunload", (event) => this.unsaved.length > 0 && event.preventDefault());
+    window.addEventListener("beforeunload", (event) => this.unsavedDocuments.length > 0 && event.preventDefault());
   }
 
   /** Forgets what the program before was asked. */
@@ -152,13 +152,13 @@ export class SourceFiles {
     this.session.connection.send({ type: "open_editor", file: this.main });
   }
 
-  private onOpened(folder: string, uri: string, whyNot: string): void {
-    this.whyNot = whyNot;
-    this.isOpen = whyNot === "";
+  private onOpened(folder: string, uri: string, unavailableReason: string): void {
+    this.unavailableReason = unavailableReason;
+    this.isOpen = unavailableReason === "";
     if (this.isOpen) {
-      for (const path of [...this.documents.keys(), ...this.awaited.keys()]) this.session.connection.send({ type: "ask_source_file", path });
-      this.host.opened(folder, uri);
-    } else for (const path of [...this.awaited.keys()]) this.settle(path, null);
+      for (const path of [...this.documents.keys(), ...this.waitingCallbacks.keys()]) this.session.connection.send({ type: "ask_source_file", path });
+      this.host.onWorkspaceOpened(folder, uri);
+    } else for (const path of [...this.waitingCallbacks.keys()]) this.settle(path, null);
     this.changed.emit();
   }
 
@@ -166,16 +166,16 @@ export class SourceFiles {
     let document = this.documents.get(path);
     if (document?.isNew === true && isNew) document.version = version;
     else if (document) {
-      document.whyNot = why_not;
-      const spec = text === null ? null : document.diskChanged(text, version);
+      document.readOnlyReason = why_not;
+      const spec = text === null ? null : document.onDiskChanged(text, version);
       if (spec) this.host.change(document, spec);
-      this.host.written(document, false);
+      this.host.onWritten(document, false);
     } else if (text !== null || (isNew && this.mayBeNew.has(path))) {
-      const whyNot = isNew ? "" : why_not;
-      document = new SourceDocument(path, uri, version, this.host.stateOf(path, uri, text ?? "", whyNot !== ""));
-      [document.whyNot, document.isNew] = [whyNot, isNew];
+      const readOnlyReason = isNew ? "" : why_not;
+      document = new SourceDocument(path, uri, version, this.host.stateOf(path, uri, text ?? "", readOnlyReason !== ""));
+      [document.readOnlyReason, document.isNew] = [readOnlyReason, isNew];
       this.documents.set(path, document);
-      this.host.added(document);
+      this.host.onAdded(document);
     } else this.host.tell(why_not);
     this.settle(path, document ?? null);
     this.changed.emit();
@@ -187,23 +187,23 @@ export class SourceFiles {
     this.creating.delete(number);
     const wasNew = document?.isNew === true;
     document?.endWriting(refusal === null ? version : null);
-    const why = refusal ? [refusal.message, ...refusal.hints].join(" ") : "";
-    if (refusal && created) created.reject(new Error(why));
-    else if (refusal) this.host.tell(why);
+    const reason = refusal ? [refusal.message, ...refusal.hints].join(" ") : "";
+    if (refusal && created) created.reject(new Error(reason));
+    else if (refusal) this.host.tell(reason);
     else if (document) {
-      this.host.written(document, true);
-      if (wasNew) this.host.created();
+      this.host.onWritten(document, true);
+      if (wasNew) this.host.onCreated();
       this.host.tell(strings.sourceEditor.saved(nameOf(path)));
     } else {
-      this.host.created();
+      this.host.onCreated();
       created?.resolve();
     }
     this.changed.emit();
   }
 
   private settle(path: string, document: SourceDocument | null): void {
-    const waiting = this.awaited.get(path) ?? [];
-    this.awaited.delete(path);
-    for (const resolve of waiting) resolve(document);
+    const callbacks = this.waitingCallbacks.get(path) ?? [];
+    this.waitingCallbacks.delete(path);
+    for (const resolve of callbacks) resolve(document);
   }
 }

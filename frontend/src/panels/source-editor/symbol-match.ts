@@ -1,10 +1,10 @@
 /** Whether a name contains the characters of a query in their order; upper and lower case are equal. */
 export function matches(query: string, name: string): boolean {
   const characters = name.toLowerCase();
-  let at = 0;
+  let index = 0;
   for (const character of query.toLowerCase()) {
-    at = characters.indexOf(character, at) + 1;
-    if (at === 0) return false;
+    index = characters.indexOf(character, index) + 1;
+    if (index === 0) return false;
   }
   return true;
 }

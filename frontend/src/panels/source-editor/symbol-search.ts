@@ -42,9 +42,9 @@ export class SymbolSearch {
   private readonly scopes: readonly [HTMLButtonElement, HTMLButtonElement];
   private readonly dialog: Dialog;
   private ofFile: readonly ListedSymbol[] = [];
-  private listed: readonly ListedSymbol[] = [];
+  private listedSymbols: readonly ListedSymbol[] = [];
   private isWide = false;
-  private chosen = 0;
+  private chosenIndex = 0;
   private number = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
@@ -65,12 +65,12 @@ export class SymbolSearch {
     this.list.id = this.id;
     this.list.setAttribute("aria-label", texts.symbols);
     const go = (): undefined => {
-      const symbol = this.listed[this.chosen];
+      const symbol = this.listedSymbols[this.chosenIndex];
       if (symbol) open(symbol.location);
     };
     const scopes = h("div", { class: "symbol-scopes", role: "group", aria: { label: texts.symbolsIn } }, ...this.scopes);
     this.dialog = new Dialog(texts.symbols, [scopes, this.field, this.list, this.status], [{ label: strings.shell.cancel }, { label: texts.goTo, run: go, main: true }], "symbol-search");
-    this.field.addEventListener("input", () => this.later());
+    this.field.addEventListener("input", () => this.searchLater());
     this.dialog.element.addEventListener("keydown", (event) => this.onKeyDown(event), true);
     this.list.addEventListener("click", ({ target }) => {
       const option = target instanceof Element ? target.closest<HTMLElement>("[role=option]") : null;
@@ -83,23 +83,23 @@ export class SymbolSearch {
 
   /** Opens the search with the symbols of the shown file. */
   async open(): Promise<void> {
-    const { shown } = this.documents;
-    if (!shown) return;
+    const { shownDocument } = this.documents;
+    if (!shownDocument) return;
     this.dialog.open(this.field);
     this.client.sync();
-    const found = await this.client.request<object, DocumentSymbol[] | null>("textDocument/documentSymbol", { textDocument: { uri: shown.uri } });
-    this.ofFile = flatten(found ?? [], shown.uri, 0);
+    const symbols = await this.client.request<object, DocumentSymbol[] | null>("textDocument/documentSymbol", { textDocument: { uri: shownDocument.uri } });
+    this.ofFile = flatten(symbols ?? [], shownDocument.uri, 0);
     this.setWide(false);
   }
 
   private setWide(isWide: boolean): void {
     this.isWide = isWide;
-    for (const [at, scope] of this.scopes.entries()) scope.setAttribute("aria-pressed", String((at === 1) === isWide));
+    for (const [index, scope] of this.scopes.entries()) scope.setAttribute("aria-pressed", String((index === 1) === isWide));
     void this.search();
     this.field.focus();
   }
 
-  private later(): void {
+  private searchLater(): void {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => void this.search(), this.isWide ? SEARCH_MS : 0);
   }
@@ -109,44 +109,44 @@ export class SymbolSearch {
     this.number += 1;
     const { number } = this;
     if (!this.isWide) {
-      const found = this.ofFile.filter(({ name, detail }) => matches(query, name) || matches(query, detail));
-      this.show(query === "" ? found : found.map((symbol) => ({ ...symbol, depth: 0 })));
+      const fileSymbols = this.ofFile.filter(({ name, detail }) => matches(query, name) || matches(query, detail));
+      this.show(query === "" ? fileSymbols : fileSymbols.map((symbol) => ({ ...symbol, depth: 0 })));
       return;
     }
     try {
-      const found = (await this.client.request<object, WorkspaceSymbol[] | null>("workspace/symbol", { query })) ?? [];
-      if (number === this.number) this.show(found.map((symbol) => listedSymbol(symbol)));
+      const symbols = (await this.client.request<object, WorkspaceSymbol[] | null>("workspace/symbol", { query })) ?? [];
+      if (number === this.number) this.show(symbols.map((symbol) => listSymbol(symbol)));
     } catch (error) {
       this.status.textContent = messageOf(error);
     }
   }
 
   private show(symbols: readonly ListedSymbol[]): void {
-    this.listed = symbols.slice(0, MAX_LISTED);
-    this.list.replaceChildren(...this.listed.map((symbol, at) => this.optionOf(symbol, at)));
+    this.listedSymbols = symbols.slice(0, MAX_LISTED);
+    this.list.replaceChildren(...this.listedSymbols.map((symbol, index) => this.optionOf(symbol, index)));
     this.status.textContent = strings.sourceEditor.symbolCount(symbols.length);
     this.dialog.ready = symbols.length > 0;
     this.choose(0);
   }
 
-  private optionOf({ name, detail, depth }: ListedSymbol, at: number): HTMLElement {
+  private optionOf({ name, detail, depth }: ListedSymbol, index: number): HTMLElement {
     const option = h("div", { class: "symbol", role: "option" }, h("span", {}, name), h("small", {}, detail));
-    option.id = `${this.id}-${String(at)}`;
+    option.id = `${this.id}-${String(index)}`;
     option.style.setProperty("--level", String(depth));
     return option;
   }
 
-  private choose(at: number): void {
-    this.chosen = Math.max(0, Math.min(at, this.listed.length - 1));
-    for (const [each, option] of [...this.list.children].entries()) option.setAttribute("aria-selected", String(each === this.chosen));
-    const option = this.list.children[this.chosen];
+  private choose(index: number): void {
+    this.chosenIndex = Math.max(0, Math.min(index, this.listedSymbols.length - 1));
+    for (const [i, option] of [...this.list.children].entries()) option.setAttribute("aria-selected", String(i === this.chosenIndex));
+    const option = this.list.children[this.chosenIndex];
     option?.scrollIntoView({ block: "nearest" });
     if (option) this.field.setAttribute("aria-activedescendant", option.id);
     else this.field.removeAttribute("aria-activedescendant");
   }
 
   private onKeyDown(event: KeyboardEvent): void {
-    const next = { ArrowDown: this.chosen + 1, ArrowUp: this.chosen - 1, PageDown: this.chosen + 10, PageUp: this.chosen - 10 }[event.key];
+    const next = { ArrowDown: this.chosenIndex + 1, ArrowUp: this.chosenIndex - 1, PageDown: this.chosenIndex + 10, PageUp: this.chosenIndex - 10 }[event.key];
     if (event.target === this.field && next !== undefined) this.choose(next);
     else if ((event.ctrlKey || event.metaKey) && event.shiftKey && event.key.toLowerCase() === "o") this.setWide(!this.isWide);
     else return;
@@ -162,7 +162,7 @@ function flatten(symbols: readonly DocumentSymbol[], uri: string, depth: number)
   ]);
 }
 
-function listedSymbol({ name, location, containerName }: WorkspaceSymbol): ListedSymbol {
+function listSymbol({ name, location, containerName }: WorkspaceSymbol): ListedSymbol {
   const path = pathOf(location.uri);
   const file = path === null ? (containerName ?? "") : shortPath(path);
   return { name, detail: `${file}:${location.range.start.line + 1}`, depth: 0, location };

@@ -1,7 +1,7 @@
 import type { LSPClient } from "@codemirror/lsp-client";
 import { strings } from "../../strings";
 import type { Documents } from "./documents";
-import { pathOf, positionIn, type ServerRange } from "./server-places";
+import { pathOf, offsetOf, type ServerRange } from "./server-places";
 import type { SourceDocument } from "./source-document";
 
 export interface TextEdit {
@@ -34,7 +34,7 @@ interface FileEdits {
 }
 
 /** Returns what an edit does to each file. */
-export function editsByFile(edit: WorkspaceEdit): FileEdits {
+export function groupByFile(edit: WorkspaceEdit): FileEdits {
   const edits = new Map<string, readonly TextEdit[]>(Object.entries(edit.changes ?? {}));
   const created: string[] = [];
   const versions = new Map<string, number>();
@@ -58,26 +58,26 @@ export function editsByFile(edit: WorkspaceEdit): FileEdits {
  */
 export async function applyWorkspaceEdit(client: LSPClient, edit: WorkspaceEdit, documents: Documents, userEvent: string): Promise<SourceDocument[]> {
   const texts = strings.sourceEditor;
-  const { edits, created, versions } = editsByFile(edit);
+  const { edits, created, versions } = groupByFile(edit);
   client.sync();
   const isOutdated = (uri: string): boolean => versions.has(uri) && client.workspace.getFile(uri)?.version !== versions.get(uri);
-  const before = new Map(documents.open.map((document) => [document.uri, document.state.doc]));
-  const changed: [SourceDocument, readonly TextEdit[]][] = [];
+  const previousTexts = new Map(documents.open.map((document) => [document.uri, document.state.doc]));
+  const changedDocuments: [SourceDocument, readonly TextEdit[]][] = [];
   for (const uri of new Set([...created, ...edits.keys()])) {
     const path = pathOf(uri);
     if (path !== null && created.includes(uri)) await documents.create(path);
     const document = path === null ? null : await documents.load(path);
-    if (!document || document.whyNot !== "") throw new Error(texts.notEditable(path ?? uri, document?.whyNot ?? ""));
-    if (isOutdated(uri) || before.get(uri)?.eq(document.state.doc) === false) throw new Error(texts.changedMeanwhile);
-    changed.push([document, edits.get(uri) ?? []]);
+    if (!document || document.readOnlyReason !== "") throw new Error(texts.notEditable(path ?? uri, document?.readOnlyReason ?? ""));
+    if (isOutdated(uri) || previousTexts.get(uri)?.eq(document.state.doc) === false) throw new Error(texts.changedMeanwhile);
+    changedDocuments.push([document, edits.get(uri) ?? []]);
   }
-  for (const [document, own] of changed) {
+  for (const [document, edits] of changedDocuments) {
     const { doc } = document.state;
-    const changes = own.map(({ range, newText }) => ({ from: positionIn(doc, range.start), to: positionIn(doc, range.end), insert: newText }));
+    const changes = edits.map(({ range, newText }) => ({ from: offsetOf(doc, range.start), to: offsetOf(doc, range.end), insert: newText }));
     documents.change(document, { changes, userEvent });
   }
   client.sync();
-  return changed.map(([document]) => document);
+  return changedDocuments.map(([document]) => document);
 }
 
 /** Returns the message of an error, which may be one of the language server. */

@@ -38,7 +38,7 @@ export class VoicePanel implements Panel {
     const texts = strings.voice;
     const { speaker } = voice;
     this.openMicrophoneBox = tickBox(texts.open, texts.openHint, (ticked) => voice.setOpen(ticked));
-    this.speakBox = tickBox(texts.speak, texts.speakHint, (isOn) => speaker.configure({ isOn }));
+    this.speakBox = tickBox(texts.speak, texts.speakHint, (on) => speaker.configure({ on }));
     this.voices = choice(texts.voice, [], (chosen) => speaker.configure({ voice: chosen }));
     const wordsBox = (this.wordsBox = new WordsBox(enrolled, voice));
     this.proposal = h("div", { class: "voice-proposal", role: "status" }, h("span", {}, texts.words.proposal), enrollHereButton(enrolled));
@@ -105,7 +105,7 @@ export class VoicePanel implements Panel {
     this.openMicrophoneBox.box.checked = voice.isPanelOpen;
     this.proposal.hidden = !proposesEnrolling(voice, this.enrolled);
     this.textNote.hidden = serverState?.text_listeners !== 0;
-    this.speakBox.box.checked = speaker.settings.isOn;
+    this.speakBox.box.checked = speaker.settings.on;
     this.showVoices();
   }
 
@@ -120,7 +120,7 @@ export class VoicePanel implements Panel {
     }
     this.voices.value = voices.some(({ voiceURI }) => voiceURI === settings.voice) ? settings.voice : "";
     this.voices.hidden = voices.length === 0;
-    this.noVoices.hidden = !settings.isOn || voices.length > 0;
+    this.noVoices.hidden = !settings.on || voices.length > 0;
   }
 
   private showHistory(): void {

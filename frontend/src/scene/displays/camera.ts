@@ -2,7 +2,7 @@ import { Camera, Group, Matrix4 } from "three";
 import type { DisplayData } from "../../connection/data";
 import type { CameraModel } from "../../protocol";
 import { strings } from "../../strings";
-import { cameraInImageFrame, imageZoom, projection } from "../images/camera-projection";
+import { cameraInImageFrame, computeZoom, createProjection } from "../images/camera-projection";
 import { OwnPanel } from "../images/own-panel";
 import { ImageCanvas } from "../images/image-canvas";
 import { SceneImage } from "../images/scene-image";
@@ -68,10 +68,10 @@ export class CameraDrawing implements Drawing {
     if (!dataPose(this.context.session.frames, data, this.camera.matrix)) return;
     const { rows } = this.context.display;
     const [width, height] = [element.clientWidth, element.clientHeight];
-    const zoom = imageZoom(model, rows.number(1, "Zoom Factor"), width, height);
+    const zoom = computeZoom(model, rows.number(1, "Zoom Factor"), width, height);
     this.camera.matrix.multiply(cameraInImageFrame(model));
     this.camera.matrixWorldNeedsUpdate = true;
-    this.camera.projectionMatrix.copy(projection(model, zoom, rows.number(100, "Far Plane Distance")));
+    this.camera.projectionMatrix.copy(createProjection(model, zoom, rows.number(100, "Far Plane Distance")));
     this.camera.projectionMatrixInverse.copy(this.camera.projectionMatrix).invert();
     scene.drawOnly(
       (display) => isShownInCamera(rows, display),

@@ -1,6 +1,6 @@
 import { Group, Matrix4, Vector3, type Raycaster } from "three";
 import type { DisplayData } from "../../connection/data";
-import { nearestPoint } from "../objects/nearest-point";
+import { findNearestPoint } from "../objects/nearest-point";
 import { PointBatch } from "../objects/point-batch";
 import type { PointLook, PointStyle } from "../objects/point-material";
 import { WireBoxes } from "../objects/wire-boxes";
@@ -102,7 +102,7 @@ export class CloudDrawing implements Drawing {
       const { style, size } = this.look(cloud);
       const radius = (style === "Points" ? 0 : size[0] / 2) + (isOrthographic ? pointerRadius : 0);
       const { positions } = cloud.batch;
-      const found = nearestPoint(positions, origin.toArray(), direction.toArray(), radius, isOrthographic ? 0 : pointerRadius);
+      const found = findNearestPoint(positions, origin.toArray(), direction.toArray(), radius, isOrthographic ? 0 : pointerRadius);
       if (!found || (nearestHit && nearestHit.distance <= found.distance)) continue;
       const point = new Vector3().fromArray(positions, found.index * 3).applyMatrix4(cloud.batch.root.matrix);
       nearestHit = { key: `${key}:${found.index}`, distance: found.distance, point };

@@ -1,6 +1,6 @@
 import { Group, Vector3, type Raycaster } from "three";
 import type { DisplayData } from "../../connection/data";
-import { nearestPoint } from "../objects/nearest-point";
+import { findNearestPoint } from "../objects/nearest-point";
 import { PointBatch } from "../objects/point-batch";
 import type { PointLook } from "../objects/point-material";
 import type { Hit } from "../picking";
@@ -48,7 +48,7 @@ export class GridCellsDrawing implements Drawing {
     const inverse = this.root.matrix.clone().invert();
     const origin = ray.origin.clone().applyMatrix4(inverse).toArray();
     const direction = ray.direction.clone().transformDirection(inverse).toArray();
-    const nearest = nearestPoint(this.batch.positions, origin, direction, Math.max(...this.sides) / 2, 0);
+    const nearest = findNearestPoint(this.batch.positions, origin, direction, Math.max(...this.sides) / 2, 0);
     if (!nearest) return null;
     const point = new Vector3().fromArray(this.batch.positions, nearest.index * 3).applyMatrix4(this.root.matrix);
     return { key: "", distance: nearest.distance, point, isGround: true };

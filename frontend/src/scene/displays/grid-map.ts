@@ -1,7 +1,7 @@
 import { BufferAttribute, BufferGeometry, DoubleSide, Matrix4, Mesh, MeshLambertMaterial, Vector3, type Box3 } from "three";
 import type { GridSurface } from "../../protocol";
 import { OPAQUE_FROM } from "../materials";
-import { concatenated, ThinLines } from "../objects/thin-lines";
+import { concatenate, ThinLines } from "../objects/thin-lines";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 
@@ -46,7 +46,7 @@ export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
       mesh.material.depthWrite = alpha >= OPAQUE_FROM;
     }
     const segments = rows.bool(true, "Show Grid Lines") ? posedContents.map(({ content, pose }) => segmentsOf(content, pose)) : [];
-    this.lines.setSegments(concatenated(segments));
+    this.lines.setSegments(concatenate(segments));
     this.lines.setStyle("#000000", alpha);
   }
 

@@ -3,7 +3,7 @@ import type { DisplayData } from "../../connection/data";
 import type { MarkerMenuEntry } from "../../protocol";
 import type { MenuChoice } from "../../state/scene-menu";
 import { strings } from "../../strings";
-import { describedPose } from "../described-pose";
+import { describePose } from "../described-pose";
 import type { ControlHandle } from "../interactive/control-handle";
 import { MarkerHandle } from "../interactive/marker-handle";
 import type { DescriptionRow, Hit, Interaction, ScenePointer } from "../picking";
@@ -17,7 +17,7 @@ const FEEDBACK_MS = 33;
 export class InteractiveMarkersDrawing implements Drawing {
   readonly root = new Group();
   private readonly markers = new Map<string, MarkerHandle>();
-  private interaction: Interaction = { enabled: false, hideOthers: false };
+  private interaction: Interaction = { isEnabled: false, hidesOthers: false };
   private lastFeedbackMs = 0;
 
   constructor(private readonly context: DrawingContext) {}
@@ -47,18 +47,18 @@ export class InteractiveMarkersDrawing implements Drawing {
     const { session, camera, display } = this.context;
     const isAnyHeld = [...this.markers.values()].some((marker) => marker.isHeld);
     for (const marker of this.markers.values()) {
-      const isHidden = isAnyHeld && this.interaction.hideOthers && !marker.isHeld;
+      const isHidden = isAnyHeld && this.interaction.hidesOthers && !marker.isHeld;
       marker.update(session.frames, camera(), {
-        descriptions: display.rows.bool(true, "Show Descriptions"),
-        axes: display.rows.bool(false, "Show Axes"),
-        aids: display.rows.bool(false, "Show Visual Aids"),
-        interactive: this.interaction.enabled && !isHidden,
+        showsDescriptions: display.rows.bool(true, "Show Descriptions"),
+        showsAxes: display.rows.bool(false, "Show Axes"),
+        showsAids: display.rows.bool(false, "Show Visual Aids"),
+        isInteractive: this.interaction.isEnabled && !isHidden,
       });
     }
   }
 
   isSettled(): boolean {
-    return [...this.markers.values()].every((marker) => marker.settled);
+    return [...this.markers.values()].every((marker) => marker.isSettled);
   }
 
   pick(ray: Raycaster): Hit | null {
@@ -78,7 +78,7 @@ export class InteractiveMarkersDrawing implements Drawing {
     return {
       name: `Interactive Marker ${found.marker.shape.name}`,
       children: [
-        ...describedPose(poseMatrix(found.marker.values, new Matrix4())),
+        ...describePose(poseMatrix(found.marker.values, new Matrix4())),
         { name: "Control", value: found.control.control.name },
       ],
     };
@@ -102,7 +102,7 @@ export class InteractiveMarkersDrawing implements Drawing {
     switch (event.type) {
       case "enter":
       case "leave":
-        control.highlighted = event.type === "enter";
+        control.isHighlighted = event.type === "enter";
         event.setCursor(event.type === "enter" ? "grab" : "");
         event.setHint(event.type === "enter" ? hintOf(control, marker.shape.menu.length > 0) : "");
         invalidate();
@@ -171,7 +171,7 @@ export class InteractiveMarkersDrawing implements Drawing {
       .map((entry) => {
         const choices = this.choices(marker, control, menu, entry.id);
         const run = (): void => {
-          this.context.session.connection.send(marker.feedback(control, "menu_select", entry.id));
+          this.context.session.connection.send(marker.createFeedback(control, "menu_select", entry.id));
         };
         return { label: entry.title, ...(choices.length > 0 ? { choices } : { run }) };
       });
@@ -184,8 +184,8 @@ export class InteractiveMarkersDrawing implements Drawing {
     this.send(marker, control, "pose_update");
   }
 
-  private send(marker: MarkerHandle, control: ControlHandle, event: Parameters<MarkerHandle["feedback"]>[1]): void {
-    this.context.session.connection.send(marker.feedback(control, event));
+  private send(marker: MarkerHandle, control: ControlHandle, event: Parameters<MarkerHandle["createFeedback"]>[1]): void {
+    this.context.session.connection.send(marker.createFeedback(control, event));
   }
 
   private remove(name: string): void {

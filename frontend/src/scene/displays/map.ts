@@ -33,8 +33,8 @@ export class MapDrawing implements Drawing {
     this.plane.setLook({
       palette: this.palette,
       alpha: rows.number(0.7, "Alpha"),
-      seeThrough: scheme !== "map",
-      behind: rows.bool(false, "Draw Behind"),
+      isSeeThrough: scheme !== "map",
+      isBehind: rows.bool(false, "Draw Behind"),
       order: RENDER_ORDERS[scheme],
     });
   }

@@ -1,7 +1,7 @@
 import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
 import type { DisplayData } from "../../connection/data";
 import type { MarkerShape } from "../../protocol";
-import { describedNumbers, describedPose } from "../described-pose";
+import { describeNumbers, describePose } from "../described-pose";
 import { makeMarkerObject, type MarkerObject } from "../markers/marker-object";
 import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
 import type { DescriptionRow, Hit, SelectionBox } from "../picking";
@@ -68,7 +68,7 @@ export class MarkersDrawing implements Drawing {
   }
 
   isSettled(): boolean {
-    return [...this.entries.values()].every(({ object }) => object?.settled ?? true);
+    return [...this.entries.values()].every(({ object }) => object?.isSettled ?? true);
   }
 
   pick(ray: Raycaster): Hit | null {
@@ -98,9 +98,9 @@ export class MarkersDrawing implements Drawing {
     return {
       name: `Marker ${marker.id}`,
       children: [
-        ...describedPose(entry.pose),
-        describedNumbers("Scale", { X: x, Y: y, Z: z }),
-        describedNumbers("Color", { R: r, G: g, B: b, A: a }),
+        ...describePose(entry.pose),
+        describeNumbers("Scale", { X: x, Y: y, Z: z }),
+        describeNumbers("Color", { R: r, G: g, B: b, A: a }),
       ],
     };
   }

@@ -1,6 +1,6 @@
 import { Matrix4, Vector3, type Box3, type Raycaster } from "three";
 import type { PoseMarks } from "../../protocol";
-import { describedNumbers } from "../described-pose";
+import { describeNumbers } from "../described-pose";
 import { ArrowBatch } from "../objects/arrow-batch";
 import { AxesBatch } from "../objects/axes-batch";
 import { CovarianceBatch } from "../objects/covariance-batch";
@@ -46,14 +46,14 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
     const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 0] = drawnContent.content.poses;
     const children = [
       { name: "Frame", value: drawnContent.frame },
-      describedNumbers("Position", { X: x, Y: y, Z: z }),
-      describedNumbers("Orientation", { X: qx, Y: qy, Z: qz, W: qw }),
+      describeNumbers("Position", { X: x, Y: y, Z: z }),
+      describeNumbers("Orientation", { X: qx, Y: qy, Z: qz, W: qw }),
     ];
     const { covariances } = drawnContent.content;
     if (covariances.length > 0) {
       const variance = (i: number): number => covariances[i * 7] ?? 0;
-      children.push(describedNumbers("Covariance Position", { X: variance(0), Y: variance(1), Z: variance(2) }));
-      children.push(describedNumbers("Covariance Orientation", { X: variance(3), Y: variance(4), Z: variance(5) }));
+      children.push(describeNumbers("Covariance Position", { X: variance(0), Y: variance(1), Z: variance(2) }));
+      children.push(describeNumbers("Covariance Orientation", { X: variance(3), Y: variance(4), Z: variance(5) }));
     }
     return { name: `Pose ${this.context.display.name}`, children };
   }

@@ -100,7 +100,7 @@ export class RobotModelDrawing implements Drawing {
   update(): void {
     if (this.isStyleStale && this.drawing) {
       const { display, session } = this.context;
-      this.drawing.style(display.rows, this.isContrastHigh, this.lighting, (link) => session.comparison.overrideOf(display.id, link));
+      this.drawing.applyStyle(display.rows, this.isContrastHigh, this.lighting, (link) => session.comparison.overrideOf(display.id, link));
       setShadowed(this.drawing.root, this.lighting === "Studio" && !session.comparison.isOld(display.id));
     }
     this.isStyleStale = false;
@@ -110,7 +110,7 @@ export class RobotModelDrawing implements Drawing {
       if (hasPose) this.displacement?.link?.(link.name, matrix);
       return hasPose;
     };
-    this.drawing?.place(computePose, this.hiddenDuplicates());
+    this.drawing?.updatePoses(computePose, this.hiddenDuplicates());
     this.drawing?.chooseDetail(this.context.camera());
   }
 
@@ -206,7 +206,7 @@ export class RobotModelDrawing implements Drawing {
       return;
     }
     const timeout = new Promise((resolve) => setTimeout(resolve, SWAP_WITHIN_MS));
-    void Promise.race([robot.settled, timeout]).then(() => {
+    void Promise.race([robot.settling, timeout]).then(() => {
       if (this.nextDrawing === robot) this.show(robot);
     });
   }

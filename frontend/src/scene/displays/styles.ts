@@ -32,7 +32,7 @@ export function covarianceStyle(rows: PropertyRows): CovarianceStyle | null {
   const uniqueColor = colorOf(rows, "#ffff7f", ...pathOf("Orientation"), "Color");
   const isRgb = rows.text("Unique", ...pathOf("Orientation"), "Color Style") === "RGB";
   const orientation = rows.bool(true, ...pathOf("Orientation")) && {
-    local: rows.text("Local", ...pathOf("Orientation"), "Frame") === "Local",
+    isLocal: rows.text("Local", ...pathOf("Orientation"), "Frame") === "Local",
     colors: isRgb ? ([0xff0000, 0x00ff00, 0x0000ff] as const) : ([uniqueColor, uniqueColor, uniqueColor] as const),
     alpha: rows.number(0.5, ...pathOf("Orientation"), "Alpha"),
     offset: rows.number(1, ...pathOf("Orientation"), "Offset"),

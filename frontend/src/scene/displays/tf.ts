@@ -1,5 +1,5 @@
 import { Box3, Group, Matrix4, Vector3, type Raycaster } from "three";
-import { describedPose } from "../described-pose";
+import { describePose } from "../described-pose";
 import { alongX } from "../objects/arrow-batch";
 import { LabelBatch } from "../objects/label-batch";
 import type { DescriptionRow, Hit, SelectionBox } from "../picking";
@@ -114,7 +114,7 @@ export class TfDrawing implements Drawing {
     const pose = new Matrix4();
     if (!framePose(frames, row, pose)) return null;
     const parent = frames.names[frames.parents[row] ?? -1] ?? "";
-    return { name: `Frame ${name}`, children: [{ name: "Parent", value: parent }, ...describedPose(pose)] };
+    return { name: `Frame ${name}`, children: [{ name: "Parent", value: parent }, ...describePose(pose)] };
   }
 
   /** Returns the number of axes, names and arrows drawn, and their bounds in the fixed frame. */

@@ -58,8 +58,8 @@ export class WorldSensors {
   /** Shows only the sensors that the display's properties select. */
   style(rows: PropertyRows): void {
     const [rays, frustums] = [rows.text("Visualized", "Lidar Rays"), rows.text("Visualized", "Camera Frustums")];
-    for (const { sensor, lines } of this.lidars.values()) lines.shown = isChosen(rays, sensor);
-    for (const { sensor, lines } of this.cameras) lines.shown = isChosen(frustums, sensor);
+    for (const { sensor, lines } of this.lidars.values()) lines.isShown = isChosen(rays, sensor);
+    for (const { sensor, lines } of this.cameras) lines.isShown = isChosen(frustums, sensor);
   }
 
   /** Moves the lines to the poses of their links in the fixed frame. */

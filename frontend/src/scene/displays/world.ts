@@ -76,14 +76,14 @@ export class WorldDrawing implements Drawing {
     if (this.poses?.data.pose === null) this.isPoseStale = true; // it follows its frame
     if (this.isStyleStale && this.scene) {
       this.lights.style(context.display.rows, this.scene);
-      drawing.style(context.display.rows, context.session.inspect.current.contrast, this.lights.lighting);
+      drawing.applyStyle(context.display.rows, context.session.inspect.current.contrast, this.lights.lighting);
       this.lights.shade(drawing.root);
       this.sensors.style(context.display.rows);
     }
     if (this.isStyleStale || this.isPoseStale) {
       this.place(drawing);
       this.sensors.place((link) => this.poseOf(link));
-      this.lights.place(this.worldPose(), (link) => this.poseOf(link), () => this.boxForShadows(drawing));
+      this.lights.updatePoses(this.worldPose(), (link) => this.poseOf(link), () => this.boxForShadows(drawing));
     }
     this.isStyleStale = this.isPoseStale = false;
     drawing.chooseDetail(context.camera());
@@ -104,8 +104,8 @@ export class WorldDrawing implements Drawing {
     const isWorldLight = this.lights.isOfWorld;
     const { daylight, fog } = this.scene;
     return {
-      shadows: this.lights.castsShadows,
-      background: isWorldLight ? this.lights.background(this.scene) : null,
+      hasShadows: this.lights.castsShadows,
+      background: isWorldLight ? this.lights.backgroundOf(this.scene) : null,
       daylight,
       fog: isWorldLight ? fog : null,
     };
@@ -187,7 +187,7 @@ export class WorldDrawing implements Drawing {
   }
 
   positionOf(link: string): Vector3 | null {
-    return this.drawing?.placeOf(link) ?? null;
+    return this.drawing?.positionOf(link) ?? null;
   }
 
   /** Returns the pose of a link in the fixed frame; null until it is known. */
@@ -247,7 +247,7 @@ export class WorldDrawing implements Drawing {
 
   /** Returns the box for shadows. It is computed from all vertices only when a link has left it, not for each pose. */
   private boxForShadows(drawing: RobotDrawing): Box3 {
-    const origins = (this.scene?.links ?? []).flatMap(({ name, visuals }) => (visuals.length > 0 ? drawing.placeOf(name) ?? [] : []));
+    const origins = (this.scene?.links ?? []).flatMap(({ name, visuals }) => (visuals.length > 0 ? drawing.positionOf(name) ?? [] : []));
     if (this.isStyleStale || !origins.every((origin) => this.shadowBox.containsPoint(origin))) {
       this.visibleBox = drawing.bounds();
       this.shadowBox = this.visibleBox.clone();
@@ -262,7 +262,7 @@ export class WorldDrawing implements Drawing {
     const hasPoses = posed !== null && posed.content.revision === scene?.revision && dataPose(this.context.session.frames, posed.data, pose);
     if (!hasPoses) return;
     const { poses } = posed.content;
-    drawing.place((link, matrix) => {
+    drawing.updatePoses((link, matrix) => {
       const row = this.rowOf.get(link.name);
       if (row === undefined) return false;
       this.displacement.apply(link.name, poseMatrix(poses, matrix, row * 7)).premultiply(pose);

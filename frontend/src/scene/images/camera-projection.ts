@@ -4,7 +4,7 @@ import type { CameraModel } from "../../protocol";
 const NEAR = 0.01;
 
 /** Returns the share of a window that an image covers along x and y without distortion, by RViz's rule. */
-export function imageZoom(
+export function computeZoom(
   camera: CameraModel,
   factor: number,
   windowWidth: number,
@@ -16,13 +16,13 @@ export function imageZoom(
 }
 
 /** Returns the projection of a pinhole camera whose image covers `zoom` of the window; `far` is the far plane, m. */
-export function projection(camera: CameraModel, zoom: readonly [number, number], far: number): Matrix4 {
+export function createProjection(camera: CameraModel, zoom: readonly [number, number], farDistance: number): Matrix4 {
   const { width, height, focal_x, focal_y, center_x, center_y } = camera;
   const x = ((2 * focal_x) / width) * zoom[0];
   const y = ((2 * focal_y) / height) * zoom[1];
   const shiftX = 2 * (0.5 - center_x / width) * zoom[0];
   const shiftY = 2 * (center_y / height - 0.5) * zoom[1];
-  const end = Math.max(far, NEAR * 2);
+  const end = Math.max(farDistance, NEAR * 2);
   const depth = -(end + NEAR) / (end - NEAR);
   const shift = (-2 * end * NEAR) / (end - NEAR);
   return new Matrix4().set(x, 0, shiftX, 0, 0, y, shiftY, 0, 0, 0, depth, shift, 0, 0, -1, 0);

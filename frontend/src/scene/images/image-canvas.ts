@@ -3,14 +3,14 @@ import type { ImageFrame } from "../../protocol";
 /** An image waiting to be painted. */
 interface QueuedImage {
   image: ImageFrame | ImageBitmap;
-  done: (shown: boolean) => void;
+  onDone: (isShown: boolean) => void;
 }
 
 /** An image file waiting to be decoded. */
 interface EncodedImage {
-  turn: number;
+  imageNumber: number;
   frame: ImageFrame;
-  done: (shown: boolean) => void;
+  onDone: (isShown: boolean) => void;
 }
 
 /**
@@ -21,9 +21,9 @@ export class ImageCanvas {
   readonly canvas = document.createElement("canvas");
   private readonly context: CanvasRenderingContext2D;
   private lastTurn = 0;
-  private newest = 0;
+  private newestShown = 0;
   private painted = 0;
-  private waiting: QueuedImage | null = null;
+  private queuedImage: QueuedImage | null = null;
   private undecoded: EncodedImage | null = null;
   private isDecoding = false;
 
@@ -45,18 +45,18 @@ export class ImageCanvas {
   }
 
   /** Shows an image; calls `done` when it is on the canvas, or with false if it cannot be decoded. */
-  show(frame: ImageFrame, done: (shown: boolean) => void): void {
-    const turn = ++this.lastTurn;
+  show(frame: ImageFrame, onDone: (isShown: boolean) => void): void {
+    const imageNumber = ++this.lastTurn;
     if (frame.encoding !== "file") {
-      this.queue(turn, { image: frame, done });
+      this.queue(imageNumber, { image: frame, onDone });
       return;
     }
-    this.undecoded = { turn, frame, done };
+    this.undecoded = { imageNumber, frame, onDone };
     if (!this.isDecoding) void this.decode();
   }
 
   clear(): void {
-    this.newest = ++this.lastTurn;
+    this.newestShown = ++this.lastTurn;
     this.undecoded = null;
     this.discard();
     this.canvas.width = this.canvas.height = 0;
@@ -72,40 +72,40 @@ export class ImageCanvas {
     this.isDecoding = true;
     for (let next = this.undecoded; next !== null; next = this.undecoded) {
       this.undecoded = null;
-      const { turn, frame, done } = next;
+      const { imageNumber, frame, onDone } = next;
       try {
         const image = await createImageBitmap(new Blob([frame.data as Uint8Array<ArrayBuffer>]));
-        this.queue(turn, { image, done });
+        this.queue(imageNumber, { image, onDone });
       } catch {
-        done(false);
+        onDone(false);
       }
     }
     this.isDecoding = false;
   }
 
-  private queue(turn: number, waiting: QueuedImage): void {
-    const isOld = turn < this.newest;
+  private queue(imageNumber: number, queuedImage: QueuedImage): void {
+    const isOld = imageNumber < this.newestShown;
     if (!isOld) {
-      this.newest = turn;
+      this.newestShown = imageNumber;
       this.discard();
     }
-    if (isOld || waiting.image.width === 0 || waiting.image.height === 0) {
-      if (isBitmap(waiting.image)) waiting.image.close();
+    if (isOld || queuedImage.image.width === 0 || queuedImage.image.height === 0) {
+      if (isBitmap(queuedImage.image)) queuedImage.image.close();
       return;
     }
-    this.waiting = waiting;
+    this.queuedImage = queuedImage;
     this.schedule(this.paint);
   }
 
   private discard(): void {
-    if (this.waiting && isBitmap(this.waiting.image)) this.waiting.image.close();
-    this.waiting = null;
+    if (this.queuedImage && isBitmap(this.queuedImage.image)) this.queuedImage.image.close();
+    this.queuedImage = null;
   }
 
   private readonly paint = (): void => {
-    const { waiting, canvas, context } = this;
-    if (!waiting) return;
-    const { image, done } = waiting;
+    const { queuedImage, canvas, context } = this;
+    if (!queuedImage) return;
+    const { image, onDone } = queuedImage;
     const [width, height] = isBitmap(image) ? [image.width, image.height] : [image.columns, image.rows];
     if (canvas.width !== width) canvas.width = width;
     if (canvas.height !== height) canvas.height = height;
@@ -113,7 +113,7 @@ export class ImageCanvas {
     else context.putImageData(new ImageData(rgbaOf(image), width, height), 0, 0);
     this.discard();
     this.painted += 1;
-    done(true);
+    onDone(true);
   };
 }
 
@@ -127,8 +127,8 @@ export function rgbaOf({ encoding, data }: ImageFrame): Uint8ClampedArray<ArrayB
   const step = encoding === "gray" ? 1 : 3;
   const [green, blue] = encoding === "gray" ? [0, 0] : [1, 2];
   const result = new Uint32Array(data.length / step);
-  for (let i = 0, at = 0; i < result.length; i++, at += step) {
-    result[i] = 0xff000000 | ((data[at + blue] ?? 0) << 16) | ((data[at + green] ?? 0) << 8) | (data[at] ?? 0);
+  for (let i = 0, position = 0; i < result.length; i++, position += step) {
+    result[i] = 0xff000000 | ((data[position + blue] ?? 0) << 16) | ((data[position + green] ?? 0) << 8) | (data[position] ?? 0);
   }
   return new Uint8ClampedArray(result.buffer);
 }

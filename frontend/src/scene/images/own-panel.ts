@@ -61,6 +61,6 @@ export class OwnPanel {
 
 /** Whether the page shows a recording with only its image displays enabled. */
 function showsOnlyImages({ timeline, displays }: Session): boolean {
-  const nothing = (display: DisplayState): boolean => !display.isEnabled || display.isGroup || WITHOUT_DATA.has(display.drawing);
-  return timeline.timeline?.live === false && displays.displays.every(nothing);
+  const drawsNothing = (display: DisplayState): boolean => !display.isEnabled || display.isGroup || WITHOUT_DATA.has(display.drawing);
+  return timeline.timeline?.live === false && displays.displays.every(drawsNothing);
 }

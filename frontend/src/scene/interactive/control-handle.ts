@@ -29,20 +29,20 @@ export class ControlHandle {
   rotation = 0;
   private readonly solids = new SolidMarkers(this.root);
   private readonly objects: MarkerObject[] = [];
-  private readonly own: Quaternion;
+  private readonly ownOrientation: Quaternion;
   private readonly framed = new Quaternion();
-  private isHighlighted = false;
+  private isBright = false;
 
   constructor(
     readonly control: InteractiveControl,
     meshes: MeshLibrary,
-    changed: () => void,
+    onChanged: () => void,
   ) {
     const [x = 0, y = 0, z = 0, w = 1] = control.orientation;
-    this.own = new Quaternion(x, y, z, w);
+    this.ownOrientation = new Quaternion(x, y, z, w);
     for (const marker of control.markers) {
       if (isSolid(marker.shape)) continue;
-      const object = makeMarkerObject(marker, meshes, changed);
+      const object = makeMarkerObject(marker, meshes, onChanged);
       const pose = poseOf(marker);
       pose.decompose(object.root.position, object.root.quaternion, new Vector3());
       this.objects.push(object);
@@ -56,35 +56,35 @@ export class ControlHandle {
     return this.control.mode !== "none";
   }
 
-  get settled(): boolean {
-    return this.objects.every((object) => object.settled);
+  get isSettled(): boolean {
+    return this.objects.every((object) => object.isSettled);
   }
 
   /** The orientation in the reference frame, with the control's axis as x. */
   get orientation(): Quaternion {
-    return this.framed.clone().multiply(this.own);
+    return this.framed.clone().multiply(this.ownOrientation);
   }
 
-  set highlighted(bright: boolean) {
-    if (bright === this.isHighlighted) return;
-    this.isHighlighted = bright;
+  set isHighlighted(isBright: boolean) {
+    if (isBright === this.isBright) return;
+    this.isBright = isBright;
     this.arrangeSolids();
-    for (const { root } of this.objects) root.traverse((object) => brighten(object, bright));
+    for (const { root } of this.objects) root.traverse((object) => brighten(object, isBright));
   }
 
   /**
    * Moves the control to its marker's pose; `camera` and `reference` (the pose of the marker's frame) orient controls
    * that face the viewer.
    */
-  place(position: Vector3, orientation: Quaternion, camera: Camera, reference: Matrix4): void {
+  updatePose(position: Vector3, orientation: Quaternion, camera: Camera, reference: Matrix4): void {
     this.root.position.copy(position);
     const mode = this.control.orientation_mode;
     if (mode === "inherit") this.framed.copy(orientation);
     else if (mode === "fixed") {
-      this.framed.setFromAxisAngle(new Vector3(1, 0, 0).applyQuaternion(this.own), this.rotation);
-    } else this.framed.copy(facingOrientation(this.own, camera, reference));
-    const independent = mode === "view_facing" && this.control.independent_orientation;
-    this.root.quaternion.copy(independent ? orientation : this.framed);
+      this.framed.setFromAxisAngle(new Vector3(1, 0, 0).applyQuaternion(this.ownOrientation), this.rotation);
+    } else this.framed.copy(facingOrientation(this.ownOrientation, camera, reference));
+    const isIndependent = mode === "view_facing" && this.control.independent_orientation;
+    this.root.quaternion.copy(isIndependent ? orientation : this.framed);
   }
 
   /** Returns the intersection of a ray with its markers, in the fixed frame. */
@@ -107,8 +107,8 @@ export class ControlHandle {
     this.solids.begin();
     for (const marker of this.control.markers) {
       if (!isSolid(marker.shape)) continue;
-      const lit = marker.color.map((each, i) => (i < 3 ? Math.min(1, each * BRIGHTNESS_FACTOR + BRIGHTNESS_OFFSET) : each));
-      this.solids.add({ ...marker, color: this.isHighlighted ? lit : marker.color }, poseOf(marker));
+      const color = marker.color.map((channel, i) => (i < 3 ? Math.min(1, channel * BRIGHTNESS_FACTOR + BRIGHTNESS_OFFSET) : channel));
+      this.solids.add({ ...marker, color: this.isBright ? color : marker.color }, poseOf(marker));
     }
     this.solids.end();
   }
@@ -118,11 +118,11 @@ function poseOf({ pose }: MarkerShape): Matrix4 {
   return poseMatrix(pose, new Matrix4());
 }
 
-function brighten(object: Object3D, bright: boolean): void {
+function brighten(object: Object3D, isBright: boolean): void {
   const material = (object as Partial<Mesh>).material;
   const materials: readonly Material[] = material ? [material].flat() : [];
-  for (const each of materials) {
-    if ("color" in each && each.color instanceof Color) each.color.multiplyScalar(bright ? BRIGHTNESS_FACTOR : 1 / BRIGHTNESS_FACTOR);
+  for (const material of materials) {
+    if ("color" in material && material.color instanceof Color) material.color.multiplyScalar(isBright ? BRIGHTNESS_FACTOR : 1 / BRIGHTNESS_FACTOR);
   }
 }
 
@@ -130,12 +130,12 @@ function brighten(object: Object3D, bright: boolean): void {
  * Returns the orientation that turns the control's axis along the line of sight and its z up, as RViz does for controls
  * that face the viewer.
  */
-function facingOrientation(own: Quaternion, camera: Camera, reference: Matrix4): Quaternion {
+function facingOrientation(ownOrientation: Quaternion, camera: Camera, reference: Matrix4): Quaternion {
   const view = new Quaternion().setFromRotationMatrix(camera.matrixWorld);
   const forward = new Vector3(0, 0, -1).applyQuaternion(view);
   const up = new Vector3(0, 1, 0).applyQuaternion(view);
-  const toView = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0).applyQuaternion(own), forward);
-  const z = new Vector3(0, 0, 1).applyQuaternion(own).applyQuaternion(toView);
+  const toView = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0).applyQuaternion(ownOrientation), forward);
+  const z = new Vector3(0, 0, 1).applyQuaternion(ownOrientation).applyQuaternion(toView);
   const toUpright = new Quaternion().setFromUnitVectors(z.projectOnPlane(forward).normalize(), up);
   const frame = new Quaternion().setFromRotationMatrix(reference);
   return frame.invert().multiply(toUpright.multiply(toView));

@@ -33,7 +33,7 @@ const MIN_PLANE_SINE = 0.05;
 /** A drag of an interactive marker's control, by the rules of RViz's InteractiveMarkerControl. */
 export class Drag {
   private readonly start: MarkerPose;
-  private readonly grabbed: Vector3;
+  private readonly grabPoint: Vector3;
   /** The control's axis at the start of the drag: the direction of motion, or the axis of rotation. */
   private readonly axis: Vector3;
   private readonly pose: MarkerPose;
@@ -50,14 +50,14 @@ export class Drag {
   ) {
     this.start = copyOf(start);
     this.pose = copyOf(start);
-    this.grabbed = grab.clone();
+    this.grabPoint = grab.clone();
     this.axis = new Vector3(1, 0, 0).applyQuaternion(orientation).normalize();
   }
 
   /** Returns the marker's pose after a movement of the mouse; null if the movement does not define one. */
-  poseAfter(event: DragEvent): MarkerPose | null {
-    const done = this.move(event);
-    return done ? copyOf(this.pose) : null;
+  followPointer(event: DragEvent): MarkerPose | null {
+    const hasMoved = this.move(event);
+    return hasMoved ? copyOf(this.pose) : null;
   }
 
   private move(event: DragEvent): boolean {
@@ -84,69 +84,69 @@ export class Drag {
   }
 
   private moveAlongAxis(ray: Ray): boolean {
-    const along = alongAxis(ray, this.grabbed, this.axis);
-    if (along === null) return false;
-    this.pose.position.copy(this.start.position).addScaledVector(this.axis, along);
+    const distance = distanceAlongAxis(ray, this.grabPoint, this.axis);
+    if (distance === null) return false;
+    this.pose.position.copy(this.start.position).addScaledVector(this.axis, distance);
     return true;
   }
 
   private moveInPlane(ray: Ray, normal: Vector3): boolean {
-    const at = pointOnPlane(ray, this.grabbed, normal);
-    if (!at) return false;
-    this.pose.position.copy(at).sub(this.grabbed).add(this.start.position);
+    const point = pointOnPlane(ray, this.grabPoint, normal);
+    if (!point) return false;
+    this.pose.position.copy(point).sub(this.grabPoint).add(this.start.position);
     return true;
   }
 
   private turnAboutAxis(ray: Ray): boolean {
     const center = this.nearestOnAxis(this.start.position);
-    const at = pointOnPlane(ray, center, this.axis);
-    if (!at) return false;
-    const turn = rotationBetween(this.grabbed.clone().sub(center), at.sub(center), this.axis);
-    this.pose.orientation.copy(turn).multiply(this.start.orientation);
+    const point = pointOnPlane(ray, center, this.axis);
+    if (!point) return false;
+    const rotation = rotationBetween(this.grabPoint.clone().sub(center), point.sub(center), this.axis);
+    this.pose.orientation.copy(rotation).multiply(this.start.orientation);
     return true;
   }
 
   /** Moves and turns the marker like a cart on a string: the grabbed point follows the mouse. */
   private moveAndTurn(ray: Ray): boolean {
     const center = this.nearestOnAxis(this.pose.position);
-    const at = pointOnPlane(ray, center, this.axis);
-    if (!at) return false;
-    const arm = this.grabbed.clone().sub(center);
-    const reach = at.clone().sub(center);
-    const distance = reach.length();
+    const point = pointOnPlane(ray, center, this.axis);
+    if (!point) return false;
+    const arm = this.grabPoint.clone().sub(center);
+    const offset = point.clone().sub(center);
+    const distance = offset.length();
     if (distance === 0) return false;
-    this.pose.orientation.premultiply(rotationBetween(arm, reach, this.axis));
-    this.pose.position.addScaledVector(reach, (distance - arm.length()) / distance);
-    this.grabbed.copy(at);
+    this.pose.orientation.premultiply(rotationBetween(arm, offset, this.axis));
+    this.pose.position.addScaledVector(offset, (distance - arm.length()) / distance);
+    this.grabPoint.copy(point);
     return true;
   }
 
   private moveFreely(event: DragEvent): boolean {
     if (!event.shift) return this.moveInPlane(event.ray, event.forward);
     const distance = event.ray.origin.distanceTo(this.pose.position);
-    const step = -larger(-event.dx, event.dy) * DEPTH_PER_PIXEL * distance;
-    for (const point of [this.pose.position, this.start.position, this.grabbed]) {
+    const step = -largerOf(-event.dx, event.dy) * DEPTH_PER_PIXEL * distance;
+    for (const point of [this.pose.position, this.start.position, this.grabPoint]) {
       point.addScaledVector(event.ray.direction, step);
     }
     return true;
   }
 
   private turnFreely(event: DragEvent): boolean {
-    const angle = (pixels: number): number => (pixels / PIXELS_PER_TURN) * 2 * Math.PI;
-    const turn = new Quaternion();
-    if (event.shift) turn.setFromAxisAngle(event.forward, angle(larger(event.dx, event.dy)));
+    const angleOf = (pixels: number): number => (pixels / PIXELS_PER_TURN) * 2 * Math.PI;
+    const rotation = new Quaternion();
+    if (event.shift) rotation.setFromAxisAngle(event.forward, angleOf(largerOf(event.dx, event.dy)));
     else {
-      turn.setFromAxisAngle(event.up, angle(event.dx));
-      turn.multiply(new Quaternion().setFromAxisAngle(event.right, angle(event.dy)));
+      rotation.setFromAxisAngle(event.up, angleOf(event.dx));
+      rotation.multiply(new Quaternion().setFromAxisAngle(event.right, angleOf(event.dy)));
     }
-    this.pose.orientation.premultiply(turn);
+    this.pose.orientation.premultiply(rotation);
     return true;
   }
 
   /** Returns the point of the axis through `origin` that is nearest to the grabbed point. */
   private nearestOnAxis(origin: Vector3): Vector3 {
-    const along = this.grabbed.clone().sub(origin).dot(this.axis);
-    return origin.clone().addScaledVector(this.axis, along);
+    const distance = this.grabPoint.clone().sub(origin).dot(this.axis);
+    return origin.clone().addScaledVector(this.axis, distance);
   }
 }
 
@@ -155,7 +155,7 @@ function copyOf(pose: MarkerPose): MarkerPose {
 }
 
 /** Returns the distance along the axis through `origin` to the point nearest to the ray; null if they are parallel. */
-export function alongAxis(ray: Ray, origin: Vector3, axis: Vector3): number | null {
+export function distanceAlongAxis(ray: Ray, origin: Vector3, axis: Vector3): number | null {
   const between = origin.clone().sub(ray.origin);
   const slant = axis.dot(ray.direction);
   const sine2 = 1 - slant * slant;
@@ -169,13 +169,13 @@ function pointOnPlane(ray: Ray, point: Vector3, normal: Vector3): Vector3 | null
 }
 
 /** Returns the rotation about `axis` from the direction `from` to the direction `to`. */
-export function rotationBetween(from: Vector3, to: Vector3, axis: Vector3): Quaternion {
-  const [a, b] = [from, to].map((each) => each.clone().projectOnPlane(axis));
+export function rotationBetween(start: Vector3, end: Vector3, axis: Vector3): Quaternion {
+  const [a, b] = [start, end].map((direction) => direction.clone().projectOnPlane(axis));
   if (!a || !b) return new Quaternion();
   const angle = Math.atan2(axis.dot(a.clone().cross(b)), a.dot(b));
   return new Quaternion().setFromAxisAngle(axis, angle);
 }
 
-function larger(a: number, b: number): number {
+function largerOf(a: number, b: number): number {
   return Math.abs(a) > Math.abs(b) ? a : b;
 }

@@ -2,7 +2,7 @@ import { Group, Matrix4, Quaternion, Ray, Vector3, type Camera, type Raycaster, 
 import type { DisplayData } from "../../connection/data";
 import type { InteractiveMarkerShape, MarkerFeedback } from "../../protocol";
 import type { FrameStore } from "../../state/frames";
-import { textSprite } from "../markers/text-sprite";
+import { createTextSprite } from "../markers/text-sprite";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { AxesBatch } from "../objects/axes-batch";
 import type { ScenePointer } from "../picking";
@@ -22,12 +22,12 @@ const TITLE_ABOVE = 1.4;
 
 /** The display's options. */
 export interface MarkerOptions {
-  descriptions: boolean;
-  axes: boolean;
+  showsDescriptions: boolean;
+  showsAxes: boolean;
   /** Whether to show the line along which a control is dragged, or about which it is turned. */
-  aids: boolean;
+  showsAids: boolean;
   /** Whether the Interact tool is active, so that controls which are not always visible are shown. */
-  interactive: boolean;
+  isInteractive: boolean;
 }
 
 /** An interactive marker: its controls, its title, and the drag in progress. */
@@ -40,21 +40,21 @@ export class MarkerHandle {
   private readonly title: Sprite | null;
   private readonly pose: MarkerPose = { position: new Vector3(), orientation: new Quaternion() };
   private drag: { drag: Drag; control: ControlHandle } | null = null;
-  private grabbed: Vector3 | null = null;
+  private grabPoint: Vector3 | null = null;
 
   constructor(
     readonly shape: InteractiveMarkerShape,
     private data: DisplayData,
     meshes: MeshLibrary,
-    changed: () => void,
+    onChanged: () => void,
   ) {
     this.root.add(this.frame);
     this.frame.matrixAutoUpdate = false;
-    this.controls = shape.controls.map((control) => new ControlHandle(control, meshes, changed));
+    this.controls = shape.controls.map((control) => new ControlHandle(control, meshes, onChanged));
     for (const control of this.controls) this.frame.add(control.root);
     this.axes = new AxesBatch(this.frame, AXES_LENGTH * shape.scale, AXES_RADIUS * shape.scale);
     const letters = TITLE_HEIGHT * shape.scale;
-    this.title = shape.description === "" ? null : textSprite(shape.description, letters, [1, 1, 1, 1]);
+    this.title = shape.description === "" ? null : createTextSprite(shape.description, letters, [1, 1, 1, 1]);
     if (this.title) this.frame.add(this.title);
     this.setPose(shape.pose);
   }
@@ -65,11 +65,11 @@ export class MarkerHandle {
 
   /** Whether the line of the dragged control is shown. */
   get isAidShown(): boolean {
-    return this.aid.shown;
+    return this.aid.isShown;
   }
 
-  get settled(): boolean {
-    return this.controls.every((control) => control.settled);
+  get isSettled(): boolean {
+    return this.controls.every((control) => control.isSettled);
   }
 
   /** The pose in the marker's frame, in the order of messages. */
@@ -86,23 +86,23 @@ export class MarkerHandle {
 
   /** Updates the poses of its objects; returns false if its frame has no transform. */
   update(frames: FrameStore, camera: Camera, options: MarkerOptions): boolean {
-    const placed = dataPose(frames, this.data, this.frame.matrix);
-    this.root.visible = placed;
-    if (!placed) return false;
+    const hasPose = dataPose(frames, this.data, this.frame.matrix);
+    this.root.visible = hasPose;
+    if (!hasPose) return false;
     this.frame.matrixWorldNeedsUpdate = true;
     const { position, orientation } = this.pose;
     for (const control of this.controls) {
-      control.place(position, orientation, camera, this.frame.matrix);
-      control.root.visible = control.control.always_visible || options.interactive;
+      control.updatePose(position, orientation, camera, this.frame.matrix);
+      control.root.visible = control.control.always_visible || options.isInteractive;
     }
     this.axes.begin(1);
-    if (options.axes) this.axes.add(new Matrix4().compose(position, orientation, new Vector3(1, 1, 1)));
+    if (options.showsAxes) this.axes.add(new Matrix4().compose(position, orientation, new Vector3(1, 1, 1)));
     this.axes.end();
-    const held = this.drag?.control;
-    if (held && options.aids) this.aid.show(held.control, position, held.orientation);
+    const heldControl = this.drag?.control;
+    if (heldControl && options.showsAids) this.aid.show(heldControl.control, position, heldControl.orientation);
     else this.aid.hide();
     if (this.title) {
-      this.title.visible = options.descriptions;
+      this.title.visible = options.showsDescriptions;
       this.title.position.copy(position).add(new Vector3(0, 0, TITLE_ABOVE * this.shape.scale));
     }
     return true;
@@ -110,42 +110,42 @@ export class MarkerHandle {
 
   /** Returns the nearest control that a ray in the fixed frame hits. */
   hit(ray: Raycaster): { control: number; distance: number; point: Vector3 } | null {
-    let best: { control: number; distance: number; point: Vector3 } | null = null;
+    let nearest: { control: number; distance: number; point: Vector3 } | null = null;
     this.controls.forEach((control, number) => {
-      const found = control.isActive && control.root.visible ? control.hit(ray) : null;
-      if (found && (best === null || found.distance < best.distance)) {
-        best = { control: number, distance: found.distance, point: found.point };
+      const hit = control.isActive && control.root.visible ? control.hit(ray) : null;
+      if (hit && (nearest === null || hit.distance < nearest.distance)) {
+        nearest = { control: number, distance: hit.distance, point: hit.point };
       }
     });
-    return best;
+    return nearest;
   }
 
   /** Starts dragging a control at a point in the fixed frame. */
   grab(control: ControlHandle, point: Vector3): void {
-    const at = point.clone().applyMatrix4(this.inverse());
-    this.grabbed = at;
-    this.drag = { drag: new Drag(control.control.mode, this.pose, at, control.orientation), control };
+    const localPoint = point.clone().applyMatrix4(this.inverseMatrix());
+    this.grabPoint = localPoint;
+    this.drag = { drag: new Drag(control.control.mode, this.pose, localPoint, control.orientation), control };
   }
 
   /** Follows the mouse; returns true if the marker moved. */
   follow(event: ScenePointer, camera: Camera): boolean {
     if (!this.drag) return false;
-    const inverse = this.inverse();
+    const inverse = this.inverseMatrix();
     const ray = event.ray.ray.clone().applyMatrix4(inverse);
-    const turn = new Quaternion().setFromRotationMatrix(inverse.clone().multiply(camera.matrixWorld));
-    const moved = this.drag.drag.poseAfter({
+    const rotation = new Quaternion().setFromRotationMatrix(inverse.clone().multiply(camera.matrixWorld));
+    const newPose = this.drag.drag.followPointer({
       ray: new Ray(ray.origin, ray.direction.normalize()),
       dx: event.dx,
       dy: event.dy,
       shift: event.shift,
       ctrl: event.ctrl,
-      right: new Vector3(1, 0, 0).applyQuaternion(turn),
-      up: new Vector3(0, 1, 0).applyQuaternion(turn),
-      forward: new Vector3(0, 0, -1).applyQuaternion(turn),
+      right: new Vector3(1, 0, 0).applyQuaternion(rotation),
+      up: new Vector3(0, 1, 0).applyQuaternion(rotation),
+      forward: new Vector3(0, 0, -1).applyQuaternion(rotation),
     });
-    if (!moved) return false;
-    this.pose.position.copy(moved.position);
-    this.pose.orientation.copy(moved.orientation);
+    if (!newPose) return false;
+    this.pose.position.copy(newPose.position);
+    this.pose.orientation.copy(newPose.orientation);
     return true;
   }
 
@@ -154,7 +154,7 @@ export class MarkerHandle {
   }
 
   /** Returns the feedback message for an event of a control. */
-  feedback(control: ControlHandle, event: MarkerFeedback["event"], menuEntry = 0): MarkerFeedback {
+  createFeedback(control: ControlHandle, event: MarkerFeedback["event"], menuEntry = 0): MarkerFeedback {
     return {
       type: "marker_feedback",
       display: this.data.display,
@@ -163,7 +163,7 @@ export class MarkerHandle {
       event,
       pose: this.values,
       menu_entry: menuEntry,
-      mouse_point: this.grabbed?.toArray() ?? [],
+      mouse_point: this.grabPoint?.toArray() ?? [],
     };
   }
 
@@ -176,7 +176,7 @@ export class MarkerHandle {
     this.title?.material.dispose();
   }
 
-  private inverse(): Matrix4 {
+  private inverseMatrix(): Matrix4 {
     return this.frame.matrix.clone().invert();
   }
 

@@ -16,7 +16,7 @@ export class VisualAid {
 
   constructor(private readonly parent: Object3D) {}
 
-  get shown(): boolean {
+  get isShown(): boolean {
     return this.line !== null && this.line.root.parent !== null;
   }
 

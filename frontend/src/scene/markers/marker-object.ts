@@ -16,13 +16,13 @@ import type { MeshLibrary } from "../meshes/mesh-library";
 import type { OwnMaterial } from "../meshes/mesh-template";
 import { PointBatch } from "../objects/point-batch";
 import { WideLines } from "../objects/wide-lines";
-import { textSprite } from "./text-sprite";
+import { createTextSprite } from "./text-sprite";
 
 /** A marker with a three.js object of its own: lines, points, text, triangles or a mesh. */
 export interface MarkerObject {
   readonly root: Object3D;
   /** Whether its mesh and texture are loaded. */
-  readonly settled: boolean;
+  readonly isSettled: boolean;
   dispose(): void;
 }
 
@@ -30,27 +30,27 @@ export interface MarkerObject {
 export function makeMarkerObject(
   marker: MarkerShape,
   meshes: MeshLibrary,
-  changed: (problem: string | null) => void,
+  onChanged: (problem: string | null) => void,
 ): MarkerObject {
   const { shape } = marker;
   if (shape === "line_strip" || shape === "line_list") return new LinesMarker(marker);
   if (shape === "points") return new PointsMarker(marker);
   if (shape === "text") return new TextMarker(marker);
-  if (shape === "triangle_list") return new TrianglesMarker(marker, changed);
-  return new MeshMarker(marker, meshes, changed);
+  if (shape === "triangle_list") return new TrianglesMarker(marker, onChanged);
+  return new MeshMarker(marker, meshes, onChanged);
 }
 
 class LinesMarker implements MarkerObject {
   readonly root = new Group();
-  readonly settled = true;
+  readonly isSettled = true;
   private readonly lines = new WideLines();
 
   constructor({ shape, points, colors, color, scale }: MarkerShape) {
-    const own = colors.length > 0 && colors.length / 4 === points.length / 3;
-    if (shape === "line_strip") this.lines.setStrips([points], own ? [colors] : null);
-    else this.lines.setSegments(points, own ? colors : null);
+    const hasOwnColors = colors.length > 0 && colors.length / 4 === points.length / 3;
+    if (shape === "line_strip") this.lines.setStrips([points], hasOwnColors ? [colors] : null);
+    else this.lines.setSegments(points, hasOwnColors ? colors : null);
     const [r = 1, g = 1, b = 1, a = 1] = color;
-    this.lines.setStyle(own ? 0xffffff : rgb(r, g, b), own ? 1 : a, scale[0] ?? 0);
+    this.lines.setStyle(hasOwnColors ? 0xffffff : packRgb(r, g, b), hasOwnColors ? 1 : a, scale[0] ?? 0);
     this.root.add(this.lines.root);
   }
 
@@ -60,11 +60,11 @@ class LinesMarker implements MarkerObject {
 }
 
 class TextMarker implements MarkerObject {
-  readonly settled = true;
+  readonly isSettled = true;
   readonly root: Sprite;
 
   constructor({ text, scale, color }: MarkerShape) {
-    this.root = textSprite(text, scale[2] ?? 1, color);
+    this.root = createTextSprite(text, scale[2] ?? 1, color);
   }
 
   dispose(): void {
@@ -75,20 +75,20 @@ class TextMarker implements MarkerObject {
 
 class TrianglesMarker implements MarkerObject {
   readonly root: Mesh<BufferGeometry, MeshBasicMaterial | MeshLambertMaterial>;
-  settled = true;
+  isSettled = true;
 
-  constructor(marker: MarkerShape, changed: (problem: string | null) => void) {
+  constructor(marker: MarkerShape, onChanged: (problem: string | null) => void) {
     const { points, scale, color, texture, uvs } = marker;
     const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(points, 3));
     geometry.computeVertexNormals();
-    const colors = vertexColors(marker);
+    const colors = createVertexColors(marker);
     const alpha = color[3] ?? 1;
-    let clear = alpha < OPAQUE_FROM;
+    let isSeeThrough = alpha < OPAQUE_FROM;
     if (colors) {
       geometry.setAttribute("color", new BufferAttribute(colors, 4));
-      for (let i = 3; i < colors.length; i += 4) clear ||= (colors[i] ?? 1) < OPAQUE_FROM;
+      for (let i = 3; i < colors.length; i += 4) isSeeThrough ||= (colors[i] ?? 1) < OPAQUE_FROM;
     }
-    const look = { side: DoubleSide, transparent: clear, depthWrite: !clear, vertexColors: colors !== null };
+    const look = { side: DoubleSide, transparent: isSeeThrough, depthWrite: !isSeeThrough, vertexColors: colors !== null };
     // As in RViz, triangles with individual colors are not lit.
     const material = colors ? new MeshBasicMaterial(look) : new MeshLambertMaterial({ ...look, opacity: alpha });
     if (!colors && texture === null) material.color.setRGB(color[0] ?? 0, color[1] ?? 0, color[2] ?? 0);
@@ -96,8 +96,8 @@ class TrianglesMarker implements MarkerObject {
     this.root.scale.set(scale[0] ?? 1, scale[1] ?? 1, scale[2] ?? 1);
     if (texture !== null) {
       geometry.setAttribute("uv", new BufferAttribute(uvs, 2));
-      this.settled = false;
-      void this.wear(texture, changed);
+      this.isSettled = false;
+      void this.loadTexture(texture, onChanged);
     }
   }
 
@@ -107,7 +107,7 @@ class TrianglesMarker implements MarkerObject {
     this.root.material.dispose();
   }
 
-  private async wear(texture: string, changed: (problem: string | null) => void): Promise<void> {
+  private async loadTexture(texture: string, onChanged: (problem: string | null) => void): Promise<void> {
     let problem: string | null = null;
     try {
       this.root.material.map = await loadTexture(texture);
@@ -115,17 +115,17 @@ class TrianglesMarker implements MarkerObject {
     } catch {
       problem = `could not load texture '${decodeURIComponent(texture.split("/").pop() ?? texture)}'`;
     }
-    this.settled = true;
-    changed(problem);
+    this.isSettled = true;
+    onChanged(problem);
   }
 }
 
 class PointsMarker implements MarkerObject {
-  readonly settled = true;
+  readonly isSettled = true;
   private readonly batch: PointBatch;
 
   constructor({ points, colors, color, scale }: MarkerShape) {
-    const own = colors.length > 0 && colors.length / 4 === points.length / 3;
+    const hasOwnColors = colors.length > 0 && colors.length / 4 === points.length / 3;
     const [r = 1, g = 1, b = 1, a = 1] = color;
     const [width = 0.01, height = 0.01] = scale;
     this.batch = new PointBatch({
@@ -133,10 +133,10 @@ class PointsMarker implements MarkerObject {
       size: [width, height, 0],
       pixels: 1,
       perDepth: 0,
-      color: `#${rgb(r, g, b).toString(16).padStart(6, "0")}`,
-      alpha: own ? 1 : a,
+      color: `#${packRgb(r, g, b).toString(16).padStart(6, "0")}`,
+      alpha: hasOwnColors ? 1 : a,
     });
-    const bytes = Uint8Array.from(own ? colors : [], (value) => Math.round(255 * Math.max(0, Math.min(1, value))));
+    const bytes = Uint8Array.from(hasOwnColors ? colors : [], (value) => Math.round(255 * Math.max(0, Math.min(1, value))));
     this.batch.setPoints(points, bytes, bytes.some((value, i) => i % 4 === 3 && value < 255));
   }
 
@@ -151,63 +151,63 @@ class PointsMarker implements MarkerObject {
 
 class MeshMarker implements MarkerObject {
   readonly root = new Group();
-  settled = false;
+  isSettled = false;
   private materials: Material[] = [];
-  private disposed = false;
+  private isDisposed = false;
 
   constructor(
     private readonly marker: MarkerShape,
     library: MeshLibrary,
-    changed: (problem: string | null) => void,
+    onChanged: (problem: string | null) => void,
   ) {
     const [x = 1, y = 1, z = 1] = marker.scale;
     this.root.scale.set(x, y, z);
-    if (marker.mesh) void this.load(marker.mesh, library, changed);
+    if (marker.mesh) void this.load(marker.mesh, library, onChanged);
   }
 
   dispose(): void {
-    this.disposed = true;
+    this.isDisposed = true;
     for (const material of this.materials) material.dispose();
   }
 
-  private async load(mesh: MarkerMesh, library: MeshLibrary, changed: (problem: string | null) => void): Promise<void> {
+  private async load(mesh: MarkerMesh, library: MeshLibrary, onChanged: (problem: string | null) => void): Promise<void> {
     const bytes = mesh.data ? new Blob([new Uint8Array(mesh.data)]) : null;
     const url = bytes ? URL.createObjectURL(bytes) : (mesh.url ?? "");
     let problem: string | null = null;
     try {
       const template = await library.load(url, mesh.format);
       problem = template.problem;
-      if (!this.disposed) {
+      if (!this.isDisposed) {
         for (const { geometry, materials } of template.parts) {
-          const own = materials.map((material) => this.paint(mesh.embedded ? material : null));
-          this.materials.push(...own);
-          const [only] = own;
-          this.root.add(new Mesh(geometry, own.length === 1 && only ? only : own));
+          const painted = materials.map((material) => this.paint(mesh.embedded ? material : null));
+          this.materials.push(...painted);
+          const [material] = painted;
+          this.root.add(new Mesh(geometry, painted.length === 1 && material ? material : painted));
         }
       }
     } catch (error) {
       problem = error instanceof Error ? error.message : String(error);
     }
     if (bytes) URL.revokeObjectURL(url);
-    this.settled = true;
-    if (!this.disposed) changed(problem);
+    this.isSettled = true;
+    if (!this.isDisposed) onChanged(problem);
   }
 
   /**
    * Returns a material by RViz's rule: the marker's color tints the mesh's own materials, and is ignored for them if
    * it is all zero.
    */
-  private paint(own: OwnMaterial | null): Material {
+  private paint(embedded: OwnMaterial | null): Material {
     let [r = 0, g = 0, b = 0, a = 0] = this.marker.color;
     if (this.marker.mesh?.embedded === true && r === 0 && g === 0 && b === 0 && a === 0) r = g = b = a = 1;
-    const [ownR, ownG, ownB] = own?.color ?? [1, 1, 1];
-    const alpha = a * (own?.opacity ?? 1);
+    const [ownR, ownG, ownB] = embedded?.color ?? [1, 1, 1];
+    const alpha = a * (embedded?.opacity ?? 1);
     const material = new MeshLambertMaterial({
       opacity: alpha,
       transparent: alpha < OPAQUE_FROM,
       depthWrite: alpha >= OPAQUE_FROM,
-      map: own?.map ?? null,
-      vertexColors: own?.vertexColors ?? false,
+      map: embedded?.map ?? null,
+      vertexColors: embedded?.vertexColors ?? false,
       side: DoubleSide,
     });
     material.color.setRGB(r * ownR, g * ownG, b * ownB);
@@ -216,22 +216,22 @@ class MeshMarker implements MarkerObject {
 }
 
 /** Returns red, green, blue and alpha of each vertex, if the marker has a color for each vertex or each triangle. */
-function vertexColors({ points, colors, color }: MarkerShape): Float32Array | null {
+function createVertexColors({ points, colors, color }: MarkerShape): Float32Array | null {
   const corners = points.length / 3;
-  const given = colors.length / 4;
-  if (given === 0 || (given !== corners && given !== corners / 3)) return null;
-  const every = corners / given;
+  const colorCount = colors.length / 4;
+  if (colorCount === 0 || (colorCount !== corners && colorCount !== corners / 3)) return null;
+  const every = corners / colorCount;
   const alpha = color[3] ?? 1;
   const result = new Float32Array(corners * 4);
   for (let i = 0; i < corners; i++) {
-    const from = Math.floor(i / every) * 4;
-    result.set(colors.subarray(from, from + 4), i * 4);
-    result[i * 4 + 3] = alpha * (colors[from + 3] ?? 1);
+    const offset = Math.floor(i / every) * 4;
+    result.set(colors.subarray(offset, offset + 4), i * 4);
+    result[i * 4 + 3] = alpha * (colors[offset + 3] ?? 1);
   }
   return result;
 }
 
-function rgb(r: number, g: number, b: number): number {
-  const byte = (value: number): number => Math.max(0, Math.min(255, Math.round(value * 255)));
-  return (byte(r) << 16) | (byte(g) << 8) | byte(b);
+function packRgb(r: number, g: number, b: number): number {
+  const toByte = (value: number): number => Math.max(0, Math.min(255, Math.round(value * 255)));
+  return (toByte(r) << 16) | (toByte(g) << 8) | toByte(b);
 }

@@ -34,12 +34,12 @@ export function isSolid(kind: MarkerShape["shape"]): boolean {
 
 /** The copies of one shape. Transparent ones are in a batch of their own, because they must not write depth. */
 class Solids {
-  private readonly batches: { opaque: CopyBatch; clear: CopyBatch };
+  private readonly batches: { opaqueBatch: CopyBatch; clearBatch: CopyBatch };
   private readonly copies: { matrix: Matrix4; alpha: number; color: number }[] = [];
 
   constructor(parent: Object3D, geometry: BufferGeometry) {
     const make = (): CopyBatch => new CopyBatch(parent, paint(geometry.clone(), 1, 1, 1));
-    this.batches = { opaque: make(), clear: make() };
+    this.batches = { opaqueBatch: make(), clearBatch: make() };
   }
 
   begin(): void {
@@ -51,25 +51,25 @@ class Solids {
   }
 
   end(): void {
-    const { opaque, clear } = this.batches;
-    opaque.begin(this.copies.length);
-    clear.begin(this.copies.length);
+    const { opaqueBatch, clearBatch } = this.batches;
+    opaqueBatch.begin(this.copies.length);
+    clearBatch.begin(this.copies.length);
     for (const { matrix, alpha, color } of this.copies) {
-      if (alpha < OPAQUE_FROM) clear.add(matrix, 0, alpha, color);
-      else opaque.add(matrix, 0, 1, color);
+      if (alpha < OPAQUE_FROM) clearBatch.add(matrix, 0, alpha, color);
+      else opaqueBatch.add(matrix, 0, 1, color);
     }
-    opaque.end();
-    clear.end();
+    opaqueBatch.end();
+    clearBatch.end();
   }
 
   expandBox(box: Box3): void {
-    this.batches.opaque.expandBox(box);
-    this.batches.clear.expandBox(box);
+    this.batches.opaqueBatch.expandBox(box);
+    this.batches.clearBatch.expandBox(box);
   }
 
   dispose(): void {
-    this.batches.opaque.dispose();
-    this.batches.clear.dispose();
+    this.batches.opaqueBatch.dispose();
+    this.batches.clearBatch.dispose();
   }
 }
 
@@ -107,15 +107,15 @@ export class SolidMarkers {
     const { shape } = marker;
     if (shape === "arrow" || shape === "arrow_strip") this.arrows.push(...arrowsOf(marker, pose));
     else if (shape === "cube" || shape === "sphere" || shape === "cylinder") {
-      this.solids[shape].add(sized(pose, marker), ...look(marker.color, 0));
+      this.solids[shape].add(scalePose(pose, marker), ...lookAt(marker.color, 0));
     } else this.addList(marker, pose);
   }
 
   end(): void {
     for (const solids of Object.values(this.solids)) solids.end();
     const clear = this.arrows.filter((arrow) => arrow.alpha < OPAQUE_FROM);
-    const opaque = this.arrows.filter((arrow) => arrow.alpha >= OPAQUE_FROM);
-    for (const [batch, arrows] of [[this.opaqueArrows, opaque], [this.clearArrows, clear]] as const) {
+    const opaqueArrows = this.arrows.filter((arrow) => arrow.alpha >= OPAQUE_FROM);
+    for (const [batch, arrows] of [[this.opaqueArrows, opaqueArrows], [this.clearArrows, clear]] as const) {
       batch.begin(arrows.length);
       for (const { pose, shape, color, alpha } of arrows) batch.add(pose, shape, { color, alpha });
       batch.end();
@@ -137,13 +137,13 @@ export class SolidMarkers {
   private addList(marker: MarkerShape, pose: Matrix4): void {
     const solids = this.solids[marker.shape === "cube_list" ? "cube" : "sphere"];
     const { points, colors, color } = marker;
-    const own = colors.length / 4 === points.length / 3;
-    const shape = sized(new Matrix4(), marker);
-    const at = new Matrix4();
+    const hasOwnColors = colors.length / 4 === points.length / 3;
+    const shape = scalePose(new Matrix4(), marker);
+    const placement = new Matrix4();
     for (let i = 0; i < points.length / 3; i++) {
-      at.makeTranslation(points[i * 3] ?? 0, points[i * 3 + 1] ?? 0, points[i * 3 + 2] ?? 0);
-      const matrix = new Matrix4().multiplyMatrices(pose, at).multiply(shape);
-      solids.add(matrix, ...(own ? look(colors, i * 4) : look(color, 0)));
+      placement.makeTranslation(points[i * 3] ?? 0, points[i * 3 + 1] ?? 0, points[i * 3 + 2] ?? 0);
+      const matrix = new Matrix4().multiplyMatrices(pose, placement).multiply(shape);
+      solids.add(matrix, ...(hasOwnColors ? lookAt(colors, i * 4) : lookAt(color, 0)));
     }
   }
 }
@@ -158,17 +158,17 @@ export function surfacesOf(marker: MarkerShape, pose: Matrix4): Mesh[] {
     return mesh;
   };
   if (marker.shape === "arrow" || marker.shape === "arrow_strip") {
-    return arrowsOf(marker, pose).map(({ pose: at, shape }) => {
+    return arrowsOf(marker, pose).map(({ pose: matrix, shape }) => {
       const length = shape.shaftLength + shape.headLength;
       const width = Math.max(shape.shaftDiameter, shape.headDiameter);
       const box = new Matrix4().makeScale(length, width, width).setPosition(length / 2, 0, 0);
-      return meshAt(unitBox, box.premultiply(at));
+      return meshAt(unitBox, box.premultiply(matrix));
     });
   }
-  const list = marker.shape === "cube_list" || marker.shape === "sphere_list";
-  const geometry = SHAPES[list ? marker.shape.slice(0, -"_list".length) : marker.shape]?.geometry ?? unitBox;
-  if (!list) return [meshAt(geometry, sized(pose, marker))];
-  const shape = sized(new Matrix4(), marker);
+  const isList = marker.shape === "cube_list" || marker.shape === "sphere_list";
+  const geometry = SHAPES[isList ? marker.shape.slice(0, -"_list".length) : marker.shape]?.geometry ?? unitBox;
+  if (!isList) return [meshAt(geometry, scalePose(pose, marker))];
+  const shape = scalePose(new Matrix4(), marker);
   const meshes: Mesh[] = [];
   for (let i = 0; i < marker.points.length; i += 3) {
     const [x = 0, y = 0, z = 0] = marker.points.subarray(i, i + 3);
@@ -177,20 +177,20 @@ export function surfacesOf(marker: MarkerShape, pose: Matrix4): Mesh[] {
   return meshes;
 }
 
-function sized(pose: Matrix4, marker: MarkerShape): Matrix4 {
+function scalePose(pose: Matrix4, marker: MarkerShape): Matrix4 {
   const name = marker.shape.replace("_list", "");
   const half = SHAPES[name]?.half ?? [false, false, false];
-  const [x = 1, y = 1, z = 1] = marker.scale.map((each, axis) => (half[axis] === true ? each / 2 : each));
+  const [x = 1, y = 1, z = 1] = marker.scale.map((size, axis) => (half[axis] === true ? size / 2 : size));
   return pose.clone().multiply(new Matrix4().makeScale(x, y, z));
 }
 
-function look(colors: ArrayLike<number>, at: number): [number, number] {
-  const color = new Color(colors[at] ?? 0, colors[at + 1] ?? 0, colors[at + 2] ?? 0);
-  return [color.getHex(), colors[at + 3] ?? 1];
+function lookAt(colors: ArrayLike<number>, offset: number): [number, number] {
+  const color = new Color(colors[offset] ?? 0, colors[offset + 1] ?? 0, colors[offset + 2] ?? 0);
+  return [color.getHex(), colors[offset + 3] ?? 1];
 }
 
 function arrowsOf(marker: MarkerShape, pose: Matrix4): Arrow[] {
-  const [color, alpha] = look(marker.color, 0);
+  const [color, alpha] = lookAt(marker.color, 0);
   const { points, scale } = marker;
   if (marker.shape === "arrow" && points.length === 0) {
     const [x = 1, y = 1, z = 1] = scale;
@@ -200,12 +200,12 @@ function arrowsOf(marker: MarkerShape, pose: Matrix4): Arrow[] {
   const part = marker.shape === "arrow" ? HEAD_SHARE : STRIP_HEAD_SHARE;
   const arrows: Arrow[] = [];
   for (let i = 0; i + 5 < points.length; i += 3) {
-    const from = new Vector3().fromArray(points, i);
-    const way = new Vector3().fromArray(points, i + 3).sub(from);
-    const length = way.length();
+    const start = new Vector3().fromArray(points, i);
+    const direction = new Vector3().fromArray(points, i + 3).sub(start);
+    const length = direction.length();
     const headLength = head === 0 ? part * length : Math.max(0, Math.min(head, length));
     const shape = { shaftLength: length - headLength, shaftDiameter, headLength, headDiameter };
-    arrows.push({ pose: alongX(from, way, new Matrix4()).premultiply(pose), shape, color, alpha });
+    arrows.push({ pose: alongX(start, direction, new Matrix4()).premultiply(pose), shape, color, alpha });
   }
   return arrows;
 }

@@ -11,7 +11,7 @@ const LIGHT = 0.4;
 const MAX_TEXTURE_PX = 4096;
 
 /** Returns a text that faces the camera, centered at the origin; `height` is the height of a line, m. */
-export function textSprite(text: string, height: number, color: readonly number[]): Sprite {
+export function createTextSprite(text: string, height: number, color: readonly number[]): Sprite {
   const [r = 1, g = 1, b = 1, a = 1] = color;
   const lines = text.split("\n");
   const canvas = document.createElement("canvas");
@@ -23,16 +23,16 @@ export function textSprite(text: string, height: number, color: readonly number[
   canvas.height = Math.min(MAX_TEXTURE_PX, lines.length * LINE_PX + 2 * PADDING_PX);
   if (context) {
     context.font = font;
-    context.fillStyle = `rgb(${[r, g, b].map((each) => Math.round(255 * each)).join(" ")})`;
+    context.fillStyle = `rgb(${[r, g, b].map((channel) => Math.round(255 * channel)).join(" ")})`;
     context.strokeStyle = 0.3 * r + 0.59 * g + 0.11 * b > LIGHT ? OUTLINES.dark : OUTLINES.light;
     context.lineWidth = OUTLINE_PX;
     context.lineJoin = "round";
     context.textBaseline = "middle";
     context.textAlign = "center";
     for (const [row, line] of lines.entries()) {
-      const at = [canvas.width / 2, PADDING_PX + (row + 0.5) * LINE_PX] as const;
-      context.strokeText(line, ...at);
-      context.fillText(line, ...at);
+      const position = [canvas.width / 2, PADDING_PX + (row + 0.5) * LINE_PX] as const;
+      context.strokeText(line, ...position);
+      context.fillText(line, ...position);
     }
   }
   const map = new CanvasTexture(canvas);

@@ -3,7 +3,7 @@ import { ColladaLoader } from "three/addons/loaders/ColladaLoader.js";
 import { strings } from "../../strings";
 import type { MeshFiles } from "./mesh-files";
 import { MeshError } from "./mesh-error";
-import { flatten, template, type MeshTemplate } from "./mesh-template";
+import { flatten, createTemplate, type MeshTemplate } from "./mesh-template";
 import { TextureWait } from "./texture-wait";
 
 /**
@@ -13,27 +13,27 @@ import { TextureWait } from "./texture-wait";
  * @throws MeshError if the file is not valid COLLADA.
  */
 export async function readCollada(data: ArrayBuffer, url: string, files: MeshFiles): Promise<MeshTemplate> {
-  const written = new TextDecoder().decode(data).replace(/<up_axis>\s*\w+\s*<\/up_axis>/, "<up_axis>Y_UP</up_axis>");
-  const text = checkedXml(written);
+  const xmlText = new TextDecoder().decode(data).replace(/<up_axis>\s*\w+\s*<\/up_axis>/, "<up_axis>Y_UP</up_axis>");
+  const text = checkXml(xmlText);
   const wait = new TextureWait(files);
   const collada = new ColladaLoader(wait.manager).parse(text, LoaderUtils.extractUrlBase(url));
   if (!collada) throw new MeshError(strings.meshes.dae.notXml(""));
   const problem = await wait.settle();
   // The loader replaces a missing material by a magenta one without a name.
-  return template("DAE", flatten(collada.scene, (material) => material.name !== ""), problem);
+  return createTemplate("DAE", flatten(collada.scene, (material) => material.name !== ""), problem);
 }
 
 /** Returns the text as valid XML. The loader itself reports errors only on the console. */
-function checkedXml(written: string): string {
-  let text = written;
+function checkXml(xmlText: string): string {
+  let text = xmlText;
   let xml = parseXml(text);
-  const broken = parserError(xml);
+  const broken = findParserError(xml);
   if (broken) {
-    text = fixXml(written);
+    text = fixXml(xmlText);
     xml = parseXml(text);
     // Browsers word the error differently, but all of them have the line as the first number after "line".
     const line = /line\D*(\d+)/i.exec(broken.textContent)?.[1] ?? "";
-    if (parserError(xml)) throw new MeshError(strings.meshes.dae.notXml(line));
+    if (findParserError(xml)) throw new MeshError(strings.meshes.dae.notXml(line));
   }
   const root = xml.documentElement.tagName;
   if (root.replace(/^.*:/, "") !== "COLLADA") throw new MeshError(strings.meshes.dae.root(root));
@@ -44,7 +44,7 @@ function parseXml(text: string): Document {
   return new DOMParser().parseFromString(text, "application/xml");
 }
 
-function parserError(xml: Document): Element | undefined {
+function findParserError(xml: Document): Element | undefined {
   return xml.getElementsByTagName("parsererror")[0];
 }
 

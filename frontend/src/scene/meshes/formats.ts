@@ -9,11 +9,11 @@ import type { MeshTemplate } from "./mesh-template";
  * @throws MeshError if the mesh cannot be drawn.
  */
 export async function readMesh(data: ArrayBuffer, format: string, url: string, files: MeshFiles): Promise<MeshTemplate> {
-  const read = READERS.get(format);
-  if (!read) throw new MeshError(strings.meshes.noReader(format));
+  const reader = READERS.get(format);
+  if (!reader) throw new MeshError(strings.meshes.noReader(format));
   if (data.byteLength === 0) throw new MeshError(strings.meshes.empty);
   try {
-    return await read(data, url, files);
+    return await reader(data, url, files);
   } catch (error) {
     if (error instanceof MeshError) throw error;
     console.warn(`The mesh ${url} cannot be read:`, error);
@@ -23,11 +23,11 @@ export async function readMesh(data: ArrayBuffer, format: string, url: string, f
 
 type Reader = (data: ArrayBuffer, url: string, files: MeshFiles) => Promise<MeshTemplate>;
 
-const stl: Reader = async (data) => (await import("./stl")).readStl(data);
+const readStl: Reader = async (data) => (await import("./stl")).readStl(data);
 
 const READERS: ReadonlyMap<string, Reader> = new Map<string, Reader>([
-  ["stl", stl],
-  ["stlb", stl],
+  ["stl", readStl],
+  ["stlb", readStl],
   ["dae", async (data, url, files) => (await import("./collada")).readCollada(data, url, files)],
   ["obj", async (data, url, files) => (await import("./obj")).readObj(data, url, files)],
   ["glb", async (data, url, files) => (await import("./gltf")).readGltf(data, url, files, true)],

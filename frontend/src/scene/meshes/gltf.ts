@@ -2,8 +2,8 @@ import { LoaderUtils } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { strings } from "../../strings";
 import type { MeshFiles } from "./mesh-files";
-import { countText, MeshError, quoted } from "./mesh-error";
-import { flatten, template, type MeshTemplate } from "./mesh-template";
+import { countText, MeshError, quoteNames } from "./mesh-error";
+import { flatten, createTemplate, type MeshTemplate } from "./mesh-template";
 import { TextureWait } from "./texture-wait";
 
 const GLB_HEADER_BYTES = 12;
@@ -24,23 +24,23 @@ interface Head {
 export async function readGltf(data: ArrayBuffer, url: string, files: MeshFiles, isBinary: boolean): Promise<MeshTemplate> {
   checkHead(headOf(data, isBinary));
   const wait = new TextureWait(files);
-  const loaded = new GLTFLoader(wait.manager).parseAsync(data, LoaderUtils.extractUrlBase(url));
-  const { scene } = await loaded.catch((error: unknown) => {
-    throw wait.missing.length > 0 ? new MeshError(strings.meshes.missing(quoted(wait.missing))) : error;
+  const loading = new GLTFLoader(wait.manager).parseAsync(data, LoaderUtils.extractUrlBase(url));
+  const { scene } = await loading.catch((error: unknown) => {
+    throw wait.missingUrls.length > 0 ? new MeshError(strings.meshes.missing(quoteNames(wait.missingUrls))) : error;
   });
   const problem = await wait.settle();
   scene.rotation.set(Math.PI / 2, 0, 0);
-  return template("glTF", flatten(scene, () => true), problem);
+  return createTemplate("glTF", flatten(scene, () => true), problem);
 }
 
 function headOf(data: ArrayBuffer, isBinary: boolean): Head {
   const texts = strings.meshes.gltf;
   const magic = String.fromCharCode(...new Uint8Array(data, 0, Math.min(4, data.byteLength)));
-  return magic === "glTF" ? headOfGlb(data) : parseHead(data, isBinary ? texts.magic : texts.notJson);
+  return magic === "glTF" ? readGlbHead(data) : parseHead(data, isBinary ? texts.magic : texts.notJson);
 }
 
 /** Returns the JSON of a GLB file, which is its first chunk. */
-function headOfGlb(data: ArrayBuffer): Head {
+function readGlbHead(data: ArrayBuffer): Head {
   const texts = strings.meshes.gltf;
   const view = new DataView(data);
   const statedLength = data.byteLength < GLB_HEADER_BYTES ? GLB_HEADER_BYTES : view.getUint32(8, true);
@@ -64,5 +64,5 @@ function checkHead(head: Head): void {
   const version = head.asset?.version ?? "1.0";
   if (!version.startsWith("2.")) throw new MeshError(strings.meshes.gltf.version(version));
   const lacking = UNSUPPORTED.filter((name) => head.extensionsRequired?.includes(name));
-  if (lacking.length > 0) throw new MeshError(strings.meshes.gltf.extension(quoted(lacking)));
+  if (lacking.length > 0) throw new MeshError(strings.meshes.gltf.extension(quoteNames(lacking)));
 }

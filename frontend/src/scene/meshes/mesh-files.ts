@@ -3,11 +3,11 @@ export interface MeshFiles {
   /** Fetches the file at an address of the server. */
   fetch(url: string): Promise<Response>;
   /** Returns the address from which the browser loads the file. */
-  address(url: string): string;
+  addressOf(url: string): string;
 }
 
 /** The files of the server; each fetch checks whether the file has changed. */
 export const SERVED: MeshFiles = {
   fetch: (url) => fetch(url, { cache: "no-cache", credentials: "same-origin" }),
-  address: (url) => url,
+  addressOf: (url) => url,
 };

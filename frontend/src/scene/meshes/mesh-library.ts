@@ -1,6 +1,6 @@
 import type { LoadReport, MeshProgress } from "../../state/mesh-progress";
 import { strings } from "../../strings";
-import { bytesText, MeshError } from "./mesh-error";
+import { formatBytes, MeshError } from "./mesh-error";
 import { SERVED, type MeshFiles } from "./mesh-files";
 import type { MeshTemplate } from "./mesh-template";
 import type { StandIns } from "./stand-ins";
@@ -18,7 +18,7 @@ interface CachedMesh {
 /** Loads mesh files, each only once while it does not change. */
 export class MeshLibrary {
   private readonly cache = new Map<string, CachedMesh>();
-  private readonly loading = new Map<string, Promise<MeshTemplate>>();
+  private readonly templates = new Map<string, Promise<MeshTemplate>>();
 
   readonly textures = new SharedTextures();
 
@@ -36,23 +36,23 @@ export class MeshLibrary {
    * @throws MeshError with a clause for the user if the mesh cannot be drawn.
    */
   load(url: string, format: string): Promise<MeshTemplate> {
-    let promise = this.loading.get(url);
+    let promise = this.templates.get(url);
     if (!promise) {
-      const report = this.progress.begin(fileName(url));
+      const report = this.progress.begin(fileNameOf(url));
       promise = this.fetch(url, format.replace(/^\./, "").toLowerCase(), report);
-      this.loading.set(url, promise);
-      const done = (): void => {
+      this.templates.set(url, promise);
+      const finish = (): void => {
         report.end();
-        this.loading.delete(url);
+        this.templates.delete(url);
       };
-      promise.then(done, done);
+      promise.then(finish, finish);
     }
     return promise;
   }
 
   private async fetch(url: string, format: string, report: LoadReport): Promise<MeshTemplate> {
-    const response = await received(this.files.fetch(url));
-    if (!response.ok) throw new MeshError(await refusal(response));
+    const response = await awaitAnswer(this.files.fetch(url));
+    if (!response.ok) throw new MeshError(await readRefusal(response));
     const version = response.headers.get("ETag") ?? response.headers.get("Last-Modified");
     const shelf = this.cache.get(url);
     if (shelf && version !== null && shelf.version === version) {
@@ -71,7 +71,7 @@ export class MeshLibrary {
 }
 
 /** Waits for data from the server; a lost connection becomes a MeshError. */
-async function received<T>(answer: Promise<T>): Promise<T> {
+async function awaitAnswer<T>(answer: Promise<T>): Promise<T> {
   return answer.catch(() => {
     throw new MeshError(strings.meshes.lost);
   });
@@ -83,37 +83,37 @@ async function readBytes(response: Response, report: LoadReport): Promise<ArrayB
   const total = Number.isFinite(statedLength) ? statedLength : null;
   if (total !== null) checkSize(total);
   const reader = response.body?.getReader();
-  if (!reader) return received(response.arrayBuffer());
+  if (!reader) return awaitAnswer(response.arrayBuffer());
   const chunks: Uint8Array[] = [];
   let bytes = 0;
-  for (let next = await received(reader.read()); !next.done; next = await received(reader.read())) {
+  for (let next = await awaitAnswer(reader.read()); !next.done; next = await awaitAnswer(reader.read())) {
     chunks.push(next.value);
     bytes += next.value.length;
     checkSize(bytes);
     report.onBytes(bytes, total);
   }
-  const all = new Uint8Array(bytes);
-  let at = 0;
+  const content = new Uint8Array(bytes);
+  let position = 0;
   for (const chunk of chunks) {
-    all.set(chunk, at);
-    at += chunk.length;
+    content.set(chunk, position);
+    position += chunk.length;
   }
-  return all.buffer;
+  return content.buffer;
 }
 
 function checkSize(bytes: number): void {
-  if (bytes > MAX_BYTES) throw new MeshError(strings.meshes.tooLarge(bytesText(bytes), bytesText(MAX_BYTES)));
+  if (bytes > MAX_BYTES) throw new MeshError(strings.meshes.tooLarge(formatBytes(bytes), formatBytes(MAX_BYTES)));
 }
 
 /** Returns the reason for a refusal: the first line of the server's plain text. */
-async function refusal(response: Response): Promise<string> {
+async function readRefusal(response: Response): Promise<string> {
   if (response.status === 404) return strings.meshes.gone;
-  const plain = response.headers.get("Content-Type")?.startsWith("text/plain") ?? false;
-  const [line = ""] = plain ? (await received(response.text())).trim().split("\n") : [];
+  const isPlainText = response.headers.get("Content-Type")?.startsWith("text/plain") ?? false;
+  const [line = ""] = isPlainText ? (await awaitAnswer(response.text())).trim().split("\n") : [];
   return line !== "" ? line : strings.meshes.answered(`${response.status} ${response.statusText}`.trim());
 }
 
-function fileName(url: string): string {
+function fileNameOf(url: string): string {
   const [path = ""] = url.split("?");
   const name = path.slice(path.lastIndexOf("/") + 1);
   try {

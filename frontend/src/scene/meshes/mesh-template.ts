@@ -11,7 +11,7 @@ import {
 import { strings } from "../../strings";
 import { mapsOf, type Surface } from "../materials";
 import { MeshError } from "./mesh-error";
-import { collapseNonFinite, nonFiniteProblem, type NonFiniteCounts } from "./non-finite";
+import { collapseNonFinite, describeNonFinite, type NonFiniteCounts } from "./non-finite";
 
 /** A material of a mesh file. */
 export interface OwnMaterial {
@@ -63,8 +63,8 @@ export function flatten(root: Object3D, isOwn: (material: Material) => boolean):
     nonFinite.push(collapseNonFinite(geometry));
     if (!geometry.hasAttribute("normal")) geometry.computeVertexNormals();
     const materials = Array.isArray(mesh.material) ? mesh.material : [mesh.material];
-    const own = materials.map((material) => (isOwn(material) ? ownMaterial(material) : null));
-    parts.push({ geometry, materials: own, names: namesOf(object) });
+    const ownMaterials = materials.map((material) => (isOwn(material) ? ownMaterial(material) : null));
+    parts.push({ geometry, materials: ownMaterials, names: namesOf(object) });
   });
   return { parts, nonFinite };
 }
@@ -74,15 +74,15 @@ export function flatten(root: Object3D, isOwn: (material: Material) => boolean):
  *
  * @throws MeshError if nothing can be drawn.
  */
-export function template(format: string, { parts, nonFinite }: Flattened, problem: string | null): MeshTemplate {
+export function createTemplate(format: string, { parts, nonFinite }: Flattened, problem: string | null): MeshTemplate {
   if (nonFinite.every(({ ofTriangles }) => ofTriangles === 0)) throw new MeshError(strings.meshes.noFaces(format));
-  const problems = [problem, nonFiniteProblem(nonFinite)].filter((each) => each !== null);
+  const problems = [problem, describeNonFinite(nonFinite)].filter((text) => text !== null);
   return { parts, problem: problems.join("; ") || null };
 }
 
 function namesOf(object: Object3D): string[] {
   const names: string[] = [];
-  for (let at: Object3D | null = object; at; at = at.parent) if (at.name !== "") names.push(at.name);
+  for (let ancestor: Object3D | null = object; ancestor; ancestor = ancestor.parent) if (ancestor.name !== "") names.push(ancestor.name);
   return names;
 }
 

@@ -22,26 +22,26 @@ export function collapseNonFinite(geometry: BufferGeometry): NonFiniteCounts {
   if (!positions) return { vertices: 0, triangles: 0, ofTriangles: 0 };
   const { index } = geometry;
   const ofTriangles = Math.floor((index ?? positions).count / 3);
-  const real = new Uint8Array(positions.count);
-  for (let i = 0; i < real.length; i++) {
-    real[i] = Number.isFinite(positions.getX(i) + positions.getY(i) + positions.getZ(i)) ? 1 : 0;
+  const finiteFlags = new Uint8Array(positions.count);
+  for (let i = 0; i < finiteFlags.length; i++) {
+    finiteFlags[i] = Number.isFinite(positions.getX(i) + positions.getY(i) + positions.getZ(i)) ? 1 : 0;
   }
-  const vertices = real.reduce((sum, each) => sum + 1 - each, 0);
-  const beyond = index !== null && index.array.some((at) => at >= real.length);
-  if (vertices === 0 && !beyond) return { vertices, triangles: 0, ofTriangles };
-  const some = Math.max(0, real.indexOf(1));
-  const place = [positions.getX(some), positions.getY(some), positions.getZ(some)].map((each) => (Number.isFinite(each) ? each : 0)) as [number, number, number];
+  const vertices = finiteFlags.reduce((sum, flag) => sum + 1 - flag, 0);
+  const isIndexBeyond = index !== null && index.array.some((vertex) => vertex >= finiteFlags.length);
+  if (vertices === 0 && !isIndexBeyond) return { vertices, triangles: 0, ofTriangles };
+  const finiteVertex = Math.max(0, finiteFlags.indexOf(1));
+  const position = [positions.getX(finiteVertex), positions.getY(finiteVertex), positions.getZ(finiteVertex)].map((coordinate) => (Number.isFinite(coordinate) ? coordinate : 0)) as [number, number, number];
   let triangles = 0;
   for (let i = 0; i < 3 * ofTriangles; i += 3) {
-    const corners = [i, i + 1, i + 2].map((at) => index?.getX(at) ?? at);
-    if (corners.every((at) => real[at] === 1)) continue;
+    const corners = [i, i + 1, i + 2].map((vertex) => index?.getX(vertex) ?? vertex);
+    if (corners.every((vertex) => finiteFlags[vertex] === 1)) continue;
     triangles++;
     for (let j = 0; j < 3; j++) {
-      if (index) index.setX(i + j, some);
-      else positions.setXYZ(i + j, ...place);
+      if (index) index.setX(i + j, finiteVertex);
+      else positions.setXYZ(i + j, ...position);
     }
   }
-  for (let i = 0; i < real.length; i++) if (real[i] === 0) positions.setXYZ(i, ...place);
+  for (let i = 0; i < finiteFlags.length; i++) if (finiteFlags[i] === 0) positions.setXYZ(i, ...position);
   return { vertices, triangles, ofTriangles };
 }
 
@@ -50,8 +50,8 @@ export function collapseNonFinite(geometry: BufferGeometry): NonFiniteCounts {
  *
  * @throws MeshError if no triangle is left.
  */
-export function nonFiniteProblem(found: readonly NonFiniteCounts[]): string | null {
-  const sum = (what: keyof NonFiniteCounts): number => found.reduce((total, each) => total + each[what], 0);
+export function describeNonFinite(counts: readonly NonFiniteCounts[]): string | null {
+  const sum = (key: keyof NonFiniteCounts): number => counts.reduce((total, meshCounts) => total + meshCounts[key], 0);
   const [vertices, triangles] = [sum("vertices"), sum("triangles")];
   if (triangles > 0 && triangles === sum("ofTriangles")) throw new MeshError(strings.meshes.onlyNotNumbers(countText(vertices)));
   return vertices + triangles > 0 ? strings.meshes.notNumbers(countText(vertices), countText(triangles)) : null;

@@ -4,7 +4,7 @@ import { OBJLoader } from "three/addons/loaders/OBJLoader.js";
 import { strings } from "../../strings";
 import { MeshError } from "./mesh-error";
 import type { MeshFiles } from "./mesh-files";
-import { flatten, template, type MeshTemplate } from "./mesh-template";
+import { flatten, createTemplate, type MeshTemplate } from "./mesh-template";
 import { TextureWait } from "./texture-wait";
 
 /**
@@ -19,8 +19,8 @@ export async function readObj(data: ArrayBuffer, url: string, files: MeshFiles):
   const wait = new TextureWait(files);
   const loader = new OBJLoader(wait.manager);
   const problems: string[] = [];
-  const known = new Set<string>();
-  for (const name of materialFiles(text)) {
+  const knownMaterials = new Set<string>();
+  for (const name of listMaterialFiles(text)) {
     const response = await files.fetch(folder + name.split("/").map(encodeURIComponent).join("/"));
     if (!response.ok) {
       problems.push(strings.meshes.missingMaterials(name));
@@ -28,16 +28,16 @@ export async function readObj(data: ArrayBuffer, url: string, files: MeshFiles):
     }
     const materials = new MTLLoader(wait.manager).parse(await response.text(), folder);
     materials.preload();
-    for (const each of Object.keys(materials.materials)) known.add(each);
+    for (const name of Object.keys(materials.materials)) knownMaterials.add(name);
     loader.setMaterials(materials);
   }
   const root = loader.parse(text);
-  const missing = await wait.settle();
-  if (missing) problems.push(missing);
-  return template("OBJ", flatten(root, (material) => known.has(material.name)), problems.join("; ") || null);
+  const missingUrls = await wait.settle();
+  if (missingUrls) problems.push(missingUrls);
+  return createTemplate("OBJ", flatten(root, (material) => knownMaterials.has(material.name)), problems.join("; ") || null);
 }
 
 /** Returns the files named by `mtllib` lines. A name may contain spaces: each line names one file. */
-export function materialFiles(obj: string): string[] {
+export function listMaterialFiles(obj: string): string[] {
   return [...obj.matchAll(/^[ \t]*mtllib[ \t]+(.+?)[ \t]*\r?$/gm)].map((match) => match[1] ?? "");
 }

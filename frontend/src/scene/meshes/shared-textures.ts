@@ -8,23 +8,23 @@ interface Shared {
 
 /** Textures by address, each on the GPU only once however many shapes use it. */
 export class SharedTextures {
-  private readonly shared = new Map<string, Shared>();
+  private readonly textures = new Map<string, Shared>();
 
   constructor(private readonly load: (url: string) => Promise<Texture> = loadTexture) {}
 
   /** Returns the texture at `url`. The caller must release it with `release`, even if it cannot be loaded. */
   acquire(url: string): Promise<Texture> {
-    let known = this.shared.get(url);
-    if (!known) this.shared.set(url, (known = { texture: this.load(url), users: 0 }));
-    known.users++;
-    return known.texture;
+    let entry = this.textures.get(url);
+    if (!entry) this.textures.set(url, (entry = { texture: this.load(url), users: 0 }));
+    entry.users++;
+    return entry.texture;
   }
 
   release(url: string): void {
-    const known = this.shared.get(url);
-    if (!known || --known.users > 0) return;
-    this.shared.delete(url);
-    known.texture.then(
+    const entry = this.textures.get(url);
+    if (!entry || --entry.users > 0) return;
+    this.textures.delete(url);
+    entry.texture.then(
       (texture) => texture.dispose(),
       () => undefined,
     );

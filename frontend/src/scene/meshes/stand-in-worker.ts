@@ -1,5 +1,5 @@
 import { MeshoptSimplifier } from "meshoptimizer/simplifier";
-import { standIn, type StandIn, type Triangles } from "./stand-in";
+import { createStandIn, type StandIn, type Triangles } from "./stand-in";
 
 /** The page's request: a stand-in for each piece of a mesh. */
 export interface StandInRequest {
@@ -21,7 +21,7 @@ const scope = globalThis as unknown as {
 
 scope.onmessage = ({ data: { id, pieces } }): void => {
   void MeshoptSimplifier.ready.then(() => {
-    const standIns = pieces.map((piece) => standIn(piece, MeshoptSimplifier));
+    const standIns = pieces.map((piece) => createStandIn(piece, MeshoptSimplifier));
     const buffers = standIns.flatMap(({ positions, normals, levels }) => {
       return [positions.buffer, normals.buffer, ...levels.map(({ index }) => index.buffer)];
     });

@@ -37,7 +37,7 @@ const MIN_COSINE = 0.866;
 const COMPONENTS = 3;
 
 /** Simplifies a mesh repeatedly, each time as far as an error permits. */
-export function standIn(mesh: Triangles, simplifier: Simplifier): StandIn {
+export function createStandIn(mesh: Triangles, simplifier: Simplifier): StandIn {
   const { positions, normals, index } = weld(mesh, simplifier);
   const scale = positions.length > 0 ? simplifier.getScale(positions, COMPONENTS) : 0;
   const levels: StandInLevel[] = [{ error: 0, index }];
@@ -46,15 +46,15 @@ export function standIn(mesh: Triangles, simplifier: Simplifier): StandIn {
   let error = 0;
   for (const step of ERROR_STEPS) {
     if (finest.length === 0) break;
-    const [fewer, off] = simplifier.simplifyWithAttributes(
+    const [reducedIndex, deviation] = simplifier.simplifyWithAttributes(
       finest, positions, COMPONENTS, normals, COMPONENTS, weights, null, 0, step, ["Prune"],
     );
-    if (fewer.length > (1 - MIN_SAVING) * finest.length) continue;
-    error += off * scale; // each starts where the one before ended
-    levels.push({ error, index: fewer });
-    finest = fewer;
+    if (reducedIndex.length > (1 - MIN_SAVING) * finest.length) continue;
+    error += deviation * scale; // each starts where the one before ended
+    levels.push({ error, index: reducedIndex });
+    finest = reducedIndex;
   }
-  return { positions, normals, levels, sphere: boundingSphere(positions) };
+  return { positions, normals, levels, sphere: computeBoundingSphere(positions) };
 }
 
 /**
@@ -62,49 +62,49 @@ export function standIn(mesh: Triangles, simplifier: Simplifier): StandIn {
  * needs triangles that share vertices.
  */
 function weld({ positions, normals, index }: Triangles, simplifier: Simplifier): { positions: Float32Array; normals: Float32Array; index: Uint32Array } {
-  const place = simplifier.generatePositionRemap(positions, COMPONENTS);
+  const weldedVertices = simplifier.generatePositionRemap(positions, COMPONENTS);
   const corners = index?.length ?? positions.length / COMPONENTS;
   const joined = new Uint32Array(corners);
   /**
    * The newest vertex at each position, and for each vertex the previous one at the same position; numbers plus one, 0 for none.
    */
-  const [newest, before] = [new Uint32Array(place.length), new Uint32Array(corners)];
+  const [newest, before] = [new Uint32Array(weldedVertices.length), new Uint32Array(corners)];
   const [at, sum] = [new Float32Array(corners * COMPONENTS), new Float32Array(corners * COMPONENTS)];
   const first = new Float32Array(corners * COMPONENTS);
   let count = 0;
   for (let corner = 0; corner < corners; corner++) {
     const vertex = index?.[corner] ?? corner;
     const [x, y, z] = [normals[3 * vertex] ?? 0, normals[3 * vertex + 1] ?? 0, normals[3 * vertex + 2] ?? 0];
-    const here = place[vertex] ?? vertex;
-    let found = newest[here] ?? 0;
+    const welded = weldedVertices[vertex] ?? vertex;
+    let candidate = newest[welded] ?? 0;
     const isUnlit = x === 0 && y === 0 && z === 0;
-    while (found > 0 && !isUnlit) {
-      const i = 3 * (found - 1);
+    while (candidate > 0 && !isUnlit) {
+      const i = 3 * (candidate - 1);
       if (x * (first[i] ?? 0) + y * (first[i + 1] ?? 0) + z * (first[i + 2] ?? 0) >= MIN_COSINE) break;
-      found = before[found - 1] ?? 0;
+      candidate = before[candidate - 1] ?? 0;
     }
-    if (found === 0) {
-      before[count] = newest[here] ?? 0;
+    if (candidate === 0) {
+      before[count] = newest[welded] ?? 0;
       at.set(positions.subarray(3 * vertex, 3 * vertex + 3), 3 * count);
       first.set([x, y, z], 3 * count);
       count += 1;
-      found = newest[here] = count;
+      candidate = newest[welded] = count;
     }
-    const i = 3 * (found - 1);
+    const i = 3 * (candidate - 1);
     sum[i] = (sum[i] ?? 0) + x;
     sum[i + 1] = (sum[i + 1] ?? 0) + y;
     sum[i + 2] = (sum[i + 2] ?? 0) + z;
-    joined[corner] = found - 1;
+    joined[corner] = candidate - 1;
   }
   for (let i = 0; i < 3 * count; i += 3) {
     const length = Math.hypot(sum[i] ?? 0, sum[i + 1] ?? 0, sum[i + 2] ?? 0) || 1;
     for (let j = i; j < i + 3; j++) sum[j] = (sum[j] ?? 0) / length;
   }
-  return { positions: at.slice(0, 3 * count), normals: sum.slice(0, 3 * count), index: withoutDegenerate(joined) };
+  return { positions: at.slice(0, 3 * count), normals: sum.slice(0, 3 * count), index: removeDegenerate(joined) };
 }
 
 /** Returns the triangles without those that have two equal corners. */
-function withoutDegenerate(index: Uint32Array): Uint32Array {
+function removeDegenerate(index: Uint32Array): Uint32Array {
   let length = 0;
   for (let i = 0; i + 2 < index.length; i += 3) {
     const [a = 0, b = 0, c = 0] = index.subarray(i, i + 3);
@@ -115,14 +115,14 @@ function withoutDegenerate(index: Uint32Array): Uint32Array {
   return index.slice(0, length);
 }
 
-function boundingSphere(positions: Float32Array): [number, number, number, number] {
-  const [least, most] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+function computeBoundingSphere(positions: Float32Array): [number, number, number, number] {
+  const [minimum, maximum] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
   positions.forEach((position, i) => {
-    least[i % 3] = Math.min(least[i % 3] ?? position, position);
-    most[i % 3] = Math.max(most[i % 3] ?? position, position);
+    minimum[i % 3] = Math.min(minimum[i % 3] ?? position, position);
+    maximum[i % 3] = Math.max(maximum[i % 3] ?? position, position);
   });
-  const middle = (axis: number): number => ((least[axis] ?? 0) + (most[axis] ?? 0)) / 2;
-  const [x, y, z] = [middle(0), middle(1), middle(2)];
+  const centerOf = (axis: number): number => ((minimum[axis] ?? 0) + (maximum[axis] ?? 0)) / 2;
+  const [x, y, z] = [centerOf(0), centerOf(1), centerOf(2)];
   let radius = 0;
   for (let i = 0; i < positions.length; i += 3) {
     radius = Math.max(radius, Math.hypot((positions[i] ?? 0) - x, (positions[i + 1] ?? 0) - y, (positions[i + 2] ?? 0) - z));

@@ -25,10 +25,10 @@ export class StandIns {
    * Returns the stand-ins of a geometry, one for each group or one for all of it; null until they are computed, empty
    * if there are none.
    */
-  of(geometry: BufferGeometry): readonly StandIn[] | null {
-    const known = this.results.get(geometry);
-    if (known === undefined) this.request(geometry);
-    return known === undefined || known === "waits" ? null : known === "none" ? [] : known;
+  standInsOf(geometry: BufferGeometry): readonly StandIn[] | null {
+    const existing = this.results.get(geometry);
+    if (existing === undefined) this.request(geometry);
+    return existing === undefined || existing === "waits" ? null : existing === "none" ? [] : existing;
   }
 
   private request(geometry: BufferGeometry): void {
@@ -66,14 +66,14 @@ export class StandIns {
 function piecesOf(geometry: BufferGeometry): Triangles[] | null {
   const [position, normal] = [geometry.getAttribute("position"), geometry.getAttribute("normal")];
   const corners = geometry.index?.count ?? position.count;
-  const isPlain = [position, normal].every((each) => each.itemSize === 3 && each.array instanceof Float32Array && !("data" in each));
+  const isPlain = [position, normal].every((attribute) => attribute.itemSize === 3 && attribute.array instanceof Float32Array && !("data" in attribute));
   if (!isPlain || corners > MAX_CORNERS || corners === 0) return null;
-  const all = geometry.index ? Uint32Array.from(geometry.index.array) : null;
+  const index = geometry.index ? Uint32Array.from(geometry.index.array) : null;
   const [positions, normals] = [position.array as Float32Array, normal.array as Float32Array];
   const groups = geometry.groups.length > 0 ? geometry.groups : [{ start: 0, count: corners }];
   return groups.map(({ start, count }) => {
     const end = Math.min(start + count, corners);
-    if (all) return { positions: positions.slice(), normals: normals.slice(), index: all.slice(start, end) };
+    if (index) return { positions: positions.slice(), normals: normals.slice(), index: index.slice(start, end) };
     return { positions: positions.slice(3 * start, 3 * end), normals: normals.slice(3 * start, 3 * end), index: null };
   });
 }

@@ -11,7 +11,7 @@ const NON_FINITE = /^[+-]?(nan|inf|\d\.#(ind|qnan|snan|inf))/i;
  * @throws MeshError with the line of the error.
  */
 export function readAsciiStl(text: string): Float32Array {
-  return new AsciiStl(text).read();
+  return new AsciiStl(text).readTriangles();
 }
 
 class AsciiStl {
@@ -21,9 +21,9 @@ class AsciiStl {
 
   constructor(private readonly text: string) {}
 
-  read(): Float32Array {
+  readTriangles(): Float32Array {
     this.token.lastIndex = this.text.toLowerCase().indexOf("solid");
-    for (let word = this.next(); word !== null; word = this.next()) {
+    for (let word = this.readWord(); word !== null; word = this.readWord()) {
       if (word === "solid" || word === "endsolid") this.skipLine();
       else if (word === "facet") this.readFacet();
       else throw this.errorAt(strings.meshes.stl.unexpectedWord(word.slice(0, 40), "'facet'"));
@@ -37,8 +37,8 @@ class AsciiStl {
     this.expect("outer");
     this.expect("loop");
     let count = 0;
-    let word = this.nextRequired("'vertex'");
-    for (; word === "vertex"; word = this.nextRequired("'endloop'")) {
+    let word = this.readRequired("'vertex'");
+    for (; word === "vertex"; word = this.readRequired("'endloop'")) {
       for (let i = 0; i < 3; i++) this.positions.push(this.readNumber());
       count++;
     }
@@ -48,25 +48,25 @@ class AsciiStl {
   }
 
   private readNumber(): number {
-    const word = this.nextRequired(strings.meshes.stl.number);
+    const word = this.readRequired(strings.meshes.stl.number);
     const value = Number(word);
     if (!Number.isNaN(value) || NON_FINITE.test(word)) return value;
     throw this.errorAt(strings.meshes.stl.unexpectedWord(word.slice(0, 40), strings.meshes.stl.number));
   }
 
   private expect(word: string): void {
-    const found = this.nextRequired(`'${word}'`);
-    if (found !== word) throw this.errorAt(strings.meshes.stl.unexpectedWord(found.slice(0, 40), `'${word}'`));
+    const text = this.readRequired(`'${word}'`);
+    if (text !== word) throw this.errorAt(strings.meshes.stl.unexpectedWord(text.slice(0, 40), `'${word}'`));
   }
 
-  private nextRequired(expected: string): string {
-    const word = this.next();
+  private readRequired(expected: string): string {
+    const word = this.readWord();
     if (word !== null) return word;
     this.offset = this.text.trimEnd().length;
     throw this.errorAt(strings.meshes.stl.unexpectedEnd(expected));
   }
 
-  private next(): string | null {
+  private readWord(): string | null {
     const match = this.token.exec(this.text);
     if (!match) return null;
     this.offset = match.index;

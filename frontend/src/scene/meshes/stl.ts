@@ -1,7 +1,7 @@
 import { BufferAttribute, BufferGeometry } from "three";
 import { strings } from "../../strings";
 import { countText, MeshError } from "./mesh-error";
-import { collapseNonFinite, nonFiniteProblem } from "./non-finite";
+import { collapseNonFinite, describeNonFinite } from "./non-finite";
 import type { MeshTemplate } from "./mesh-template";
 import { readAsciiStl } from "./stl-text";
 
@@ -24,7 +24,7 @@ export function readStl(data: ArrayBuffer): MeshTemplate {
   if (positions.length === 0) throw new MeshError(strings.meshes.stl.none);
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(positions, 3));
-  const problem = nonFiniteProblem([collapseNonFinite(geometry)]);
+  const problem = describeNonFinite([collapseNonFinite(geometry)]);
   geometry.computeVertexNormals();
   return { parts: [{ geometry, materials: [null] }], problem };
 }
@@ -36,28 +36,28 @@ export function readStl(data: ArrayBuffer): MeshTemplate {
 function isText(data: ArrayBuffer): boolean {
   const bytes = new Uint8Array(data);
   const start = String.fromCharCode(...bytes.subarray(0, HEADER_BYTES));
-  const at = start.toLowerCase().indexOf("solid");
-  const says = at >= 0 && (at <= MAX_PREFIX || start.slice(0, at).trim() === "");
-  if (!says) return false;
-  const isWhole = bytes.length >= HEADER_BYTES && bytes.length === HEADER_BYTES + triangleCount(data) * TRIANGLE_BYTES;
+  const index = start.toLowerCase().indexOf("solid");
+  const hasSolid = index >= 0 && (index <= MAX_PREFIX || start.slice(0, index).trim() === "");
+  if (!hasSolid) return false;
+  const isWhole = bytes.length >= HEADER_BYTES && bytes.length === HEADER_BYTES + readTriangleCount(data) * TRIANGLE_BYTES;
   return !isWhole && !bytes.subarray(0, 4 * HEADER_BYTES).includes(0);
 }
 
-function triangleCount(data: ArrayBuffer): number {
+function readTriangleCount(data: ArrayBuffer): number {
   return new DataView(data).getUint32(COUNT_AT, true);
 }
 
 function readBinary(data: ArrayBuffer): Float32Array {
   const texts = strings.meshes.stl;
   if (data.byteLength < HEADER_BYTES) throw new MeshError(texts.short(countText(data.byteLength)));
-  const count = triangleCount(data);
+  const count = readTriangleCount(data);
   const available = Math.floor((data.byteLength - HEADER_BYTES) / TRIANGLE_BYTES);
   if (available < count) throw new MeshError(texts.fewer(countText(count), countText(available)));
   const view = new DataView(data);
   const positions = new Float32Array(count * 9);
   for (let i = 0; i < count; i++) {
-    const at = HEADER_BYTES + i * TRIANGLE_BYTES + NORMAL_BYTES;
-    for (let j = 0; j < 9; j++) positions[9 * i + j] = view.getFloat32(at + 4 * j, true);
+    const byteOffset = HEADER_BYTES + i * TRIANGLE_BYTES + NORMAL_BYTES;
+    for (let j = 0; j < 9; j++) positions[9 * i + j] = view.getFloat32(byteOffset + 4 * j, true);
   }
   return positions;
 }

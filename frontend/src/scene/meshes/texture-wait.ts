@@ -1,31 +1,31 @@
 import { LoadingManager } from "three";
 import { strings } from "../../strings";
-import { quoted } from "./mesh-error";
+import { quoteNames } from "./mesh-error";
 import type { MeshFiles } from "./mesh-files";
 
 /** A loading manager that tracks the textures a loader requests, and which of them failed. */
 export class TextureWait {
   readonly manager: LoadingManager;
   /** The names of files that could not be loaded. */
-  readonly missing: string[] = [];
-  private pending = 0;
+  readonly missingUrls: string[] = [];
+  private pendingCount = 0;
   private wake: (() => void) | null = null;
 
   constructor(files: MeshFiles) {
     const manager = new LoadingManager();
-    manager.setURLModifier((url) => files.address(url));
+    manager.setURLModifier((url) => files.addressOf(url));
     const { itemStart, itemEnd, itemError } = manager;
     manager.itemStart = (url): void => {
-      this.pending += 1;
+      this.pendingCount += 1;
       itemStart(url);
     };
     manager.itemEnd = (url): void => {
-      this.pending -= 1;
+      this.pendingCount -= 1;
       itemEnd(url);
-      if (this.pending === 0) this.wake?.();
+      if (this.pendingCount === 0) this.wake?.();
     };
     manager.itemError = (url): void => {
-      this.missing.push(decodeURIComponent(url.split("/").pop() ?? url));
+      this.missingUrls.push(decodeURIComponent(url.split("/").pop() ?? url));
       itemError(url);
     };
     this.manager = manager;
@@ -33,8 +33,8 @@ export class TextureWait {
 
   /** Waits for the textures requested so far; returns a sentence about the missing ones, or null. */
   async settle(): Promise<string | null> {
-    if (this.pending > 0) await new Promise<void>((resolve) => (this.wake = resolve));
-    if (this.missing.length === 0) return null;
-    return strings.meshes.missingTextures(quoted(this.missing));
+    if (this.pendingCount > 0) await new Promise<void>((resolve) => (this.wake = resolve));
+    if (this.missingUrls.length === 0) return null;
+    return strings.meshes.missingTextures(quoteNames(this.missingUrls));
   }
 }

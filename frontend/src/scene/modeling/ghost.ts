@@ -1,7 +1,7 @@
 import { Mesh, MeshBasicMaterial, type BufferGeometry } from "three";
 import { isShape, type NewKind, type Placement } from "../../state/modeling/shapes";
 import { unitBox, unitCylinder, unitSphere } from "../objects/geometries";
-import { extrudedPolygons } from "../objects/world-geometries";
+import { extrudePolygons } from "../objects/world-geometries";
 import { entityMatrix } from "./entity-pose";
 
 /** The size of the disc on the ground for entities without a shape of their own, m. */
@@ -14,7 +14,7 @@ export class Ghost {
     new MeshBasicMaterial({ color: 0x58a6ff, transparent: true, opacity: 0.45, depthWrite: false }),
   );
 
-  private readonly wedge = extrudedPolygons([[-0.5, -0.5, 0.5, -0.5, 0.5, 0.5]], 1).translate(0, 0, -0.5).rotateX(Math.PI / 2);
+  private readonly wedge = extrudePolygons([[-0.5, -0.5, 0.5, -0.5, 0.5, 0.5]], 1).translate(0, 0, -0.5).rotateX(Math.PI / 2);
 
   constructor() {
     this.root.visible = this.root.matrixAutoUpdate = false;

@@ -42,10 +42,10 @@ export class ArrowBatch {
   }
 
   /** Removes all arrows; at most `expected` will be added. */
-  begin(expected: number): void {
+  begin(capacity: number): void {
     this.withShaft = [];
-    this.shafts.begin(expected);
-    this.heads.begin(expected);
+    this.shafts.begin(capacity);
+    this.heads.begin(capacity);
   }
 
   /** Adds an arrow from the origin of `pose` along its x axis. */
@@ -84,11 +84,11 @@ export class ArrowBatch {
   }
 }
 
-const turn = new Quaternion();
+const rotation = new Quaternion();
 const unit = new Vector3();
 
 /** Computes a pose at `origin` whose x axis points along `direction`, which may have any length. */
 export function alongX(origin: Vector3, direction: Vector3, pose: Matrix4): Matrix4 {
-  turn.setFromUnitVectors(ALONG_X, unit.copy(direction).normalize());
-  return pose.compose(origin, turn, ONE);
+  rotation.setFromUnitVectors(ALONG_X, unit.copy(direction).normalize());
+  return pose.compose(origin, rotation, ONE);
 }

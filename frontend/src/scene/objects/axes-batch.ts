@@ -29,8 +29,8 @@ export class AxesBatch {
   }
 
   /** Removes all axes; at most `expected` will be added. */
-  begin(expected: number): void {
-    this.copies.begin(expected);
+  begin(capacity: number): void {
+    this.copies.begin(capacity);
   }
 
   add(pose: Matrix4, gray = 0, alpha = 1): void {

@@ -42,9 +42,9 @@ export interface CellLook {
   palette: Uint8Array;
   alpha: number;
   /** Whether some colors of the palette are transparent. */
-  seeThrough: boolean;
+  isSeeThrough: boolean;
   /** Whether the plane is drawn before everything else, which then covers it regardless of depth. */
-  behind: boolean;
+  isBehind: boolean;
   /** The render order: among coplanar planes, the one with the higher order covers the others. */
   order: number;
 }
@@ -53,7 +53,7 @@ export interface CellLook {
 export class CellPlane {
   readonly root = new Group();
   private parts: Mesh<PlaneGeometry, ShaderMaterial>[] = [];
-  private readonly palette = { value: texture(new Uint8Array(256 * 4), 256, 1) };
+  private readonly palette = { value: createTexture(new Uint8Array(256 * 4), 256, 1) };
   private look: CellLook | null = null;
   private size = "";
 
@@ -82,18 +82,18 @@ export class CellPlane {
     this.look = look;
     this.palette.value.image.data?.set(look.palette);
     this.palette.value.needsUpdate = true;
-    const seeThrough = look.alpha < OPAQUE_FROM || look.seeThrough;
+    const isSeeThrough = look.alpha < OPAQUE_FROM || look.isSeeThrough;
     for (const { material } of this.parts) {
       // A plane drawn behind must precede transparent objects, too: it is blended, but does not count as transparent.
-      material.transparent = seeThrough && !look.behind;
+      material.transparent = isSeeThrough && !look.isBehind;
       material.blending = CustomBlending;
-      material.depthWrite = !seeThrough && !look.behind;
-      material.depthTest = !look.behind;
+      material.depthWrite = !isSeeThrough && !look.isBehind;
+      material.depthTest = !look.isBehind;
       const alpha = material.uniforms["alpha"];
       if (alpha) alpha.value = look.alpha;
       material.needsUpdate = true;
     }
-    for (const part of this.parts) part.renderOrder = look.behind ? -1000 + look.order : look.order;
+    for (const part of this.parts) part.renderOrder = look.isBehind ? -1000 + look.order : look.order;
   }
 
   clear(): void {
@@ -120,7 +120,7 @@ export class CellPlane {
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
       uniforms: {
-        cells: { value: texture(new Uint8Array(width * height), width, height) },
+        cells: { value: createTexture(new Uint8Array(width * height), width, height) },
         palette: this.palette,
         alpha: { value: 1 },
       },
@@ -135,7 +135,7 @@ export class CellPlane {
   }
 }
 
-function texture(data: Uint8Array, width: number, height: number): DataTexture {
+function createTexture(data: Uint8Array, width: number, height: number): DataTexture {
   const texture = new DataTexture(data, width, height);
   if (data.length === width * height) texture.format = RedFormat;
   texture.magFilter = texture.minFilter = NearestFilter;

@@ -13,8 +13,8 @@ import {
   type Raycaster,
   type ShaderMaterial,
 } from "three";
-import { offsetBehind } from "../materials";
-import { slotMaterial, slotTexture, TEXELS_PER_SLOT, writeSlot } from "./slot-material";
+import { polygonOffsetOf } from "../materials";
+import { createSlotMaterial, createSlotTexture, TEXELS_PER_SLOT, writeSlot } from "./slot-material";
 
 const FLOATS_PER_SLOT = TEXELS_PER_SLOT * 4;
 const WHITE = 0xffffff;
@@ -56,7 +56,7 @@ export class CopyBatch {
   private readonly slots: { value: DataTexture };
   private capacity = 0;
   private count = 0;
-  private seeThrough = false;
+  private isSeeThrough = false;
   /** The contents of the slots of all copies. */
   private allSlots = new Float32Array(0);
   /** The copies in the slots; null for all in their order. */
@@ -68,9 +68,9 @@ export class CopyBatch {
     private readonly shape: BufferGeometry,
     private readonly options: CopyOptions = {},
   ) {
-    this.slots = { value: slotTexture(0) };
-    this.mesh = new CopyMesh(new BufferGeometry(), slotMaterial(this.slots, options.isSoft), (box) => this.expandBox(box));
-    Object.assign(this.mesh.material, offsetBehind(options.isBehind === true));
+    this.slots = { value: createSlotTexture(0) };
+    this.mesh = new CopyMesh(new BufferGeometry(), createSlotMaterial(this.slots, options.isSoft), (box) => this.expandBox(box));
+    Object.assign(this.mesh.material, polygonOffsetOf(options.isBehind === true));
     if (options.isOverlay) {
       this.mesh.material.depthTest = this.mesh.material.depthWrite = false;
       this.mesh.material.transparent = true; // opaque things are drawn before, whatever their order
@@ -91,16 +91,16 @@ export class CopyBatch {
   }
 
   /** Removes all copies; at most `expected` will be added. */
-  begin(expected: number): void {
+  begin(capacity: number): void {
     this.count = 0;
-    this.seeThrough = false;
+    this.isSeeThrough = false;
     this.inSlots = null;
-    if (expected <= this.capacity) return;
-    this.capacity = Math.ceil(expected * 1.25);
+    if (capacity <= this.capacity) return;
+    this.capacity = Math.ceil(capacity * 1.25);
     this.mesh.geometry.dispose();
-    this.mesh.geometry = copies(this.shape, this.capacity);
+    this.mesh.geometry = createCopies(this.shape, this.capacity);
     this.slots.value.dispose();
-    this.slots.value = slotTexture(this.capacity);
+    this.slots.value = createSlotTexture(this.capacity);
     this.allSlots = new Float32Array(this.texels.length);
   }
 
@@ -110,7 +110,7 @@ export class CopyBatch {
    */
   add(matrix: Matrix4, gray = 0, alpha = 1, color = WHITE): void {
     writeSlot(this.allSlots, this.count, matrix, color, gray, alpha);
-    this.seeThrough ||= alpha < 1;
+    this.isSeeThrough ||= alpha < 1;
     this.count += 1;
   }
 
@@ -120,9 +120,9 @@ export class CopyBatch {
     this.mesh.boundingBox = null;
     geometry.setDrawRange(0, this.count * (this.shape.index?.count ?? 0));
     this.isUploaded = false;
-    if (this.options.isOverlay || material.transparent === this.seeThrough) return;
-    material.transparent = this.seeThrough;
-    material.depthWrite = !this.seeThrough;
+    if (this.options.isOverlay || material.transparent === this.isSeeThrough) return;
+    material.transparent = this.isSeeThrough;
+    material.depthWrite = !this.isSeeThrough;
     material.needsUpdate = true;
   }
 
@@ -136,16 +136,16 @@ export class CopyBatch {
 
   /** Returns the nearest copy that a ray hits. */
   pick(ray: Raycaster): CopyHit | null {
-    let best: CopyHit | null = null;
+    let nearest: CopyHit | null = null;
     const { matrixWorld } = this.mesh;
     for (let copy = 0; copy < this.count; copy++) {
       this.matrixOf(copy, this.probe.matrixWorld).premultiply(matrixWorld);
       const [hit] = ray.intersectObject(this.probe, false);
-      if (hit && (best === null || hit.distance < best.distance)) {
-        best = { copy, distance: hit.distance, point: hit.point };
+      if (hit && (nearest === null || hit.distance < nearest.distance)) {
+        nearest = { copy, distance: hit.distance, point: hit.point };
       }
     }
-    return best;
+    return nearest;
   }
 
   dispose(): void {
@@ -158,35 +158,35 @@ export class CopyBatch {
 
   /** Fills the slots with the copies in view; transparent ones are sorted from the farthest to the nearest. */
   private arrange(camera: Camera): void {
-    const wanted = this.count > MAX_SORTED ? null : this.visibleCopies(camera);
-    if (this.isUploaded && areSame(wanted, this.inSlots)) return;
+    const order = this.count > MAX_SORTED ? null : this.sortVisibleCopies(camera);
+    if (this.isUploaded && areSame(order, this.inSlots)) return;
     const { texels, allSlots } = this;
-    if (wanted === null) texels.set(allSlots.subarray(0, this.count * FLOATS_PER_SLOT));
+    if (order === null) texels.set(allSlots.subarray(0, this.count * FLOATS_PER_SLOT));
     else {
-      wanted.forEach((copy, slot) => {
+      order.forEach((copy, slot) => {
         texels.set(allSlots.subarray(copy * FLOATS_PER_SLOT, (copy + 1) * FLOATS_PER_SLOT), slot * FLOATS_PER_SLOT);
       });
     }
-    this.mesh.geometry.setDrawRange(0, (wanted?.length ?? this.count) * (this.shape.index?.count ?? 0));
+    this.mesh.geometry.setDrawRange(0, (order?.length ?? this.count) * (this.shape.index?.count ?? 0));
     this.slots.value.needsUpdate = true;
-    this.inSlots = wanted;
+    this.inSlots = order;
     this.isUploaded = true;
   }
 
   /** Returns the copies in a camera's view, in drawing order. */
-  private visibleCopies(camera: Camera): number[] {
+  private sortVisibleCopies(camera: Camera): number[] {
     if (!this.shape.boundingSphere) this.shape.computeBoundingSphere();
-    const whole = this.shape.boundingSphere ?? new Sphere();
+    const shapeSphere = this.shape.boundingSphere ?? new Sphere();
     const view = new Matrix4().multiplyMatrices(camera.matrixWorldInverse, this.mesh.matrixWorld);
     const frustum = new Frustum().setFromProjectionMatrix(camera.projectionMatrix);
-    const found: { copy: number; height: number }[] = [];
+    const copies: { copy: number; height: number }[] = [];
     const [matrix, sphere] = [new Matrix4(), new Sphere()];
     for (let copy = 0; copy < this.count; copy++) {
-      sphere.copy(whole).applyMatrix4(this.matrixOf(copy, matrix).premultiply(view));
-      if (frustum.intersectsSphere(sphere)) found.push({ copy, height: sphere.center.z });
+      sphere.copy(shapeSphere).applyMatrix4(this.matrixOf(copy, matrix).premultiply(view));
+      if (frustum.intersectsSphere(sphere)) copies.push({ copy, height: sphere.center.z });
     }
-    if (this.seeThrough && !this.options.isOverlay) found.sort((a, b) => a.height - b.height);
-    return found.map(({ copy }) => copy);
+    if (this.isSeeThrough && !this.options.isOverlay) copies.sort((a, b) => a.height - b.height);
+    return copies.map(({ copy }) => copy);
   }
 
   private get texels(): Float32Array {
@@ -195,15 +195,15 @@ export class CopyBatch {
 
   private matrixOf(copy: number, matrix: Matrix4): Matrix4 {
     const { allSlots } = this;
-    const at = copy * FLOATS_PER_SLOT;
-    const row = (i: number): [number, number, number, number] => [allSlots[i] ?? 0, allSlots[i + 1] ?? 0, allSlots[i + 2] ?? 0, allSlots[i + 3] ?? 0];
-    return matrix.set(...row(at), ...row(at + 4), ...row(at + 8), 0, 0, 0, 1);
+    const offset = copy * FLOATS_PER_SLOT;
+    const rowAt = (i: number): [number, number, number, number] => [allSlots[i] ?? 0, allSlots[i + 1] ?? 0, allSlots[i + 2] ?? 0, allSlots[i + 3] ?? 0];
+    return matrix.set(...rowAt(offset), ...rowAt(offset + 4), ...rowAt(offset + 8), 0, 0, 0, 1);
   }
 }
 
-function areSame(some: readonly number[] | null, others: readonly number[] | null): boolean {
-  if (some === null || others === null) return some === others;
-  return some.length === others.length && some.every((each, i) => each === others[i]);
+function areSame(first: readonly number[] | null, second: readonly number[] | null): boolean {
+  if (first === null || second === null) return first === second;
+  return first.length === second.length && first.every((number, i) => number === second[i]);
 }
 
 /** A mesh whose bounds are those of its copies, wherever three.js asks for them. */
@@ -225,7 +225,7 @@ class CopyMesh extends Mesh<BufferGeometry, ShaderMaterial> {
 }
 
 /** Repeats the shape `count` times; each vertex has the index of its copy. */
-function copies(shape: BufferGeometry, count: number): BufferGeometry {
+function createCopies(shape: BufferGeometry, count: number): BufferGeometry {
   const result = new BufferGeometry();
   const vertices = shape.getAttribute("position").count;
   for (const name of ["position", "normal", "color"]) {

@@ -1,6 +1,6 @@
 import { Matrix4, Quaternion, Vector3, type Box3, type Object3D } from "three";
 import { CopyBatch } from "./copy-batch";
-import { principalAxes } from "./eigen";
+import { computePrincipalAxes } from "./eigen";
 import { sphereGeometry, cylinderGeometry, coneGeometry } from "./geometries";
 
 /** RViz's CovarianceProperty; null for a part that is not drawn. Colors as 0xrrggbb. */
@@ -8,7 +8,7 @@ export interface CovarianceStyle {
   position: { color: number; alpha: number; scale: number } | null;
   orientation: {
     /** Whether deviations are about the axes of the pose instead of those of its frame. */
-    local: boolean;
+    isLocal: boolean;
     /** The colors of the rotations about x, y and z. */
     colors: readonly [number, number, number];
     alpha: number;
@@ -43,10 +43,10 @@ export class CovarianceBatch {
   }
 
   /** Removes all covariances; at most `expected` poses will be added. */
-  begin(expected: number): void {
-    this.balls.begin(expected);
-    this.discs.begin(expected * 3);
-    this.cones.begin(expected);
+  begin(capacity: number): void {
+    this.balls.begin(capacity);
+    this.discs.begin(capacity * 3);
+    this.cones.begin(capacity);
   }
 
   /**
@@ -57,29 +57,29 @@ export class CovarianceBatch {
    * @param covariance - 36 numbers, row by row over x, y, z and the rotations about them.
    */
   add(frame: Matrix4, pose: Float32Array, covariance: Float32Array, style: CovarianceStyle): void {
-    const c = (row: number, column: number): number => covariance[row * 6 + column] ?? 0;
-    const inPlane = c(2, 2) <= 0 && c(3, 3) <= 0 && c(4, 4) <= 0;
-    const at = new Vector3().fromArray(pose);
+    const covarianceAt = (row: number, column: number): number => covariance[row * 6 + column] ?? 0;
+    const isInPlane = covarianceAt(2, 2) <= 0 && covarianceAt(3, 3) <= 0 && covarianceAt(4, 4) <= 0;
+    const position = new Vector3().fromArray(pose);
     if (style.position) {
       const { color, alpha, scale } = style.position;
-      this.root.makeTranslation(at).premultiply(frame);
-      const shape = inPlane
-        ? deviationsOf([c(0, 0), c(0, 1), 0, c(1, 0), c(1, 1), 0, 0, 0, 0])
-        : deviationsOf([c(0, 0), c(0, 1), c(0, 2), c(1, 0), c(1, 1), c(1, 2), c(2, 0), c(2, 1), c(2, 2)]);
+      this.root.makeTranslation(position).premultiply(frame);
+      const shape = isInPlane
+        ? deviationsOf([covarianceAt(0, 0), covarianceAt(0, 1), 0, covarianceAt(1, 0), covarianceAt(1, 1), 0, 0, 0, 0])
+        : deviationsOf([covarianceAt(0, 0), covarianceAt(0, 1), covarianceAt(0, 2), covarianceAt(1, 0), covarianceAt(1, 1), covarianceAt(1, 2), covarianceAt(2, 0), covarianceAt(2, 1), covarianceAt(2, 2)]);
       if (shape) {
         const [x, y, z] = shape.deviations.map((deviation) => 2 * deviation * scale) as [number, number, number];
-        const size = this.scale.makeScale(atLeastFlat(x), atLeastFlat(y), atLeastFlat(z));
+        const size = this.scale.makeScale(clampToFlat(x), clampToFlat(y), clampToFlat(z));
         this.balls.add(this.matrix.copy(this.root).multiply(shape.axes).multiply(size), 0, alpha, color);
       }
     }
     if (!style.orientation) return;
-    this.root.makeTranslation(at);
-    if (style.orientation.local) {
+    this.root.makeTranslation(position);
+    if (style.orientation.isLocal) {
       this.root.multiply(new Matrix4().makeRotationFromQuaternion(new Quaternion().fromArray(pose, 3).normalize()));
     }
     this.root.premultiply(frame);
-    if (inPlane) this.addTriangle(c(5, 5), style.orientation);
-    else this.addDiscs(c, style.orientation);
+    if (isInPlane) this.addTriangle(covarianceAt(5, 5), style.orientation);
+    else this.addDiscs(covarianceAt, style.orientation);
   }
 
   end(): void {
@@ -101,19 +101,19 @@ export class CovarianceBatch {
     const width = offset * widthOfAngle(2 * Math.sqrt(variance) * scale);
     // The batch's cone has its base at the origin and its tip along x: turn it around.
     this.matrix.makeTranslation(offset, 0, 0).premultiply(this.root);
-    this.cones.add(this.matrix.multiply(this.scale.makeScale(-offset, -atLeastFlat(width), FLAT)), 0, alpha, colors[2]);
+    this.cones.add(this.matrix.multiply(this.scale.makeScale(-offset, -clampToFlat(width), FLAT)), 0, alpha, colors[2]);
   }
 
   private addDiscs(
-    c: (row: number, column: number) => number,
+    covarianceAt: (row: number, column: number) => number,
     style: NonNullable<CovarianceStyle["orientation"]>,
   ): void {
     const { offset, scale, alpha, colors } = style;
     for (const axis of [0, 1, 2]) {
       const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-      const shape = deviationsOf([c(3 + u, 3 + u), c(3 + u, 3 + v), 0, c(3 + v, 3 + u), c(3 + v, 3 + v), 0, 0, 0, 0]);
+      const shape = deviationsOf([covarianceAt(3 + u, 3 + u), covarianceAt(3 + u, 3 + v), 0, covarianceAt(3 + v, 3 + u), covarianceAt(3 + v, 3 + v), 0, 0, 0, 0]);
       if (!shape || offset <= 0) continue;
-      const [x, y] = shape.deviations.map((deviation) => atLeastFlat(offset * widthOfAngle(2 * deviation * scale)));
+      const [x, y] = shape.deviations.map((deviation) => clampToFlat(offset * widthOfAngle(2 * deviation * scale)));
       this.matrix.copy(this.root).multiply(DISCS[axis] ?? DISCS[2]).multiply(this.scale.makeTranslation(0, 0, offset));
       this.matrix.multiply(shape.axes).multiply(this.scale.makeScale(x ?? FLAT, y ?? FLAT, FLAT));
       this.discs.add(this.matrix, 0, alpha, colors[axis] ?? colors[2]);
@@ -131,15 +131,15 @@ const DISCS = [
   new Matrix4().makeBasis(new Vector3(0, -1, 0), new Vector3(1, 0, 0), new Vector3(0, 0, 1)),
 ] as const;
 
-type Matrix3Rows = Parameters<typeof principalAxes>[0];
+type Matrix3Rows = Parameters<typeof computePrincipalAxes>[0];
 
 /**
  * Returns standard deviations and their axes; null for rows that are not a covariance, which RViz does not draw either.
  */
 function deviationsOf(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 } | null {
-  const { values, axes } = principalAxes(rows);
-  const most = Math.max(...values.map(Math.abs));
-  if (!Number.isFinite(most) || values.some((value) => value < -1e-6 * most)) return null;
+  const { values, axes } = computePrincipalAxes(rows);
+  const maximum = Math.max(...values.map(Math.abs));
+  if (!Number.isFinite(maximum) || values.some((value) => value < -1e-6 * maximum)) return null;
   return { deviations: values.map((value) => Math.sqrt(Math.max(0, value))), axes };
 }
 
@@ -148,6 +148,6 @@ function widthOfAngle(radians: number): number {
   return 2 * Math.tan(Math.min(radians / 2, MAX_RADIANS));
 }
 
-function atLeastFlat(size: number): number {
+function clampToFlat(size: number): number {
   return Math.max(size, FLAT);
 }

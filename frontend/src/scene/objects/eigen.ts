@@ -19,7 +19,7 @@ const PLANES = [
  *
  * @param m - row by row; only the upper triangle is read.
  */
-export function principalAxes(m: readonly [number, number, number, number, number, number, number, number, number]): PrincipalAxes {
+export function computePrincipalAxes(m: readonly [number, number, number, number, number, number, number, number, number]): PrincipalAxes {
   const a = [
     [m[0], m[1], m[2]],
     [m[1], m[4], m[5]],
@@ -30,8 +30,8 @@ export function principalAxes(m: readonly [number, number, number, number, numbe
     [0, 1, 0],
     [0, 0, 1],
   ];
-  const at = (matrix: number[][], row: number, column: number): number => matrix[row]?.[column] ?? 0;
-  const turn = (matrix: number[][], row: number, p: number, q: number, c: number, s: number): void => {
+  const elementAt = (matrix: number[][], row: number, column: number): number => matrix[row]?.[column] ?? 0;
+  const rotate = (matrix: number[][], row: number, p: number, q: number, c: number, s: number): void => {
     const line = matrix[row] ?? [];
     const [x = 0, y = 0] = [line[p], line[q]];
     line[p] = c * x - s * y;
@@ -39,14 +39,14 @@ export function principalAxes(m: readonly [number, number, number, number, numbe
   };
   for (let sweep = 0; sweep < SWEEPS; sweep++) {
     for (const [p, q] of PLANES) {
-      if (at(a, p, q) === 0) continue;
-      const theta = (at(a, q, q) - at(a, p, p)) / (2 * at(a, p, q));
+      if (elementAt(a, p, q) === 0) continue;
+      const theta = (elementAt(a, q, q) - elementAt(a, p, p)) / (2 * elementAt(a, p, q));
       const t = Math.sign(theta || 1) / (Math.abs(theta) + Math.hypot(theta, 1));
       const c = 1 / Math.hypot(t, 1);
       const s = t * c;
       for (let row = 0; row < 3; row++) {
-        turn(a, row, p, q, c, s);
-        turn(v, row, p, q, c, s);
+        rotate(a, row, p, q, c, s);
+        rotate(v, row, p, q, c, s);
       }
       const [high = [], low = []] = [a[p], a[q]];
       for (let column = 0; column < 3; column++) {
@@ -57,10 +57,10 @@ export function principalAxes(m: readonly [number, number, number, number, numbe
     }
   }
   const axes = new Matrix4().set(
-    at(v, 0, 0), at(v, 0, 1), at(v, 0, 2), 0,
-    at(v, 1, 0), at(v, 1, 1), at(v, 1, 2), 0,
-    at(v, 2, 0), at(v, 2, 1), at(v, 2, 2), 0,
+    elementAt(v, 0, 0), elementAt(v, 0, 1), elementAt(v, 0, 2), 0,
+    elementAt(v, 1, 0), elementAt(v, 1, 1), elementAt(v, 1, 2), 0,
+    elementAt(v, 2, 0), elementAt(v, 2, 1), elementAt(v, 2, 2), 0,
     0, 0, 0, 1,
   );
-  return { values: [at(a, 0, 0), at(a, 1, 1), at(a, 2, 2)], axes };
+  return { values: [elementAt(a, 0, 0), elementAt(a, 1, 1), elementAt(a, 2, 2)], axes };
 }

@@ -37,11 +37,11 @@ export function capsuleGeometry(length: number): BufferGeometry {
  * as the thickness of the arms, so that axes of length 1 and radius 0.1 are ten times as long as they are thick.
  */
 export function axesGeometry(length: number, radius: number, segments: number): BufferGeometry {
-  const arm = (): BufferGeometry => rodGeometry(segments).scale(length, radius, radius);
+  const createArm = (): BufferGeometry => rodGeometry(segments).scale(length, radius, radius);
   return mergeGeometries([
-    paint(arm(), 1, 0, 0),
-    paint(arm().rotateZ(Math.PI / 2), 0, 1, 0),
-    paint(arm().rotateY(-Math.PI / 2), 0, 0, 1),
+    paint(createArm(), 1, 0, 0),
+    paint(createArm().rotateZ(Math.PI / 2), 0, 1, 0),
+    paint(createArm().rotateY(-Math.PI / 2), 0, 0, 1),
   ]);
 }
 
@@ -50,8 +50,8 @@ export function axesGeometry(length: number, radius: number, segments: number): 
  * because the other is hidden.
  */
 export function rodGeometry(segments: number, closedAt: "origin" | "end" = "end"): BufferGeometry {
-  const open = true;
-  const tube = new CylinderGeometry(0.5, 0.5, 1, segments, 1, open).rotateZ(-Math.PI / 2).translate(0.5, 0, 0);
+  const isOpen = true;
+  const tube = new CylinderGeometry(0.5, 0.5, 1, segments, 1, isOpen).rotateZ(-Math.PI / 2).translate(0.5, 0, 0);
   const disc = new CircleGeometry(0.5, segments).rotateY(Math.PI / 2);
   if (closedAt === "end") disc.translate(1, 0, 0);
   else disc.rotateZ(Math.PI);

@@ -35,7 +35,7 @@ export class GlyphAtlas {
   }
 
   /** Returns the glyph of a character, and draws it if it is new; an empty glyph once the atlas is full. */
-  glyph(character: string): Glyph {
+  glyphOf(character: string): Glyph {
     let glyph = this.glyphs.get(character);
     if (!glyph) {
       glyph = this.draw(character);

@@ -82,20 +82,20 @@ export class LabelBatch {
   add(text: string, anchor: Vector3, height: number, gray: number, alpha: number): void {
     const { data } = this;
     const layout = this.layout(text);
-    let at = this.glyphs * FLOATS_PER_GLYPH;
+    let offset = this.glyphs * FLOATS_PER_GLYPH;
     for (let i = 0; i < layout.length; i += 6) {
       const [x = 0, width = 0, u = 0, v = 0, uWidth = 0, vHeight = 0] = layout.subarray(i, i + 6);
       for (const [right, top] of CORNERS) {
-        data[at] = anchor.x;
-        data[at + 1] = anchor.y;
-        data[at + 2] = anchor.z;
-        data[at + 3] = (x + right * width) * height;
-        data[at + 4] = (top - 1) * height;
-        data[at + 5] = u + right * uWidth;
-        data[at + 6] = v + top * vHeight;
-        data[at + 7] = gray;
-        data[at + 8] = alpha;
-        at += STRIDE;
+        data[offset] = anchor.x;
+        data[offset + 1] = anchor.y;
+        data[offset + 2] = anchor.z;
+        data[offset + 3] = (x + right * width) * height;
+        data[offset + 4] = (top - 1) * height;
+        data[offset + 5] = u + right * uWidth;
+        data[offset + 6] = v + top * vHeight;
+        data[offset + 7] = gray;
+        data[offset + 8] = alpha;
+        offset += STRIDE;
       }
       this.glyphs += 1;
     }
@@ -120,7 +120,7 @@ export class LabelBatch {
   private layout(text: string): Float32Array {
     let layout = this.layouts.get(text);
     if (!layout) {
-      const glyphs = Array.from(text, (character) => this.atlas.glyph(character));
+      const glyphs = Array.from(text, (character) => this.atlas.glyphOf(character));
       let pen = -glyphs.reduce((sum, glyph) => sum + glyph.advance, 0) / 2;
       layout = new Float32Array(
         glyphs.flatMap((glyph) => {

@@ -26,7 +26,7 @@ export class PointBatch {
   colors: Uint8Array = new Uint8Array(0);
   private object: Points<BufferGeometry, ShaderMaterial> | Mesh<BufferGeometry, ShaderMaterial> | null = null;
   private variant = "";
-  private translucent = false;
+  private isTranslucent = false;
 
   constructor(private look: PointLook) {}
 
@@ -35,17 +35,17 @@ export class PointBatch {
   }
 
   /** Sets the points, x y z of each in m; `translucent` if some colors have less than full alpha. */
-  setPoints(positions: Float32Array, colors: Uint8Array, translucent: boolean): void {
+  setPoints(positions: Float32Array, colors: Uint8Array, isTranslucent: boolean): void {
     this.positions = positions;
     this.colors = colors;
-    this.translucent = translucent;
+    this.isTranslucent = isTranslucent;
     this.build();
   }
 
   setLook(look: PointLook): void {
-    const remake = this.variant !== JSON.stringify(this.variantFor(look));
+    const needsNewMesh = this.variant !== JSON.stringify(this.variantFor(look));
     this.look = look;
-    if (remake) this.build();
+    if (needsNewMesh) this.build();
     else if (this.object) setLook(this.object.material, look);
   }
 
@@ -57,15 +57,15 @@ export class PointBatch {
   private variantFor(look: PointLook): PointVariant {
     return {
       style: look.style,
-      tinted: this.colors.length > 0,
-      quads: look.style !== "Points" && this.count <= MAX_QUADS,
-      seeThrough: look.alpha < OPAQUE_FROM || this.translucent,
+      isTinted: this.colors.length > 0,
+      hasQuads: look.style !== "Points" && this.count <= MAX_QUADS,
+      isSeeThrough: look.alpha < OPAQUE_FROM || this.isTranslucent,
     };
   }
 
   private build(): void {
     const variant = this.variantFor(this.look);
-    const geometry = variant.quads ? quads(this.positions, this.colors) : points(this.positions, this.colors);
+    const geometry = variant.hasQuads ? createQuads(this.positions, this.colors) : createPoints(this.positions, this.colors);
     // three.js would look at every point to sort by distance.
     geometry.boundingSphere = new Sphere();
     const key = JSON.stringify(variant);
@@ -79,7 +79,7 @@ export class PointBatch {
     this.variant = key;
     const material = pointMaterial(variant);
     setLook(material, this.look);
-    this.object = variant.quads ? new Mesh(geometry, material) : new Points(geometry, material);
+    this.object = variant.hasQuads ? new Mesh(geometry, material) : new Points(geometry, material);
     // Computing their bounds costs more than drawing the points outside the view.
     this.object.frustumCulled = false;
     this.object.onBeforeRender = (renderer) => setViewport(renderer, material);
@@ -105,20 +105,20 @@ function setViewport(renderer: WebGLRenderer, material: ShaderMaterial): void {
   material.uniformsNeedUpdate = true;
 }
 
-function points(positions: Float32Array, colors: Uint8Array): BufferGeometry {
+function createPoints(positions: Float32Array, colors: Uint8Array): BufferGeometry {
   const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(positions, 3));
   if (colors.length > 0) geometry.setAttribute("tint", new BufferAttribute(colors, 4, true));
   return geometry;
 }
 
 /** Returns four corners for each point. */
-function quads(positions: Float32Array, colors: Uint8Array): BufferGeometry {
+function createQuads(positions: Float32Array, colors: Uint8Array): BufferGeometry {
   const count = positions.length / 3;
   const [places, corners] = [new Float32Array(count * 12), new Float32Array(count * 8)];
   const indices = new Uint32Array(count * 6);
   for (let i = 0; i < count; i++) {
-    const place = positions.subarray(i * 3, i * 3 + 3);
-    for (let corner = 0; corner < 4; corner++) places.set(place, i * 12 + corner * 3);
+    const position = positions.subarray(i * 3, i * 3 + 3);
+    for (let corner = 0; corner < 4; corner++) places.set(position, i * 12 + corner * 3);
     corners.set(CORNERS, i * 8);
     const first = i * 4;
     indices.set([first, first + 1, first + 2, first, first + 2, first + 3], i * 6);

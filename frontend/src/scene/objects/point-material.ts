@@ -21,10 +21,10 @@ export interface PointLook {
 export interface PointVariant {
   style: PointStyle;
   /** Whether points have colors of their own. */
-  tinted: boolean;
+  isTinted: boolean;
   /** Whether each point is a quad; otherwise it is a point of the graphics library, whose size is limited. */
-  quads: boolean;
-  seeThrough: boolean;
+  hasQuads: boolean;
+  isSeeThrough: boolean;
 }
 
 // A point is drawn on a square that faces the camera and contains it. `place` is the position of a fragment on that
@@ -161,12 +161,12 @@ const DEFINES: Readonly<Record<PointStyle, Record<string, string>>> = {
 };
 
 /** Returns the material of a variant; `setLook` and `setViewport` set its uniforms. */
-export function pointMaterial({ style, tinted, quads, seeThrough }: PointVariant): ShaderMaterial {
+export function pointMaterial({ style, isTinted, hasQuads, isSeeThrough }: PointVariant): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
-    defines: { ...DEFINES[style], ...(tinted && { TINTED: "" }), ...(quads && { QUADS: "" }) },
+    defines: { ...DEFINES[style], ...(isTinted && { TINTED: "" }), ...(hasQuads && { QUADS: "" }) },
     uniforms: {
       extent: { value: new Vector3() },
       color: { value: new Color() },
@@ -175,8 +175,8 @@ export function pointMaterial({ style, tinted, quads, seeThrough }: PointVariant
       alpha: { value: 1 },
       viewport: { value: [1, 1] },
     },
-    transparent: seeThrough,
-    depthWrite: !seeThrough,
+    transparent: isSeeThrough,
+    depthWrite: !isSeeThrough,
   });
 }
 

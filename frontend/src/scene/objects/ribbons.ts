@@ -17,7 +17,7 @@ export interface Ribbons {
  * @param strips - x y z of the points of each strip.
  * @param colors - r g b a, 0 to 1, of the points of each strip.
  */
-export function ribbons(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): Ribbons {
+export function createRibbons(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): Ribbons {
   const points = strips.reduce((sum, strip) => sum + strip.length / 3, 0);
   const pieces = strips.reduce((sum, strip) => sum + Math.max(0, strip.length / 3 - 1), 0);
   const result: Ribbons = {
@@ -32,11 +32,11 @@ export function ribbons(strips: readonly Float32Array[], colors: readonly Float3
     const count = strip.length / 3;
     for (let i = 0; i < count; i++) {
       const point = strip.subarray(i * 3, i * 3 + 3);
-      const along = direction(strip, i);
+      const tangent = directionAt(strip, i);
       const color = colors?.[number]?.subarray(i * 4, i * 4 + 4);
       for (const side of [-0.5, 0.5]) {
         result.positions.set(point, vertex * 3);
-        result.directions.set(along, vertex * 3);
+        result.directions.set(tangent, vertex * 3);
         result.sides[vertex] = side;
         if (color) result.colors?.set(color, vertex * 4);
         vertex += 1;
@@ -65,19 +65,19 @@ export function stripsOf(segments: Float32Array, itemSize = 3): Float32Array[] {
   return Array.from({ length: Math.floor(segments.length / size) }, (_, i) => segments.subarray(i * size, (i + 1) * size));
 }
 
-function direction(strip: Float32Array, i: number): [number, number, number] {
-  const before = segmentDirection(strip, i - 1);
-  const after = segmentDirection(strip, i);
-  const sum: [number, number, number] = [before[0] + after[0], before[1] + after[1], before[2] + after[2]];
+function directionAt(strip: Float32Array, i: number): [number, number, number] {
+  const incoming = directionOfSegment(strip, i - 1);
+  const outgoing = directionOfSegment(strip, i);
+  const sum: [number, number, number] = [incoming[0] + outgoing[0], incoming[1] + outgoing[1], incoming[2] + outgoing[2]];
   // Where the line reverses, the mean of both directions is zero.
-  return Math.hypot(...sum) > 1e-6 ? sum : after;
+  return Math.hypot(...sum) > 1e-6 ? sum : outgoing;
 }
 
 /** Returns the unit vector from point `i` to the next; zero beyond the ends and between equal points. */
-function segmentDirection(strip: Float32Array, i: number): [number, number, number] {
+function directionOfSegment(strip: Float32Array, i: number): [number, number, number] {
   if (i < 0 || (i + 2) * 3 > strip.length) return [0, 0, 0];
-  const part = (axis: number): number => (strip[i * 3 + 3 + axis] ?? 0) - (strip[i * 3 + axis] ?? 0);
-  const [x, y, z] = [part(0), part(1), part(2)];
+  const difference = (axis: number): number => (strip[i * 3 + 3 + axis] ?? 0) - (strip[i * 3 + axis] ?? 0);
+  const [x, y, z] = [difference(0), difference(1), difference(2)];
   const length = Math.hypot(x, y, z);
   return length > 0 ? [x / length, y / length, z / length] : [0, 0, 0];
 }

@@ -67,7 +67,7 @@ const LIT_FRAGMENT = /* glsl */ `
 `;
 
 /** Returns a texture with this number of slots, 64 in a row. */
-export function slotTexture(slots: number): DataTexture {
+export function createSlotTexture(slots: number): DataTexture {
   const width = SLOTS_PER_ROW * TEXELS_PER_SLOT;
   const height = Math.max(1, Math.ceil(slots / SLOTS_PER_ROW));
   return new DataTexture(new Float32Array(width * height * 4), width, height, RGBAFormat, FloatType);
@@ -75,14 +75,14 @@ export function slotTexture(slots: number): DataTexture {
 
 /** Writes an affine matrix and a color 0xrrggbb into a slot; `data` is that of a texture, or has the same layout. */
 export function writeSlot(data: Float32Array, slot: number, matrix: Matrix4, color: number, gray = 0, alpha = 1): void {
-  const at = slot * TEXELS_PER_SLOT * 4;
+  const offset = slot * TEXELS_PER_SLOT * 4;
   const m = matrix.elements;
   for (let row = 0; row < 3; row++) {
-    for (let column = 0; column < 4; column++) data[at + row * 4 + column] = m[column * 4 + row] ?? 0;
+    for (let column = 0; column < 4; column++) data[offset + row * 4 + column] = m[column * 4 + row] ?? 0;
   }
-  data[at + 12] = gray;
-  data[at + 13] = alpha;
-  data[at + 14] = color;
+  data[offset + 12] = gray;
+  data[offset + 13] = alpha;
+  data[offset + 14] = color;
 }
 
 /**
@@ -90,7 +90,7 @@ export function writeSlot(data: Float32Array, slot: number, matrix: Matrix4, col
  * that of other objects, but at the vertices: the difference does not show on small objects, and software renderers are
  * faster.
  */
-export function slotMaterial(slots: { value: Texture }, isSoft = { value: false }): ShaderMaterial {
+export function createSlotMaterial(slots: { value: Texture }, isSoft = { value: false }): ShaderMaterial {
   return new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { slots, isSoft } });
 }
 
@@ -98,6 +98,6 @@ export function slotMaterial(slots: { value: Texture }, isSoft = { value: false 
  * Returns a material for opaque, double-sided surfaces that are lit at each pixel, as three.js does for the light at
  * the camera.
  */
-export function litSlotMaterial(slots: { value: Texture }, isSoft: { value: boolean }): ShaderMaterial {
+export function createLitSlotMaterial(slots: { value: Texture }, isSoft: { value: boolean }): ShaderMaterial {
   return new ShaderMaterial({ vertexShader: LIT_VERTEX, fragmentShader: LIT_FRAGMENT, uniforms: { slots, isSoft }, side: DoubleSide });
 }

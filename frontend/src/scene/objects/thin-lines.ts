@@ -7,14 +7,14 @@ import {
   type Box3,
   type ColorRepresentation,
 } from "three";
-import { areTranslucent, blend } from "../materials";
+import { areTranslucent, setBlending } from "../materials";
 import { segmentsOf } from "./ribbons";
 
 /** Lines one pixel wide, unlit; with the same methods as `WideLines`. */
 export class ThinLines {
   readonly root = new LineSegments<BufferGeometry, LineBasicMaterial>(new BufferGeometry(), new LineBasicMaterial());
   private opacity = 1;
-  private isShown = true;
+  private isEnabled = true;
 
   constructor() {
     this.root.frustumCulled = false;
@@ -37,8 +37,8 @@ export class ThinLines {
   }
 
   /** Whether the lines are shown. */
-  set shown(shown: boolean) {
-    this.isShown = shown;
+  set isShown(isShown: boolean) {
+    this.isEnabled = isShown;
     this.show();
   }
 
@@ -48,8 +48,8 @@ export class ThinLines {
    */
   setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
     this.setSegments(
-      concatenated(strips.map((strip) => segmentsOf(strip))),
-      colors && concatenated(colors.map((color) => segmentsOf(color, 4))),
+      concatenate(strips.map((strip) => segmentsOf(strip))),
+      colors && concatenate(colors.map((color) => segmentsOf(color, 4))),
     );
   }
 
@@ -72,24 +72,24 @@ export class ThinLines {
   }
 
   private show(): void {
-    this.root.visible = this.isShown && this.count > 0;
+    this.root.visible = this.isEnabled && this.count > 0;
   }
 
   private updateMaterial(): void {
     const { material, geometry } = this.root;
     const colors = geometry.attributes["color"];
     material.vertexColors = colors !== undefined;
-    blend(material, areTranslucent(this.opacity, colors));
+    setBlending(material, areTranslucent(this.opacity, colors));
   }
 }
 
 /** Concatenates arrays. */
-export function concatenated(parts: readonly Float32Array[]): Float32Array {
+export function concatenate(parts: readonly Float32Array[]): Float32Array {
   const result = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
-  let at = 0;
+  let offset = 0;
   for (const part of parts) {
-    result.set(part, at);
-    at += part.length;
+    result.set(part, offset);
+    offset += part.length;
   }
   return result;
 }

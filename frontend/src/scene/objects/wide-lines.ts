@@ -8,8 +8,8 @@ import {
   type Box3,
   type ColorRepresentation,
 } from "three";
-import { areTranslucent, blend } from "../materials";
-import { ribbons, stripsOf } from "./ribbons";
+import { areTranslucent, setBlending } from "../materials";
+import { createRibbons, stripsOf } from "./ribbons";
 
 const VERTEX = /* glsl */ `
   attribute vec3 direction;
@@ -66,7 +66,7 @@ export class WideLines {
    * color.
    */
   setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
-    const result = ribbons(strips, colors);
+    const result = createRibbons(strips, colors);
     const geometry = new BufferGeometry().setIndex(new BufferAttribute(result.indices, 1));
     geometry.setAttribute("position", new BufferAttribute(result.positions, 3));
     geometry.setAttribute("direction", new BufferAttribute(result.directions, 3));
@@ -103,6 +103,6 @@ export class WideLines {
     const { material, geometry } = this.root;
     const colors = geometry.attributes["rgba"];
     material.defines = colors ? { COLORED: "" } : {};
-    blend(material, areTranslucent(this.opacity, colors));
+    setBlending(material, areTranslucent(this.opacity, colors));
   }
 }

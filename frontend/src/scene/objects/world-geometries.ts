@@ -5,18 +5,18 @@ import type { MeshPart } from "../meshes/mesh-template";
 /**
  * Extrudes polygons (x y x y ...) along z; a polygon within another is a hole, and one within a hole is solid again.
  */
-export function extrudedPolygons(outlines: readonly (readonly number[])[], height: number): BufferGeometry {
+export function extrudePolygons(outlines: readonly (readonly number[])[], height: number): BufferGeometry {
   const polygons = outlines.map((numbers) => {
     return Array.from({ length: Math.floor(numbers.length / 2) }, (_, i) => new Vector2(numbers[2 * i], numbers[2 * i + 1]));
   }).filter((points) => points.length > 2);
-  const around = polygons.map((points) => polygons.filter((other) => other !== points && contains(other, points[0])));
+  const around = polygons.map((points) => polygons.filter((candidate) => candidate !== points && contains(candidate, points[0])));
   const shapes: Outline[] = [];
   polygons.forEach((points, i) => {
     if ((around[i] ?? []).length % 2 === 1) return;
     const shape = new Outline(points);
     polygons.forEach((hole, j) => {
-      const others = around[j] ?? [];
-      if (others.includes(points) && others.length === (around[i] ?? []).length + 1) shape.holes.push(new Path(hole));
+      const enclosing = around[j] ?? [];
+      if (enclosing.includes(points) && enclosing.length === (around[i] ?? []).length + 1) shape.holes.push(new Path(hole));
     });
     shapes.push(shape);
   });
@@ -27,20 +27,20 @@ export function extrudedPolygons(outlines: readonly (readonly number[])[], heigh
  * Returns the parts of a mesh with a name, or all parts for null; `offset` moves the mesh if its center is to be the
  * origin.
  */
-export function submesh(parts: readonly MeshPart[], wanted: Submesh | null): { parts: readonly MeshPart[]; offset: Vector3 } {
+export function selectSubmesh(parts: readonly MeshPart[], selection: Submesh | null): { parts: readonly MeshPart[]; offset: Vector3 } {
   const offset = new Vector3();
-  if (wanted === null) return { parts, offset };
-  const found = parts.filter(({ names }) => names?.includes(wanted.name));
-  if (found.length === 0) throw new Error(`the mesh has no part '${wanted.name}'`);
-  if (wanted.center) {
+  if (selection === null) return { parts, offset };
+  const selectedParts = parts.filter(({ names }) => names?.includes(selection.name));
+  if (selectedParts.length === 0) throw new Error(`the mesh has no part '${selection.name}'`);
+  if (selection.center) {
     const box = new Box3();
-    for (const { geometry } of found) {
+    for (const { geometry } of selectedParts) {
       geometry.computeBoundingBox();
       if (geometry.boundingBox) box.union(geometry.boundingBox);
     }
     box.getCenter(offset).negate();
   }
-  return { parts: found, offset };
+  return { parts: selectedParts, offset };
 }
 
 /**
@@ -56,12 +56,12 @@ export function heightmapGeometry(heights: Float32Array, columns: number, size: 
   const geometry = new PlaneGeometry(x, y, Math.max(1, columns - 1), Math.max(1, rows - 1));
   const positions = geometry.getAttribute("position");
   const uvs = geometry.getAttribute("uv");
-  const [across, along] = tile > 0 ? [x / tile, y / tile] : [1, 1];
+  const [tilesX, tilesY] = tile > 0 ? [x / tile, y / tile] : [1, 1];
   for (let i = 0; i < positions.count; i++) {
     // The vertices of a plane start at the greatest y.
     const row = rows - 1 - Math.floor(i / columns);
     positions.setZ(i, (heights[row * columns + (i % columns)] ?? 0) * z);
-    uvs.setXY(i, uvs.getX(i) * across, uvs.getY(i) * along);
+    uvs.setXY(i, uvs.getX(i) * tilesX, uvs.getY(i) * tilesY);
   }
   geometry.translate(dx, dy, dz);
   geometry.computeVertexNormals();
@@ -70,10 +70,10 @@ export function heightmapGeometry(heights: Float32Array, columns: number, size: 
 
 function contains(polygon: readonly Vector2[], point: Vector2 | undefined): boolean {
   if (!point || ShapeUtils.area([...polygon]) === 0) return false;
-  let inside = false;
+  let isInside = false;
   polygon.forEach((a, i) => {
     const b = polygon[(i + 1) % polygon.length] ?? a;
-    if (a.y > point.y !== b.y > point.y && point.x < ((b.x - a.x) * (point.y - a.y)) / (b.y - a.y) + a.x) inside = !inside;
+    if (a.y > point.y !== b.y > point.y && point.x < ((b.x - a.x) * (point.y - a.y)) / (b.y - a.y) + a.x) isInside = !isInside;
   });
-  return inside;
+  return isInside;
 }

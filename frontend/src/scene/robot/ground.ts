@@ -13,19 +13,19 @@ const STANDING_TOLERANCE = 0.01;
  * @param boxes - the bounding boxes of the visible parts of each link, by its name.
  */
 export function groundOf(robot: Pick<RobotScene, "links" | "joints">, boxes: ReadonlyMap<string, Box3>): number {
-  const whole = union(boxes, [...boxes.keys()]);
-  if (whole.isEmpty()) return 0;
-  const margin = STANDING_TOLERANCE * whole.getSize(new Vector3()).length();
-  const base = union(boxes, fixedLinks(robot));
-  const stands = !base.isEmpty() && Math.abs(base.min.z) <= margin;
-  return stands || whole.min.z >= -margin ? 0 : whole.min.z;
+  const bounds = unionOf(boxes, [...boxes.keys()]);
+  if (bounds.isEmpty()) return 0;
+  const margin = STANDING_TOLERANCE * bounds.getSize(new Vector3()).length();
+  const base = unionOf(boxes, fixedLinks(robot));
+  const standsOnGround = !base.isEmpty() && Math.abs(base.min.z) <= margin;
+  return standsOnGround || bounds.min.z >= -margin ? 0 : bounds.min.z;
 }
 
-function union(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box3 {
+function unionOf(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box3 {
   const box = new Box3();
   for (const link of links) {
-    const each = boxes.get(link);
-    if (each) box.union(each);
+    const linkBox = boxes.get(link);
+    if (linkBox) box.union(linkBox);
   }
   return box;
 }
@@ -34,10 +34,10 @@ function union(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box3 
 function fixedLinks({ links, joints }: Pick<RobotScene, "links" | "joints">): Set<string> {
   const base = new Set(links.filter((link) => link.parent_joint === null).map((link) => link.name));
   const fixed = joints.filter((joint) => joint.kind === "fixed");
-  for (let grown = true; grown; ) {
-    const more = fixed.filter((joint) => base.has(joint.parent) && !base.has(joint.child));
-    for (const joint of more) base.add(joint.child);
-    grown = more.length > 0;
+  for (let hasGrown = true; hasGrown; ) {
+    const newJoints = fixed.filter((joint) => base.has(joint.parent) && !base.has(joint.child));
+    for (const joint of newJoints) base.add(joint.child);
+    hasGrown = newJoints.length > 0;
   }
   return base;
 }

@@ -10,14 +10,14 @@ import type { SolidKind, Solids } from "./solids";
 
 /** The style of a link, from the display's properties and its own. */
 export interface LinkStyle {
-  enabled: boolean;
-  visual: boolean;
-  collision: boolean;
+  isEnabled: boolean;
+  showsVisual: boolean;
+  showsCollision: boolean;
   /** The robot's alpha times the link's. */
   alpha: number;
-  trail: boolean;
+  showsTrail: boolean;
   /** Whether to draw collisions over pale visuals, even if the display does not show them. */
-  contrast: boolean;
+  isContrastHigh: boolean;
   /** Replaces the colors of the description. */
   override: LinkOverride | null;
 }
@@ -48,7 +48,7 @@ export class LinkDrawing {
   private readonly visualGroup = new Group();
   private readonly collisionGroup = new Group();
   private trail: LinkTrail | null = null;
-  private style: LinkStyle = { enabled: true, visual: true, collision: false, alpha: 1, trail: false, contrast: false, override: null };
+  private style: LinkStyle = { isEnabled: true, showsVisual: true, showsCollision: false, alpha: 1, showsTrail: false, isContrastHigh: false, override: null };
   private hasPose = false;
   private hasLostTransform = false;
 
@@ -78,7 +78,7 @@ export class LinkDrawing {
   /** The number of visuals drawn now. */
   get visualsDrawn(): number {
     if (!this.root.visible || !this.visualGroup.visible) return 0;
-    return this.visuals.filter((visual) => visual.drawn).length;
+    return this.visuals.filter((visual) => visual.isDrawn).length;
   }
 
   /** The pose at which the link is drawn; null until it has a transform. */
@@ -88,17 +88,17 @@ export class LinkDrawing {
 
   /** The meshes of the parts that are visible now. */
   get visibleMeshes(): Mesh[] {
-    return this.shown.flatMap((each) => each.meshes);
+    return this.shownShapes.flatMap((shape) => shape.meshes);
   }
 
   /** Counts the shapes that `addSolids` adds. */
   countSolids(counts: Map<SolidKind, number>): void {
-    for (const { solid } of this.shown) if (solid) counts.set(solid.kind, (counts.get(solid.kind) ?? 0) + 1);
+    for (const { solid } of this.shownShapes) if (solid) counts.set(solid.kind, (counts.get(solid.kind) ?? 0) + 1);
   }
 
   /** Adds the shapes that are drawn in batches with those of other links. */
   addSolids(solids: Solids): void {
-    for (const { solid } of this.shown) {
+    for (const { solid } of this.shownShapes) {
       if (solid) solids.add(solid.kind, scratch.multiplyMatrices(this.root.matrix, solid.matrix), solid.color);
     }
   }
@@ -108,51 +108,51 @@ export class LinkDrawing {
    * `ShapeDrawing.addPieces`.
    */
   addPieces(standIns: StandIns, meshes: Mesh[], pieces: MovingPiece[]): boolean {
-    const own: ShapePiece[] = [];
-    const found = this.shown.map((shape) => shape.addPieces(standIns, meshes, own));
-    for (const { standIn, matrix, color } of own) {
+    const linkPieces: ShapePiece[] = [];
+    const results = this.shownShapes.map((shape) => shape.addPieces(standIns, meshes, linkPieces));
+    for (const { standIn, matrix, color } of linkPieces) {
       pieces.push({ standIn, matrix: new Matrix4().multiplyMatrices(this.root.matrix, matrix), color });
     }
-    return found.every((complete) => complete);
+    return results.every((isComplete) => isComplete);
   }
 
   setStyle(style: LinkStyle): void {
     this.style = style;
-    this.visualGroup.visible = (style.visual || style.contrast) && style.enabled;
-    this.collisionGroup.visible = (style.collision || style.contrast) && style.enabled;
-    this.showTrail(style.trail && style.enabled);
+    this.visualGroup.visible = (style.showsVisual || style.isContrastHigh) && style.isEnabled;
+    this.collisionGroup.visible = (style.showsCollision || style.isContrastHigh) && style.isEnabled;
+    this.showTrail(style.showsTrail && style.isEnabled);
     this.paint();
   }
 
   paint(): void {
-    const { contrast, override } = this.style;
+    const { isContrastHigh, override } = this.style;
     const alpha = override?.isOpaque === true ? Math.sqrt(this.style.alpha) : this.style.alpha;
-    for (const visual of this.visuals) visual.paint(this.pool, contrast ? alpha * PALE_FACTOR : alpha, this.hasLostTransform, override);
+    for (const visual of this.visuals) visual.paint(this.pool, isContrastHigh ? alpha * PALE_FACTOR : alpha, this.hasLostTransform, override);
     for (const collision of this.collisions) {
-      if (contrast) collision.paint(this.pool, alpha * COLLISION_ALPHA, this.hasLostTransform, COLLISION);
+      if (isContrastHigh) collision.paint(this.pool, alpha * COLLISION_ALPHA, this.hasLostTransform, COLLISION);
       else collision.paint(this.pool, alpha, this.hasLostTransform, override);
     }
   }
 
   /** Moves the link to its pose. Like RViz, leaves a link without a transform in place, in white. */
-  place(find: ReadLinkPose, isCovered: boolean): void {
-    const found = find(this.link, this.root.matrix);
-    this.hasPose ||= found;
+  updatePose(readPose: ReadLinkPose, isCovered: boolean): void {
+    const hasPose = readPose(this.link, this.root.matrix);
+    this.hasPose ||= hasPose;
     this.root.visible = this.hasPose && !isCovered;
     this.root.matrixWorldNeedsUpdate = true;
-    if (found) this.trail?.follow(this.root.matrix);
-    if (this.hasPose && found === this.hasLostTransform) {
-      this.hasLostTransform = !found;
+    if (hasPose) this.trail?.follow(this.root.matrix);
+    if (this.hasPose && hasPose === this.hasLostTransform) {
+      this.hasLostTransform = !hasPose;
       this.paint();
     }
   }
 
   /** Draws one of its shapes at another pose; null restores all. */
   displaceShape(displaced: Displacement["shape"] | null): void {
-    for (const each of [...this.visuals, ...this.collisions]) each.displace(null);
+    for (const shape of [...this.visuals, ...this.collisions]) shape.displace(null);
     const { style } = this;
     // Show a collision that is being moved even if collisions are hidden.
-    this.collisionGroup.visible = (style.collision || style.contrast || displaced?.kind === "collision") && style.enabled;
+    this.collisionGroup.visible = (style.showsCollision || style.isContrastHigh || displaced?.kind === "collision") && style.isEnabled;
     if (!displaced) return;
     const shapes = displaced.kind === "visual" ? this.visuals : this.collisions;
     shapes.filter((shape) => shape.isAt(displaced.from))[displaced.among]?.displace(displaced.to);
@@ -171,18 +171,18 @@ export class LinkDrawing {
   dispose(): void {
     this.root.removeFromParent();
     this.showTrail(false);
-    for (const each of [...this.visuals, ...this.collisions]) each.dispose();
+    for (const shape of [...this.visuals, ...this.collisions]) shape.dispose();
   }
 
-  private get shown(): readonly ShapeDrawing[] {
+  private get shownShapes(): readonly ShapeDrawing[] {
     if (!this.root.visible) return [];
     const visuals = this.visualGroup.visible ? this.visuals : [];
     return this.collisionGroup.visible ? [...visuals, ...this.collisions] : visuals;
   }
 
-  private showTrail(show: boolean): void {
-    if (show === (this.trail !== null)) return;
+  private showTrail(isShown: boolean): void {
+    if (isShown === (this.trail !== null)) return;
     this.trail?.dispose();
-    this.trail = show ? new LinkTrail(this.world) : null;
+    this.trail = isShown ? new LinkTrail(this.world) : null;
   }
 }

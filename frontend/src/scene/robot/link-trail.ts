@@ -18,11 +18,11 @@ export class LinkTrail {
   }
 
   follow(pose: Matrix4): void {
-    const at = new Vector3().setFromMatrixPosition(pose);
+    const position = new Vector3().setFromMatrixPosition(pose);
     const [head, neck] = this.points;
-    if (head?.equals(at)) return;
-    if (!head || !neck || head.distanceTo(neck) >= LENGTH / ELEMENTS) this.points.unshift(at);
-    else this.points[0] = at;
+    if (head?.equals(position)) return;
+    if (!head || !neck || head.distanceTo(neck) >= LENGTH / ELEMENTS) this.points.unshift(position);
+    else this.points[0] = position;
     this.points.length = Math.min(this.points.length, ELEMENTS);
     this.ribbon.setStrips([new Float32Array(this.points.flatMap((point) => point.toArray()))]);
   }

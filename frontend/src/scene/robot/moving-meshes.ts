@@ -13,7 +13,7 @@ import {
 } from "three";
 import { PICKABLE } from "../layers";
 import type { StandIn } from "../meshes/stand-in";
-import { litSlotMaterial, slotTexture, writeSlot } from "../objects/slot-material";
+import { createLitSlotMaterial, createSlotTexture, writeSlot } from "../objects/slot-material";
 
 /** The largest error that is not noticed in a moving frame, in its pixels. */
 const MAX_ERROR_PX = 1;
@@ -37,15 +37,15 @@ export interface MovingPiece {
  * take some 0.3 microseconds for each triangle, and 100 for each draw call.
  */
 export class MovingMeshes {
-  private mesh: Mesh<BufferGeometry, ReturnType<typeof litSlotMaterial>> | null = null;
-  private readonly slots: { value: DataTexture } = { value: slotTexture(0) };
+  private mesh: Mesh<BufferGeometry, ReturnType<typeof createLitSlotMaterial>> | null = null;
+  private readonly slots: { value: DataTexture } = { value: createSlotTexture(0) };
   /**
    * The contents of the buffers: the pieces' stand-ins, the index of the first vertex of each, and the levels drawn.
    */
   private buffered: readonly StandIn[] = [];
   private firsts: number[] = [];
   private levels: readonly (number | null)[] = [];
-  private hidden: Mesh[] = [];
+  private hiddenMeshes: Mesh[] = [];
   private readonly softness = { value: false };
 
   constructor(private readonly parent: Object3D) {}
@@ -56,7 +56,7 @@ export class MovingMeshes {
   }
 
   /** The number of pieces and triangles drawn last. */
-  get drawn(): { pieces: number; triangles: number } {
+  get drawnCounts(): { pieces: number; triangles: number } {
     const pieces = this.levels.filter((level) => level !== null).length;
     return { pieces, triangles: (this.mesh?.geometry.drawRange.count ?? 0) / 3 };
   }
@@ -67,18 +67,18 @@ export class MovingMeshes {
     pieces.forEach(({ matrix, color }, slot) => writeSlot(this.texels, slot, matrix, color));
     this.slots.value.needsUpdate = true;
     this.arrange(mesh.geometry, pieces, view);
-    for (const each of meshes) {
-      each.layers.disable(0);
-      each.layers.enable(PICKABLE);
+    for (const mesh of meshes) {
+      mesh.layers.disable(0);
+      mesh.layers.enable(PICKABLE);
     }
-    this.hidden = [...meshes];
+    this.hiddenMeshes = [...meshes];
     this.parent.add(mesh);
   }
 
   end(): void {
     this.mesh?.removeFromParent();
-    for (const each of this.hidden) each.layers.enable(0);
-    this.hidden = [];
+    for (const mesh of this.hiddenMeshes) mesh.layers.enable(0);
+    this.hiddenMeshes = [];
   }
 
   dispose(): void {
@@ -105,22 +105,22 @@ export class MovingMeshes {
       vertices += positions.length / 3;
     }
     const [places, normals, slot] = [new Float32Array(3 * vertices), new Float32Array(3 * vertices), new Float32Array(vertices)];
-    this.buffered.forEach((each, i) => {
+    this.buffered.forEach((piece, i) => {
       const first = this.firsts[i] ?? 0;
-      places.set(each.positions, 3 * first);
-      normals.set(each.normals, 3 * first);
-      slot.fill(i, first, first + each.positions.length / 3);
+      places.set(piece.positions, 3 * first);
+      normals.set(piece.normals, 3 * first);
+      slot.fill(i, first, first + piece.positions.length / 3);
     });
-    const most = this.buffered.reduce((sum, { levels }) => sum + (levels[0]?.index.length ?? 0), 0);
+    const indexCount = this.buffered.reduce((sum, { levels }) => sum + (levels[0]?.index.length ?? 0), 0);
     const geometry = new BufferGeometry()
       .setAttribute("position", new BufferAttribute(places, 3))
       .setAttribute("normal", new BufferAttribute(normals, 3))
       .setAttribute("slot", new BufferAttribute(slot, 1))
-      .setIndex(new BufferAttribute(new Uint32Array(most), 1).setUsage(DynamicDrawUsage));
+      .setIndex(new BufferAttribute(new Uint32Array(indexCount), 1).setUsage(DynamicDrawUsage));
     this.slots.value.dispose();
-    this.slots.value = slotTexture(pieces.length);
+    this.slots.value = createSlotTexture(pieces.length);
     this.mesh?.geometry.dispose();
-    this.mesh ??= new Mesh(geometry, litSlotMaterial(this.slots, this.softness));
+    this.mesh ??= new Mesh(geometry, createLitSlotMaterial(this.slots, this.softness));
     this.mesh.geometry = geometry;
     this.mesh.frustumCulled = this.mesh.matrixAutoUpdate = false;
     return this.mesh;
@@ -153,13 +153,13 @@ export function levelsFor(pieces: readonly MovingPiece[], { camera, height }: Mo
   const { elements } = camera.projectionMatrix;
   const isPerspective = elements[11] !== 0;
   const frustum = new Frustum().setFromProjectionMatrix(camera.projectionMatrix);
-  const [view, middle, ball] = [new Matrix4(), new Vector3(), new Sphere()];
+  const [view, center, ball] = [new Matrix4(), new Vector3(), new Sphere()];
   return pieces.map(({ standIn: { sphere: [x, y, z, radius], levels }, matrix }) => {
     const scale = matrix.getMaxScaleOnAxis();
     view.multiplyMatrices(camera.matrixWorldInverse, matrix);
-    ball.set(middle.set(x, y, z).applyMatrix4(view), radius * scale);
+    ball.set(center.set(x, y, z).applyMatrix4(view), radius * scale);
     if (!frustum.intersectsSphere(ball)) return null;
-    const depth = isPerspective ? -middle.z - ball.radius : 1;
+    const depth = isPerspective ? -center.z - ball.radius : 1;
     // m of the piece in a pixel, where it is nearest
     const unseen = depth <= 0 ? 0 : (MAX_ERROR_PX * depth) / (elements[5] * 0.5 * height * scale);
     return levels.findLastIndex(({ error }) => error <= unseen);

@@ -3,7 +3,7 @@ import type { LinkScene, RobotScene } from "../../protocol";
 import type { LinkOverride } from "../../state/comparison";
 import type { PropertyRows } from "../../state/properties";
 import type { DescriptionRow, Hit, SelectionBox } from "../picking";
-import { describedPose } from "../described-pose";
+import { describePose } from "../described-pose";
 import type { Lighting } from "../light";
 import { MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
@@ -26,16 +26,16 @@ type DrawnLinks = Pick<RobotScene, "links" | "joints">;
 export class RobotDrawing {
   readonly root = new Group();
   /** Resolved once every mesh and texture has loaded or failed. */
-  readonly settled: Promise<void>;
+  readonly settling: Promise<void>;
   private readonly pool = new MaterialPool();
   private readonly links: ReadonlyMap<string, LinkDrawing>;
   private readonly extras: RobotExtras;
   private readonly solids: Solids;
   private readonly moving: MovingMeshes;
   private readonly linkOf = new Map<number, string>();
-  private loading: number;
+  private loadingCount: number;
 
-  constructor(private readonly scene: DrawnLinks, private readonly meshes: MeshLibrary, report: MeshReport, changed: () => void) {
+  constructor(private readonly scene: DrawnLinks, private readonly meshes: MeshLibrary, report: MeshReport, onChanged: () => void) {
     this.links = new Map(scene.links.map((link) => [link.name, new LinkDrawing(link, this.pool, this.root)]));
     for (const link of this.links.values()) this.root.add(link.root);
     this.extras = new RobotExtras(scene, this.root);
@@ -46,15 +46,15 @@ export class RobotDrawing {
       for (const shape of [...link.visuals, ...link.collisions]) {
         const { url, texture, surface } = shape.shape;
         if (url === null && texture === null && surface === null) continue;
-        loads.push(this.load(link, shape, report, changed));
+        loads.push(this.load(link, shape, report, onChanged));
       }
     }
-    this.loading = loads.length;
-    this.settled = Promise.all(loads).then(() => undefined);
+    this.loadingCount = loads.length;
+    this.settling = Promise.all(loads).then(() => undefined);
   }
 
   get isSettled(): boolean {
-    return this.loading === 0;
+    return this.loadingCount === 0;
   }
 
   get visualsDrawn(): number {
@@ -65,8 +65,8 @@ export class RobotDrawing {
 
   get hasPose(): boolean {
     const links = [...this.links.values()];
-    const seen = links.filter((link) => link.showsVisuals);
-    return (seen.length > 0 ? seen : links).some((link) => link.pose !== null);
+    const visibleLinks = links.filter((link) => link.showsVisuals);
+    return (visibleLinks.length > 0 ? visibleLinks : links).some((link) => link.pose !== null);
   }
 
   get linkCount(): number {
@@ -75,7 +75,7 @@ export class RobotDrawing {
 
   /** The number of links with a pose, and of meshes and textures still loading. */
   get progress(): { posed: number; loading: number } {
-    return { posed: [...this.links.values()].filter((link) => link.pose !== null).length, loading: this.loading };
+    return { posed: [...this.links.values()].filter((link) => link.pose !== null).length, loading: this.loadingCount };
   }
 
   /**
@@ -127,24 +127,24 @@ export class RobotDrawing {
    * Applies the display's properties. `contrast` draws collisions over pale visuals; `overrideOf` returns the colors that
    * replace those of a link.
    */
-  style(rows: PropertyRows, contrast: boolean, lighting: Lighting = "Camera", overrideOf: OverrideOf = () => null): void {
+  applyStyle(rows: PropertyRows, isContrastHigh: boolean, lighting: Lighting = "Camera", overrideOf: OverrideOf = () => null): void {
     this.pool.lighting = lighting;
     this.solids.isSoft = this.moving.isSoft = lighting === "Soft";
-    this.pool.repaint(() => this.styleLinks(rows, contrast, overrideOf));
+    this.pool.repaint(() => this.styleLinks(rows, isContrastHigh, overrideOf));
     this.extras.style(rows);
   }
 
   /** Moves all links to their poses; `isCovered` returns whether another drawing shows a link already. */
-  place(find: ReadLinkPose, isCovered: (link: LinkScene) => boolean = () => false): void {
+  updatePoses(readPose: ReadLinkPose, isCovered: (link: LinkScene) => boolean = () => false): void {
     const counts = new Map<SolidKind, number>();
     for (const link of this.links.values()) {
-      link.place(find, isCovered(link.link));
+      link.updatePose(readPose, isCovered(link.link));
       link.countSolids(counts);
     }
     this.solids.begin(counts);
     for (const link of this.links.values()) link.addSolids(this.solids);
     this.solids.end();
-    this.extras.place((name) => this.links.get(name)?.pose ?? null);
+    this.extras.updatePoses((name) => this.links.get(name)?.pose ?? null);
   }
 
   displaceShape(displaced: Displacement["shape"] | null): void {
@@ -162,16 +162,16 @@ export class RobotDrawing {
     const { standIns } = this.meshes;
     if (!view || !standIns || this.pool.isLit) return;
     const [pieces, meshes]: [MovingPiece[], Mesh[]] = [[], []];
-    const found = [...this.links.values()].map((link) => link.addPieces(standIns, meshes, pieces));
-    if (pieces.length > 0 && found.every((complete) => complete)) this.moving.begin(pieces, meshes, view);
+    const results = [...this.links.values()].map((link) => link.addPieces(standIns, meshes, pieces));
+    if (pieces.length > 0 && results.every((isComplete) => isComplete)) this.moving.begin(pieces, meshes, view);
   }
 
   pick(ray: Raycaster): Hit | null {
     this.linkOf.clear();
     const targets = [...this.links.values()].flatMap((link) => {
-      const seen = link.visibleMeshes;
-      for (const mesh of seen) this.linkOf.set(mesh.id, link.link.name);
-      return seen;
+      const meshes = link.visibleMeshes;
+      for (const mesh of meshes) this.linkOf.set(mesh.id, link.link.name);
+      return meshes;
     });
     const [nearest] = ray.intersectObjects(targets, false);
     const link = nearest && this.linkOf.get(nearest.object.id);
@@ -179,14 +179,14 @@ export class RobotDrawing {
   }
 
   pickBox(box: SelectionBox): string[] {
-    const inside = [...this.links.values()].filter((link) => link.visibleMeshes.some((mesh) => box.hasObject(mesh)));
-    return inside.map((link) => link.link.name);
+    const links = [...this.links.values()].filter((link) => link.visibleMeshes.some((mesh) => box.hasObject(mesh)));
+    return links.map((link) => link.link.name);
   }
 
   /** Returns a link as RViz's Selection panel shows it. */
   describe(name: string): DescriptionRow | null {
     const link = this.links.get(name);
-    return link ? { name: `Link ${name}`, children: describedPose(link.root.matrix) } : null;
+    return link ? { name: `Link ${name}`, children: describePose(link.root.matrix) } : null;
   }
 
   /** Returns the pose of a link; null until it is known. */
@@ -195,7 +195,7 @@ export class RobotDrawing {
   }
 
   /** Returns the origin of a link; null until it is known. */
-  placeOf(name: string): Vector3 | null {
+  positionOf(name: string): Vector3 | null {
     const pose = this.poseOf(name);
     return pose ? new Vector3().setFromMatrixPosition(pose) : null;
   }
@@ -204,7 +204,7 @@ export class RobotDrawing {
   inspect(): object {
     const links = [...this.links.values()].map((link) => [link.link.name, link.inspect()] as const);
     const { size: drawnTogether, smallSpheres } = this.solids;
-    return { ...this.extras.counts, drawnTogether, smallSpheres, moving: this.moving.drawn, links: Object.fromEntries(links) };
+    return { ...this.extras.counts, drawnTogether, smallSpheres, moving: this.moving.drawnCounts, links: Object.fromEntries(links) };
   }
 
   objectsOf(link: string): readonly Object3D[] {
@@ -220,22 +220,22 @@ export class RobotDrawing {
     this.pool.dispose();
   }
 
-  private styleLinks(rows: PropertyRows, contrast: boolean, overrideOf: OverrideOf): void {
-    const own = new Map(rows.find("Links")?.children.map((row) => [row.name, row]));
+  private styleLinks(rows: PropertyRows, isContrastHigh: boolean, overrideOf: OverrideOf): void {
+    const rowsByLink = new Map(rows.find("Links")?.children.map((row) => [row.name, row]));
     const alpha = rows.number(1, "Alpha");
-    const visual = rows.bool(true, "Visual Enabled");
-    const collision = rows.bool(false, "Collision Enabled");
+    const showsVisual = rows.bool(true, "Visual Enabled");
+    const showsCollision = rows.bool(false, "Collision Enabled");
     for (const [name, link] of this.links) {
-      const row = own.get(name);
-      const child = (title: string): unknown => row?.children.find((each) => each.name === title)?.value;
-      const linkAlpha = child("Alpha");
+      const row = rowsByLink.get(name);
+      const valueOf = (title: string): unknown => row?.children.find((candidate) => candidate.name === title)?.value;
+      const linkAlpha = valueOf("Alpha");
       link.setStyle({
-        visual,
-        collision,
-        enabled: row?.value !== false,
+        showsVisual,
+        showsCollision,
+        isEnabled: row?.value !== false,
         alpha: alpha * (typeof linkAlpha === "number" ? linkAlpha : 1),
-        trail: child("Show Trail") === true,
-        contrast,
+        showsTrail: valueOf("Show Trail") === true,
+        isContrastHigh,
         override: overrideOf(name),
       });
     }
@@ -245,7 +245,7 @@ export class RobotDrawing {
     link: LinkDrawing,
     shape: ShapeDrawing,
     report: MeshReport,
-    changed: () => void,
+    onChanged: () => void,
   ): Promise<void> {
     const { url } = shape.shape;
     let error: string | null = null;
@@ -255,8 +255,8 @@ export class RobotDrawing {
     } catch (reason) {
       error = reason instanceof Error ? reason.message : String(reason);
     }
-    this.loading -= 1;
+    this.loadingCount -= 1;
     if (url !== null) report(link.link.name, url, error);
-    changed();
+    onChanged();
   }
 }

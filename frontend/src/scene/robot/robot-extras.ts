@@ -55,9 +55,9 @@ export class RobotExtras {
   /** Reads from the properties what is to be drawn. */
   style(rows: PropertyRows): void {
     const links = new Map(rows.find("Links")?.children.map((row) => [row.name, row]));
-    const shown = this.scene.links.filter((link) => links.get(link.name)?.value !== false);
-    const masses = shown.flatMap((link): [string, LinkInertia][] => (link.inertia ? [[link.name, link.inertia]] : []));
-    this.linkAxes = shown.filter((link) => isOn(links.get(link.name), "Show Axes")).map((link) => link.name);
+    const shownLinks = this.scene.links.filter((link) => links.get(link.name)?.value !== false);
+    const masses = shownLinks.flatMap((link): [string, LinkInertia][] => (link.inertia ? [[link.name, link.inertia]] : []));
+    this.linkAxes = shownLinks.filter((link) => isOn(links.get(link.name), "Show Axes")).map((link) => link.name);
     this.masses = rows.bool(false, "Mass Properties", "Mass") ? masses : [];
     this.inertias = rows.bool(false, "Mass Properties", "Inertia")
       ? masses.filter(([, { box }]) => box.length === 3)
@@ -67,7 +67,7 @@ export class RobotExtras {
     this.jointArrows = new Set(joints.filter((row) => isOn(row, "Show Joint Axis")).map((row) => row.name));
   }
 
-  place(poseOf: LinkPose): void {
+  updatePoses(poseOf: LinkPose): void {
     this.placeAxes(poseOf);
     const [matrix, size] = [new Matrix4(), new Matrix4()];
     this.balls.begin(this.masses.length);
@@ -83,19 +83,19 @@ export class RobotExtras {
     for (const [link, { center, box, quaternion }] of this.inertias) {
       const pose = poseOf(link);
       if (!pose) continue;
-      const at = new Vector3().fromArray(center);
-      matrix.compose(at, new Quaternion().fromArray(quaternion), new Vector3().fromArray(box));
+      const position = new Vector3().fromArray(center);
+      matrix.compose(position, new Quaternion().fromArray(quaternion), new Vector3().fromArray(box));
       this.boxes.add(matrix.premultiply(pose), 0, 1, MASS_COLOR);
     }
     this.boxes.end();
   }
 
   expandBox(box: Box3): void {
-    for (const each of [this.axes, this.arrows, this.balls, this.boxes]) each.expandBox(box);
+    for (const batch of [this.axes, this.arrows, this.balls, this.boxes]) batch.expandBox(box);
   }
 
   dispose(): void {
-    for (const each of [this.axes, this.arrows, this.balls, this.boxes]) each.dispose();
+    for (const batch of [this.axes, this.arrows, this.balls, this.boxes]) batch.dispose();
   }
 
   private placeAxes(poseOf: LinkPose): void {

@@ -4,15 +4,15 @@ import type { LinkOverride } from "../../state/comparison";
 import { strings } from "../../strings";
 import { PICKABLE } from "../layers";
 import { errorMaterial, OPAQUE_FROM, RVIZ_RED, type Look, type MaterialPool, type Surface } from "../materials";
-import { quoted } from "../meshes/mesh-error";
+import { quoteNames } from "../meshes/mesh-error";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import type { StandIn } from "../meshes/stand-in";
 import type { StandIns } from "../meshes/stand-ins";
 import { UNCOLORED_GRAY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
-import { extrudedPolygons, heightmapGeometry, submesh } from "../objects/world-geometries";
+import { extrudePolygons, heightmapGeometry, selectSubmesh } from "../objects/world-geometries";
 import { poseMatrix } from "../pose";
 import { capsuleGeometry, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
-import { solidKind, type SolidKind } from "./solids";
+import { solidKindOf, type SolidKind } from "./solids";
 
 /** The tolerance for equal poses: m, and elements of rotation matrices. */
 const POSE_TOLERANCE = 1e-6;
@@ -20,7 +20,7 @@ const POSE_TOLERANCE = 1e-6;
 /** A part of a shape: its mesh, and the materials from the file. */
 interface Part {
   mesh: Mesh;
-  own: readonly (OwnMaterial | null)[];
+  ownMaterials: readonly (OwnMaterial | null)[];
 }
 
 /** A shape that is drawn in a batch instead of as a mesh of its own. */
@@ -73,7 +73,7 @@ export class ShapeDrawing {
   }
 
   /** Whether the shape is drawn; false for a mesh that is not loaded. */
-  get drawn(): boolean {
+  get isDrawn(): boolean {
     return this.parts.length > 0;
   }
 
@@ -99,12 +99,12 @@ export class ShapeDrawing {
     const problems = this.problem === null ? [] : [this.problem];
     const loadTextureAt = async (address: string | null): Promise<Texture | null> => {
       if (address === null || this.library === null) return null;
-      const url = library.files.address(address);
+      const url = library.files.addressOf(address);
       this.usedTextures.push(url);
       try {
         return await library.textures.acquire(url);
       } catch {
-        problems.push(strings.meshes.missingTextures(quoted([decodeURIComponent(address.split("/").pop() ?? address)])));
+        problems.push(strings.meshes.missingTextures(quoteNames([decodeURIComponent(address.split("/").pop() ?? address)])));
         return null;
       }
     };
@@ -126,10 +126,10 @@ export class ShapeDrawing {
    * @param override - replaces all colors and textures.
    */
   paint(pool: MaterialPool, alpha: number, isLost: boolean, override: LinkOverride | null = null): void {
-    for (const { mesh, own } of this.parts) {
-      const materials = own.map((each) => (isLost ? errorMaterial : pool.get(this.look(each, alpha, override))));
-      const [only = errorMaterial] = materials;
-      mesh.material = materials.length === 1 ? only : materials;
+    for (const { mesh, ownMaterials } of this.parts) {
+      const materials = ownMaterials.map((material) => (isLost ? errorMaterial : pool.get(this.lookFor(material, alpha, override))));
+      const [material = errorMaterial] = materials;
+      mesh.material = materials.length === 1 ? material : materials;
     }
     this.batched = isLost || pool.isLit ? null : this.asSolid(override, alpha);
     for (const { mesh } of this.parts) {
@@ -146,30 +146,30 @@ export class ShapeDrawing {
    * @returns whether all requested stand-ins are available.
    */
   addPieces(standIns: StandIns, meshes: Mesh[], pieces: ShapePiece[]): boolean {
-    let complete = true;
-    if (this.shape.kind !== "mesh") return complete;
+    let isComplete = true;
+    if (this.shape.kind !== "mesh") return isComplete;
     for (const { mesh } of this.parts) {
       const materials = [mesh.material].flat();
       if (!materials.every(isPlain)) continue;
-      const found = standIns.of(mesh.geometry);
-      complete &&= found !== null;
-      if (!found || found.length === 0) continue;
+      const levels = standIns.standInsOf(mesh.geometry);
+      isComplete &&= levels !== null;
+      if (!levels || levels.length === 0) continue;
       const matrix = new Matrix4().multiplyMatrices(this.root.matrix, mesh.matrix);
       const { groups } = mesh.geometry;
-      found.forEach((standIn, i) => {
+      levels.forEach((standIn, i) => {
         const material = materials[groups[i]?.materialIndex ?? 0] ?? materials[0];
         if (material) pieces.push({ standIn, matrix, color: material.color.getHex() });
       });
       meshes.push(mesh);
     }
-    return complete;
+    return isComplete;
   }
 
   /** Whether the description places the shape at a pose in its link. */
   isAt(pose: Matrix4): boolean {
     const [x = 0, y = 0, z = 0] = this.shape.position;
-    const place = poseMatrix([x, y, z, ...this.shape.quaternion], new Matrix4());
-    return place.elements.every((value, i) => Math.abs(value - (pose.elements[i] ?? NaN)) < POSE_TOLERANCE);
+    const shapePose = poseMatrix([x, y, z, ...this.shape.quaternion], new Matrix4());
+    return shapePose.elements.every((value, i) => Math.abs(value - (pose.elements[i] ?? NaN)) < POSE_TOLERANCE);
   }
 
   /** Draws the shape at another pose in its link; null restores that of the description. */
@@ -233,7 +233,7 @@ export class ShapeDrawing {
         this.addPart(unitPlane, [null]).scale.set(a, b, 1);
         break;
       case "polyline":
-        this.buildPart(extrudedPolygons(this.shape.outlines, a));
+        this.buildPart(extrudePolygons(this.shape.outlines, a));
         break;
       case "heightmap":
         if (this.shape.heights) this.buildPart(heightmapGeometry(this.shape.heights, this.shape.columns, this.shape.size));
@@ -253,7 +253,7 @@ export class ShapeDrawing {
 
   private buildMesh(template: MeshTemplate): void {
     const [x = 1, y = 1, z = 1] = this.shape.size;
-    const { parts, offset } = submesh(template.parts, this.shape.submesh);
+    const { parts, offset } = selectSubmesh(template.parts, this.shape.submesh);
     for (const part of parts) {
       const mesh = this.addPart(part.geometry, part.materials);
       mesh.scale.set(x, y, z);
@@ -263,17 +263,17 @@ export class ShapeDrawing {
     this.freeze();
   }
 
-  private addPart(geometry: BufferGeometry, own: readonly (OwnMaterial | null)[]): Mesh {
+  private addPart(geometry: BufferGeometry, ownMaterials: readonly (OwnMaterial | null)[]): Mesh {
     const mesh = new Mesh<BufferGeometry, Material | Material[]>(geometry, errorMaterial);
-    this.parts.push({ mesh, own });
+    this.parts.push({ mesh, ownMaterials });
     this.root.add(mesh);
     return mesh;
   }
 
   private asSolid(override: LinkOverride | null, alpha: number): Solid | null {
-    const kind = solidKind(this.shape.kind);
+    const kind = solidKindOf(this.shape.kind);
     const [part] = this.parts;
-    const look = this.look(null, alpha, override);
+    const look = this.lookFor(null, alpha, override);
     if (kind === null || !part || look.map || look.alpha < OPAQUE_FROM) return null;
     return {
       kind,
@@ -294,20 +294,20 @@ export class ShapeDrawing {
    * one, a primitive or STL is RViz's red, and another mesh the gray that RViz's mesh reader sets. Only the URDF sets
    * the opacity of a part: RViz does not read it from mesh files, where exporters often write it wrongly.
    */
-  private look(own: OwnMaterial | null, alpha: number, override: LinkOverride | null): Look {
-    if (override) return { color: override.color, map: null, vertexColors: false, alpha, doubleSided: true, behind: override.isBehind === true };
+  private lookFor(ownMaterials: OwnMaterial | null, alpha: number, override: LinkOverride | null): Look {
+    if (override) return { color: override.color, map: null, hasVertexColors: false, alpha, isDoubleSided: true, isBehind: override.isBehind === true };
     const { kind, repaints } = this.shape;
-    const doubleSided = kind === "mesh";
-    const behind = kind === "plane";
-    if (own && !repaints) {
-      const { color, map, vertexColors, surface } = own;
-      return { color, map, vertexColors, surface: surface ?? null, alpha: alpha * (this.shape.color?.[3] ?? 1), doubleSided };
+    const isDoubleSided = kind === "mesh";
+    const isBehind = kind === "plane";
+    if (ownMaterials && !repaints) {
+      const { color, map, vertexColors: hasVertexColors, surface } = ownMaterials;
+      return { color, map, hasVertexColors, surface: surface ?? null, alpha: alpha * (this.shape.color?.[3] ?? 1), isDoubleSided };
     }
-    const gray = doubleSided && !this.shape.format?.startsWith("stl");
-    const bare: readonly number[] = gray ? [UNCOLORED_GRAY, UNCOLORED_GRAY, UNCOLORED_GRAY] : RVIZ_RED;
+    const isGray = isDoubleSided && !this.shape.format?.startsWith("stl");
+    const bare: readonly number[] = isGray ? [UNCOLORED_GRAY, UNCOLORED_GRAY, UNCOLORED_GRAY] : RVIZ_RED;
     // A texture replaces the color.
     const [r = 0, g = 0, b = 0, a = 1] = this.texture ? [1, 1, 1, 1] : (this.shape.color ?? bare);
-    return { color: [r, g, b], map: this.texture, vertexColors: false, alpha: alpha * a, doubleSided, behind, surface: this.surface };
+    return { color: [r, g, b], map: this.texture, hasVertexColors: false, alpha: alpha * a, isDoubleSided, isBehind, surface: this.surface };
   }
 }
 

@@ -4,13 +4,13 @@ import { paint, smallSphere, unitBox, unitCone, unitCylinder, unitPlane, unitSph
 
 const GEOMETRIES = { box: unitBox, cylinder: unitCylinder, cone: unitCone, sphere: unitSphere, plane: unitPlane } as const;
 
-const place = new Vector3();
+const position = new Vector3();
 
 /** A kind of shape; all shapes of a kind are drawn in one call. */
 export type SolidKind = keyof typeof GEOMETRIES;
 
 /** Returns the kind of batch for a shape; null for shapes that are drawn individually. */
-export function solidKind(kind: string): SolidKind | null {
+export function solidKindOf(kind: string): SolidKind | null {
   if (kind === "ellipsoid") return "sphere";
   return kind in GEOMETRIES ? (kind as SolidKind) : null;
 }
@@ -32,18 +32,18 @@ interface Sphere {
  */
 export class Solids {
   private readonly batches: ReadonlyMap<SolidKind, CopyBatch>;
-  private readonly small: CopyBatch;
+  private readonly smallBatch: CopyBatch;
   private spheres: Sphere[] = [];
   private isStale = false;
   private readonly softness = { value: false };
 
   constructor(parent: Object3D) {
     const kinds = Object.keys(GEOMETRIES) as SolidKind[];
-    const batch = (shape: BufferGeometry, isBehind = false): CopyBatch => {
+    const createBatch = (shape: BufferGeometry, isBehind = false): CopyBatch => {
       return new CopyBatch(parent, paint(shape.clone(), 1, 1, 1), { isBehind, isSoft: this.softness });
     };
-    this.batches = new Map(kinds.map((kind) => [kind, batch(GEOMETRIES[kind], kind === "plane")]));
-    this.small = batch(smallSphere);
+    this.batches = new Map(kinds.map((kind) => [kind, createBatch(GEOMETRIES[kind], kind === "plane")]));
+    this.smallBatch = createBatch(smallSphere);
   }
 
   /** Whether the solids have the soft light instead of RViz's. */
@@ -60,7 +60,7 @@ export class Solids {
 
   /** The number of spheres drawn with few vertices. */
   get smallSpheres(): number {
-    return this.small.size;
+    return this.smallBatch.size;
   }
 
   /** Removes all solids; at most this many of each kind will be added. */
@@ -82,24 +82,24 @@ export class Solids {
 
   /** Chooses the detail of the spheres for a camera in the parent's frame. */
   chooseDetail(camera: Camera): void {
-    let changed = this.isStale;
+    let hasChanged = this.isStale;
     for (const sphere of this.spheres) {
       const isSmall = shareOf(sphere.matrix, camera) < SMALL_SHARE;
-      changed ||= isSmall !== sphere.isSmall;
+      hasChanged ||= isSmall !== sphere.isSmall;
       sphere.isSmall = isSmall;
     }
     this.isStale = false;
-    if (changed) this.fillSphereBatches();
+    if (hasChanged) this.fillSphereBatches();
   }
 
   dispose(): void {
-    for (const batch of [...this.batches.values(), this.small]) batch.dispose();
+    for (const batch of [...this.batches.values(), this.smallBatch]) batch.dispose();
   }
 
   private fillSphereBatches(): void {
-    const small = this.spheres.filter((sphere) => sphere.isSmall);
-    const large = this.spheres.filter((sphere) => !sphere.isSmall);
-    for (const [batch, spheres] of [[this.small, small], [this.batches.get("sphere"), large]] as const) {
+    const smallSpheres = this.spheres.filter((sphere) => sphere.isSmall);
+    const largeSpheres = this.spheres.filter((sphere) => !sphere.isSmall);
+    for (const [batch, spheres] of [[this.smallBatch, smallSpheres], [this.batches.get("sphere"), largeSpheres]] as const) {
       batch?.begin(spheres.length);
       for (const { matrix, color } of spheres) batch?.add(matrix, 0, 1, color);
       batch?.end();
@@ -114,7 +114,7 @@ export class Solids {
 function shareOf(matrix: Matrix4, camera: Camera): number {
   const radius = matrix.getMaxScaleOnAxis();
   const { elements } = camera.projectionMatrix;
-  const depth = -place.setFromMatrixPosition(matrix).applyMatrix4(camera.matrixWorldInverse).z;
+  const depth = -position.setFromMatrixPosition(matrix).applyMatrix4(camera.matrixWorldInverse).z;
   const isPerspective = elements[11] !== 0;
   if (isPerspective && Math.abs(depth) <= radius) return Infinity;
   return (radius * elements[5]) / 2 / (isPerspective ? Math.abs(depth) : 1);

@@ -26,11 +26,11 @@ export function samplesOf(geometry: BufferGeometry): SurfaceSamples {
 }
 
 /** Returns some points on the surface of a mesh, whose world matrix must be current, in the fixed frame. */
-export function pointsOn({ geometry, matrixWorld }: Mesh): Vector[] {
+export function samplePoints({ geometry, matrixWorld }: Mesh): Vector[] {
   const { points } = samplesOf(geometry);
-  const found: Vector[] = [];
-  for (let i = 0; i < points.length; i += 3 * FRAMING_STRIDE) found.push(new Vector3().fromArray(points, i).applyMatrix4(matrixWorld).toArray());
-  return found;
+  const samples: Vector[] = [];
+  for (let i = 0; i < points.length; i += 3 * FRAMING_STRIDE) samples.push(new Vector3().fromArray(points, i).applyMatrix4(matrixWorld).toArray());
+  return samples;
 }
 
 function sampleSurface(geometry: BufferGeometry): SurfaceSamples {
@@ -40,7 +40,7 @@ function sampleSurface(geometry: BufferGeometry): SurfaceSamples {
   const sums = new Float64Array(count);
   const triangle = new Triangle();
   const triangleAt = (i: number): Triangle => {
-    const [a, b, c] = [3 * i, 3 * i + 1, 3 * i + 2].map((at) => index?.getX(at) ?? at) as [number, number, number];
+    const [a, b, c] = [3 * i, 3 * i + 1, 3 * i + 2].map((vertex) => index?.getX(vertex) ?? vertex) as [number, number, number];
     triangle.setFromAttributeAndIndices(positions, a, b, c);
     return triangle;
   };

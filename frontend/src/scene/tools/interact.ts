@@ -78,7 +78,7 @@ export class InteractTool implements SceneTool {
     return drawing.pointer?.({ ...event, type, ray, hit, setCursor, setHint }) ?? false;
   }
 
-  private setInteraction(enabled: boolean, hideOthers: boolean): void {
-    this.context.stage.setInteraction({ enabled, hideOthers });
+  private setInteraction(isEnabled: boolean, hidesOthers: boolean): void {
+    this.context.stage.setInteraction({ isEnabled, hidesOthers });
   }
 }

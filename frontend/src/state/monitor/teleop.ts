@@ -13,7 +13,7 @@ export interface TeleopSettings {
   angular: number;
   /** The number of velocity messages per second while driving, 10 to 20. */
   rate: number;
-  usesGamepad: boolean;
+  gamepad: boolean;
 }
 
 /** A source of motion; the motions of all sources are added. */
@@ -27,7 +27,7 @@ const DEFAULTS: TeleopSettings = {
   linear: 0.5,
   angular: 1,
   rate: 20,
-  usesGamepad: false,
+  gamepad: false,
 };
 
 /** Sends velocities while a motion is held, and zero when it ends. */

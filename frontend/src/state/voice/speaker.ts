@@ -3,7 +3,7 @@ import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
 
 export interface SpeakerSettings {
-  isOn: boolean;
+  on: boolean;
   /** The URI of the voice; empty for the browser's choice. */
   voice: string;
 }
@@ -14,7 +14,7 @@ const SAVED_KEY = "linkwright.speaker.1";
 export class Speaker {
   /** The settings or the available voices changed. */
   readonly changed = new Signal();
-  settings: SpeakerSettings = { isOn: false, voice: "" };
+  settings: SpeakerSettings = { on: false, voice: "" };
   private readonly synthesis = (globalThis as { speechSynthesis?: SpeechSynthesis }).speechSynthesis ?? null;
 
   constructor(private readonly storage: TextStorage) {
@@ -43,12 +43,12 @@ export class Speaker {
   configure(change: Partial<SpeakerSettings>): void {
     this.settings = { ...this.settings, ...change };
     this.storage.setItem(SAVED_KEY, JSON.stringify(this.settings));
-    if (!this.settings.isOn) this.stopSpeaking();
+    if (!this.settings.on) this.stopSpeaking();
     this.changed.emit();
   }
 
   speak(text: string): void {
-    if (!this.settings.isOn || !this.synthesis || text === "") return;
+    if (!this.settings.on || !this.synthesis || text === "") return;
     const utterance = new SpeechSynthesisUtterance(text);
     const voice = this.voices.find(({ voiceURI }) => voiceURI === this.settings.voice);
     if (voice) {

@@ -91,10 +91,10 @@ export class VoiceState {
       this.changed.emit();
     });
     this.speaker.changed.on(() => {
-      this.watch(this.speaker, this.speaker.settings.isOn);
+      this.watch(this.speaker, this.speaker.settings.on);
       this.changed.emit();
     });
-    this.watch(this.speaker, this.speaker.settings.isOn);
+    this.watch(this.speaker, this.speaker.settings.on);
   }
 
   /** Whether the button is held. */
