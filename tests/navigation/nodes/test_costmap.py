@@ -67,11 +67,11 @@ def start(graph, scene):
         node.destroy_node()
 
 
-async def call(world, service, kind, **fields):
+async def call(scene, service, kind, **fields):
     kind = get_service(f"nav2_msgs/srv/{kind}")
-    client = world.node.create_client(kind, service)
+    client = scene.node.create_client(kind, service)
     future = client.call_async(kind.Request(**fields))
-    await world.graph.settle()
+    await scene.graph.settle()
     assert future.done()
     return future.result()
 

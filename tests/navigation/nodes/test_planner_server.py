@@ -270,16 +270,16 @@ async def test_costmap_in_container_has_parameters_of_process(scene, graph):
     container.close()
 
 
-async def test_is_path_valid_checks_costmap(world, server):
+async def test_is_path_valid_checks_costmap(scene, server):
     await server(costmap={"map_topic": "/map"})
     service = get_service("nav2_msgs/srv/IsPathValid")
-    client = world.node.create_client(service, "is_path_valid")
+    client = scene.node.create_client(service, "is_path_valid")
     stamp = get_message("builtin_interfaces/msg/Time")()
 
     async def ask(*points):
         path = path_message(np.array([(x, y, 0.0) for x, y in points]).reshape(-1, 3), "map", stamp)
         future = client.call_async(service.Request(path=path))
-        await world.graph.settle()
+        await scene.graph.settle()
         return future.result()
 
     assert (await ask((1.0, 1.0), (2.0, 1.0))).is_valid
