@@ -65,12 +65,12 @@ describe("the Interact tool", () => {
   it("keeps an object that accepts the press until the button is released, and hides the others", () => {
     under = "a";
     tool.onPointer(event({ type: "down", button: "left", left: true }));
-    expect(interaction).toEqual({ enabled: true, hideOthers: true });
+    expect(interaction).toEqual({ isEnabled: true, hidesOthers: true });
     under = null;
     tool.onPointer(event({ type: "move", left: true }));
     tool.onPointer(event({ type: "up", button: "left" }));
     expect(told).toEqual(["enter", "down", "move", "up", "leave"]);
-    expect(interaction).toEqual({ enabled: true, hideOthers: false });
+    expect(interaction).toEqual({ isEnabled: true, hidesOthers: false });
     expect(dragged).toBe(0);
   });
 
@@ -86,11 +86,11 @@ describe("the Interact tool", () => {
     tool.onPointer(event({ type: "down", button: "left", left: true }));
     tool.onPointer(event({ type: "move", left: true }));
     expect(dragged).toBe(1);
-    expect(interaction).toEqual({ enabled: true, hideOthers: false });
+    expect(interaction).toEqual({ isEnabled: true, hidesOthers: false });
   });
 
   it("notifies drawings when it is deactivated", () => {
     tool.deactivate();
-    expect(interaction).toEqual({ enabled: false, hideOthers: false });
+    expect(interaction).toEqual({ isEnabled: false, hidesOthers: false });
   });
 });

@@ -129,7 +129,7 @@ export class Stage {
 
   /** Whether a display has objects that the Interact tool can move. */
   get isInteractive(): boolean {
-    return [...this.enabledDrawings()].some(([, drawing]) => "pointer" in drawing);
+    return [...this.enabledDrawings()].some(([, drawing]) => "onPointer" in drawing);
   }
 
   /** Looks at the center of the selection, or of all selectable objects if nothing is selected. */
