@@ -94,10 +94,10 @@ export function publishInspection(
   session.description.edited.on(({ links, joints }) => edited.push(...links, ...joints));
   const inspection: Inspection = {
     get ready() {
-      return stage?.ready ?? false;
+      return stage?.isReady ?? false;
     },
     get settled() {
-      return stage?.settled ?? false;
+      return stage?.isSettled ?? false;
     },
     get received() {
       return session.connection.received;

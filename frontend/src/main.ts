@@ -179,8 +179,8 @@ function start(app: HTMLElement): void {
   if (stage) scene.connectScene(stage.freeRoom);
   commands.bindKeys();
   const toolbox = stage && connectTools(stage, session, (event) => {
-    if (handles?.pointer(event)) return null;
-    return modeler ? modeler.pointer(event) : event;
+    if (handles?.onPointer(event)) return null;
+    return modeler ? modeler.onPointer(event) : event;
   });
   if (stage) {
     loadModeler(stage, session, (made) => (modeler = made));
@@ -283,9 +283,9 @@ function connectTools(stage: Stage, session: Session, model: (event: ToolEvent) 
   const joints = new JointDrag(stage, session);
   const worlds = new WorldHandling(stage, session);
   const controls = new Controls(stage, session.view, (event) => {
-    if (joints.pointer(event)) return;
+    if (joints.onPointer(event)) return;
     const left = model(event);
-    if (left && !worlds.pointer(left)) toolbox.current.pointer(left);
+    if (left && !worlds.onPointer(left)) toolbox.current.onPointer(left);
   });
   new Keyboard(session, stage, toolbox, controls);
   return toolbox;

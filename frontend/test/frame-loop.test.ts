@@ -50,7 +50,7 @@ describe("the frame loop", () => {
     loop.redraw(FINEST);
     run(1000);
     expect(draw).not.toHaveBeenCalled();
-    expect(loop.settled).toBe(false);
+    expect(loop.isSettled).toBe(false);
     loop.release();
     run(100);
     expect(draw).toHaveBeenCalledTimes(1);
@@ -103,12 +103,12 @@ describe("the frame loop", () => {
     const loop = new FrameLoop(({ smooth }) => fine.push(smooth));
     loop.invalidate();
     run(100);
-    expect(loop.settled).toBe(false);
+    expect(loop.isSettled).toBe(false);
     run(900);
     expect(fine).toEqual([false, true]);
-    expect(loop.settled).toBe(true);
+    expect(loop.isSettled).toBe(true);
     loop.invalidate();
-    expect(loop.settled).toBe(false);
+    expect(loop.isSettled).toBe(false);
   });
 
   it("draws coarsely during motion on a slow machine, and finely at rest", () => {
@@ -155,9 +155,9 @@ describe("the frame loop", () => {
     expect(show.mock.calls.length).toBeGreaterThan(27);
     expect(show.mock.calls.length).toBeLessThan(32);
     loop.schedule(show);
-    expect(loop.settled).toBe(false);
+    expect(loop.isSettled).toBe(false);
     run(100);
-    expect(loop.settled).toBe(true);
+    expect(loop.isSettled).toBe(true);
     const times: number[] = [];
     const [shown, drawn] = [show.mock.calls.length, loop.framesDrawn];
     run(1000, () => {

@@ -52,45 +52,45 @@ beforeEach(() => {
 
 describe("the Interact tool", () => {
   it("notifies drawings when the pointer enters and leaves their objects", () => {
-    tool.pointer(event({ type: "move" }));
+    tool.onPointer(event({ type: "move" }));
     under = "a";
-    tool.pointer(event({ type: "move" }));
+    tool.onPointer(event({ type: "move" }));
     under = "b";
-    tool.pointer(event({ type: "move" }));
+    tool.onPointer(event({ type: "move" }));
     under = null;
-    tool.pointer(event({ type: "move" }));
+    tool.onPointer(event({ type: "move" }));
     expect(told).toEqual(["enter", "move", "leave", "enter", "move", "leave"]);
   });
 
   it("keeps an object that accepts the press until the button is released, and hides the others", () => {
     under = "a";
-    tool.pointer(event({ type: "down", button: "left", left: true }));
-    expect(interaction).toEqual({ enabled: true, hideOthers: true });
+    tool.onPointer(event({ type: "down", button: "left", left: true }));
+    expect(interaction).toEqual({ isEnabled: true, hidesOthers: true });
     under = null;
-    tool.pointer(event({ type: "move", left: true }));
-    tool.pointer(event({ type: "up", button: "left" }));
+    tool.onPointer(event({ type: "move", left: true }));
+    tool.onPointer(event({ type: "up", button: "left" }));
     expect(told).toEqual(["enter", "down", "move", "up", "leave"]);
-    expect(interaction).toEqual({ enabled: true, hideOthers: false });
+    expect(interaction).toEqual({ isEnabled: true, hidesOthers: false });
     expect(dragged).toBe(0);
   });
 
   it("moves the camera if the press was not on an object, even while the pointer is over one", () => {
-    tool.pointer(event({ type: "down", button: "left", left: true }));
+    tool.onPointer(event({ type: "down", button: "left", left: true }));
     under = "a";
-    tool.pointer(event({ type: "move", left: true }));
+    tool.onPointer(event({ type: "move", left: true }));
     expect([told, dragged]).toEqual([[], 1]);
   });
 
   it("moves the camera if the drawing refuses the press", () => {
     [under, takes] = ["a", false];
-    tool.pointer(event({ type: "down", button: "left", left: true }));
-    tool.pointer(event({ type: "move", left: true }));
+    tool.onPointer(event({ type: "down", button: "left", left: true }));
+    tool.onPointer(event({ type: "move", left: true }));
     expect(dragged).toBe(1);
-    expect(interaction).toEqual({ enabled: true, hideOthers: false });
+    expect(interaction).toEqual({ isEnabled: true, hidesOthers: false });
   });
 
   it("notifies drawings when it is deactivated", () => {
     tool.deactivate();
-    expect(interaction).toEqual({ enabled: false, hideOthers: false });
+    expect(interaction).toEqual({ isEnabled: false, hidesOthers: false });
   });
 });

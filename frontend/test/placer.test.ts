@@ -16,7 +16,7 @@ let placer: Placer;
 function pointer(type: ToolEvent["type"], x: number, y: number, part: Partial<ToolEvent> = {}): boolean {
   const button = type === "move" ? null : "left";
   const rest = { dx: 0, dy: 0, wheel: 0, left: type !== "up", middle: false, right: false, shift: false, ctrl: false, alt: false, click: false };
-  return placer.pointer({ type, x, y, button, ...rest, ...part });
+  return placer.onPointer({ type, x, y, button, ...rest, ...part });
 }
 
 beforeEach(() => {

@@ -61,7 +61,7 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   app.append(new Sidebar(session, display, recording.program, theme, actions).element);
   const toolbox = stage && new Toolbox(stage, session);
   if (stage && toolbox) {
-    const controls = new Controls(stage, session.view, (event) => toolbox.current.pointer(event));
+    const controls = new Controls(stage, session.view, (event) => toolbox.current.onPointer(event));
     new Keyboard(session, stage, toolbox, controls);
   }
   publishInspection(session, stage, toolbox, {});

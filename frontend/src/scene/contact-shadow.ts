@@ -19,7 +19,7 @@ const [BLUR_RADIUS, BLUR_PASSES] = [2, 3];
 /** The shadow is drawn first among transparent objects, so that lines on the ground cover it. */
 const RENDER_ORDER = -1;
 
-const place = new Vector3();
+const position = new Vector3();
 
 /**
  * The ambient shadow of a robot on the ground, as on a cloudy day. It is computed from a few points of each surface,
@@ -48,48 +48,48 @@ export class ContactShadow {
    * m.
    */
   update(meshes: readonly Mesh[], height: number): void {
-    const key = meshes.reduce((sum, { matrixWorld }, i) => matrixWorld.elements.reduce((all, element, k) => all + element * (i + k + 1), sum), height);
+    const key = meshes.reduce((sum, { matrixWorld }, i) => matrixWorld.elements.reduce((total, element, k) => total + element * (i + k + 1), sum), height);
     if (key === this.lastKey) return;
     this.lastKey = key;
     const box = new Box3();
     for (const mesh of meshes) box.expandByObject(mesh);
     if (box.isEmpty()) return void (this.ground.visible = false);
-    const [middle, size] = [box.getCenter(new Vector3()), box.getSize(new Vector3())];
+    const [center, size] = [box.getCenter(new Vector3()), box.getSize(new Vector3())];
     const width = Math.max(GROUND_WIDTHS * Math.max(size.x, size.y), size.z * (GROUND_WIDTHS - 1));
     this.ground.visible = true;
-    this.ground.position.set(middle.x, middle.y, height);
+    this.ground.position.set(center.x, center.y, height);
     this.ground.scale.setScalar(width);
     this.shade.fill(0);
-    for (const mesh of meshes) this.add(mesh, middle, width, height, size.length());
+    for (const mesh of meshes) this.add(mesh, center, width, height, size.length());
     for (let i = 0; i < BLUR_PASSES; i++) this.blur();
     this.shade.forEach((shade, i) => (this.pixels[4 * i + 3] = 255 * MAX_DARKNESS * (1 - Math.exp(-shade))));
     this.texture.needsUpdate = true;
   }
 
-  private add({ geometry, matrixWorld }: Mesh, middle: Vector3, width: number, height: number, size: number): void {
+  private add({ geometry, matrixWorld }: Mesh, center: Vector3, width: number, height: number, size: number): void {
     const { points, area } = samplesOf(geometry);
     const growth = Math.cbrt(Math.abs(matrixWorld.determinant())) ** 2;
     const texels = (area * growth) / (width / TEXELS) ** 2;
     for (let i = 0; i < points.length; i += 3) {
-      place.fromArray(points, i).applyMatrix4(matrixWorld);
-      const above = Math.max(0, place.z - height) / size;
-      const x = Math.floor(((place.x - middle.x) / width + 0.5) * TEXELS);
-      const y = Math.floor(((place.y - middle.y) / width + 0.5) * TEXELS);
-      const at = y * TEXELS + x;
-      this.shade[at] = (this.shade[at] ?? 0) + texels * (Math.exp(-above / NEAR) + FAR_WEIGHT * Math.exp(-above / FAR));
+      position.fromArray(points, i).applyMatrix4(matrixWorld);
+      const heightAbove = Math.max(0, position.z - height) / size;
+      const x = Math.floor(((position.x - center.x) / width + 0.5) * TEXELS);
+      const y = Math.floor(((position.y - center.y) / width + 0.5) * TEXELS);
+      const texel = y * TEXELS + x;
+      this.shade[texel] = (this.shade[texel] ?? 0) + texels * (Math.exp(-heightAbove / NEAR) + FAR_WEIGHT * Math.exp(-heightAbove / FAR));
     }
   }
 
   /** Replaces each texel by the mean of a square around it. */
   private blur(): void {
     for (const step of [1, TEXELS]) {
-      const [from, to] = [this.shade, this.spare];
-      for (let i = 0; i < from.length; i++) {
+      const [source, target] = [this.shade, this.spare];
+      for (let i = 0; i < source.length; i++) {
         let sum = 0;
-        for (let k = -BLUR_RADIUS; k <= BLUR_RADIUS; k++) sum += from[i + k * step] ?? 0;
-        to[i] = sum / (2 * BLUR_RADIUS + 1);
+        for (let k = -BLUR_RADIUS; k <= BLUR_RADIUS; k++) sum += source[i + k * step] ?? 0;
+        target[i] = sum / (2 * BLUR_RADIUS + 1);
       }
-      [this.shade, this.spare] = [to, from];
+      [this.shade, this.spare] = [target, source];
     }
   }
 }

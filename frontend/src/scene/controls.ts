@@ -15,7 +15,7 @@ const BUTTONS: readonly PointerButton[] = ["left", "middle", "right"];
 /** Converts input on the canvas by mouse, fingers and arrow keys into events for the active tool. */
 export class Controls {
   private readonly pointers = new Map<number, { x: number; y: number }>();
-  private last = { x: 0, y: 0 };
+  private lastPosition = { x: 0, y: 0 };
   private travelled = 0;
   private isOver = false;
 
@@ -41,7 +41,7 @@ export class Controls {
 
   /** The position of the pointer over the canvas; null while the pointer is elsewhere. */
   get position(): { x: number; y: number } | null {
-    return this.isOver ? this.last : null;
+    return this.isOver ? this.lastPosition : null;
   }
 
   private onPointerDown(event: PointerEvent): void {
@@ -52,13 +52,13 @@ export class Controls {
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
     this.travelled = this.pointers.size > 1 ? CLICK_SLOP : 0;
     this.isOver = true;
-    this.last = { x: event.offsetX, y: event.offsetY };
+    this.lastPosition = { x: event.offsetX, y: event.offsetY };
     this.emit(this.eventOf("down", event));
   }
 
   private onPointerMove(event: PointerEvent): void {
     const pointer = this.pointers.get(event.pointerId);
-    const spread = this.fingerDistance();
+    const spread = this.measureFingerDistance();
     if (pointer) {
       this.travelled += Math.hypot(event.clientX - pointer.x, event.clientY - pointer.y);
       pointer.x = event.clientX;
@@ -66,25 +66,25 @@ export class Controls {
     }
     const toolEvent = this.eventOf("move", event);
     this.isOver = true;
-    this.last = { x: event.offsetX, y: event.offsetY };
+    this.lastPosition = { x: event.offsetX, y: event.offsetY };
     if (toolEvent.dx === 0 && toolEvent.dy === 0) return;
     if (this.pointers.size > 1) this.pinch(toolEvent, spread);
     else this.emit(toolEvent);
   }
 
   /** Handles two fingers: each moves the view by half its motion, and a change of their distance zooms. */
-  private pinch(event: ToolEvent, before: number): void {
+  private pinch(event: ToolEvent, oldDistance: number): void {
     const { x, y, dx, dy } = event;
     const half = { dx: dx / 2, dy: dy / 2, x: x - dx, y: y - dy };
     this.view.drag({ ...this.stage.viewport.size, ...half, left: false, middle: true, right: false, shift: false });
-    const after = Math.max(1, this.fingerDistance());
-    if (before > 0) this.view.wheel((1 - before / after) * PINCH_UNIT, false);
+    const newDistance = Math.max(1, this.measureFingerDistance());
+    if (oldDistance > 0) this.view.wheel((1 - oldDistance / newDistance) * PINCH_UNIT, false);
   }
 
-  private onPointerEnd(event: PointerEvent, complete: boolean): void {
+  private onPointerEnd(event: PointerEvent, isComplete: boolean): void {
     if (!this.pointers.delete(event.pointerId)) return;
-    const click = complete && this.travelled < CLICK_SLOP;
-    this.emit({ ...this.eventOf("up", event), click });
+    const isClick = isComplete && this.travelled < CLICK_SLOP;
+    this.emit({ ...this.eventOf("up", event), click: isClick });
   }
 
   private onPointerLeave(event: PointerEvent): void {
@@ -93,7 +93,7 @@ export class Controls {
   }
 
   /** Returns the distance between the first two fingers, pixels; 0 with fewer. */
-  private fingerDistance(): number {
+  private measureFingerDistance(): number {
     const [a, b] = [...this.pointers.values()];
     return a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
   }
@@ -108,15 +108,15 @@ export class Controls {
 
   private eventOf(type: ToolEvent["type"], event: MouseEvent): ToolEvent {
     const { offsetX: x, offsetY: y, buttons } = event;
-    const acts = type === "down" || type === "up";
+    const isButtonEvent = type === "down" || type === "up";
     return {
       type,
       x,
       y,
-      dx: type === "move" ? x - this.last.x : 0,
-      dy: type === "move" ? y - this.last.y : 0,
+      dx: type === "move" ? x - this.lastPosition.x : 0,
+      dy: type === "move" ? y - this.lastPosition.y : 0,
       wheel: 0,
-      button: acts ? (BUTTONS[event.button] ?? null) : null,
+      button: isButtonEvent ? (BUTTONS[event.button] ?? null) : null,
       left: (buttons & 1) !== 0,
       middle: (buttons & 4) !== 0,
       right: (buttons & 2) !== 0,
@@ -130,23 +130,23 @@ export class Controls {
   private onKeyDown(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { size } = this.stage.viewport;
-    const turn = (dx: number, dy: number): void => {
-      const middle = { x: size.width / 2, y: size.height / 2 };
+    const turnView = (dx: number, dy: number): void => {
+      const center = { x: size.width / 2, y: size.height / 2 };
       const buttons = { left: !event.shiftKey, middle: event.shiftKey, right: false, shift: false };
-      this.view.drag({ ...size, ...middle, ...buttons, dx, dy });
+      this.view.drag({ ...size, ...center, ...buttons, dx, dy });
     };
     switch (event.key) {
       case "ArrowLeft":
-        turn(-KEY_PX, 0);
+        turnView(-KEY_PX, 0);
         break;
       case "ArrowRight":
-        turn(KEY_PX, 0);
+        turnView(KEY_PX, 0);
         break;
       case "ArrowUp":
-        turn(0, -KEY_PX);
+        turnView(0, -KEY_PX);
         break;
       case "ArrowDown":
-        turn(0, KEY_PX);
+        turnView(0, KEY_PX);
         break;
       case "+":
       case "=":

@@ -18,14 +18,14 @@ export class DepthMap {
   private readonly pixels: Uint8Array;
   private readonly size: Vector2;
   private readonly camera: Camera;
-  private readonly at = new Vector3();
+  private readonly point = new Vector3();
 
   /** Renders the depths of the scene off screen; the camera must be up to date. Transparent objects hide nothing. */
   constructor({ renderer, scene, camera, size }: Viewport) {
     this.camera = camera;
     this.size = new Vector2(size.width, size.height).floor();
     const { x: width, y: height } = this.size;
-    const drawn = new WebGLRenderTarget(width, height, {
+    const target = new WebGLRenderTarget(width, height, {
       depthTexture: new DepthTexture(width, height, UnsignedIntType),
     });
     const packed = new WebGLRenderTarget(width, height);
@@ -33,12 +33,12 @@ export class DepthMap {
       new ShaderMaterial({
         vertexShader: SCREEN_VERTEX,
         fragmentShader: FRAGMENT,
-        uniforms: { depths: { value: drawn.depthTexture } },
+        uniforms: { depths: { value: target.depthTexture } },
         depthTest: false,
         depthWrite: false,
       }),
     );
-    renderer.setRenderTarget(drawn);
+    renderer.setRenderTarget(target);
     renderer.render(scene, camera);
     renderer.setRenderTarget(packed);
     quad.render(renderer);
@@ -46,7 +46,7 @@ export class DepthMap {
     renderer.readRenderTargetPixels(packed, 0, 0, width, height, this.pixels);
     renderer.setRenderTarget(null);
     quad.dispose();
-    drawn.dispose();
+    target.dispose();
     packed.dispose();
   }
 
@@ -58,14 +58,14 @@ export class DepthMap {
     // Check the neighbors, too: points on an edge fall next to their surface as often as on it.
     for (let dy = -1; dy <= 1; dy++) {
       for (let dx = -1; dx <= 1; dx++) {
-        if (this.surfaceDistance(column + dx, row + dy) >= distance * (1 - TOLERANCE)) return true;
+        if (this.distanceToSurface(column + dx, row + dy) >= distance * (1 - TOLERANCE)) return true;
       }
     }
     return false;
   }
 
   /** Returns the distance from the camera to the nearest surface at a pixel, m along the viewing axis. */
-  private surfaceDistance(column: number, row: number): number {
+  private distanceToSurface(column: number, row: number): number {
     if (column < 0 || row < 0 || column >= this.size.x || row >= this.size.y) return 0;
     const first = (row * this.size.x + column) * 4;
     const [a = 0, b = 0, c = 0, d = 0] = this.pixels.subarray(first, first + 4);
@@ -73,6 +73,6 @@ export class DepthMap {
   }
 
   private toDistance(z: number): number {
-    return -this.at.set(0, 0, z).applyMatrix4(this.camera.projectionMatrixInverse).z;
+    return -this.point.set(0, 0, z).applyMatrix4(this.camera.projectionMatrixInverse).z;
   }
 }

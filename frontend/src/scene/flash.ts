@@ -24,8 +24,8 @@ export class Flash {
   ) {
     this.outline = new Outline(viewport, { color: COLOR, layer: FLASHING, fill: FILL });
     session.description.edited.on(({ display, links, joints }) => {
-      const moved = joints.map((name) => session.focus.linkOf({ display, kind: "joint", name }));
-      const names = new Set([...links, ...moved.filter((name) => name !== undefined)]);
+      const movedLinks = joints.map((name) => session.focus.linkOf({ display, kind: "joint", name }));
+      const names = new Set([...links, ...movedLinks.filter((name) => name !== undefined)]);
       this.links.push({ display, names, startMs: performance.now() });
       invalidate();
     });
@@ -37,8 +37,8 @@ export class Flash {
     const now = performance.now();
     this.links = this.links.filter(({ startMs }) => now - startMs < DURATION_MS);
     const objects = this.links.flatMap(({ display, names }) => [...names].flatMap((name) => this.objectsOf(display, name)));
-    const newest = Math.max(...this.links.map(({ startMs }) => startMs));
-    this.outline.strength = Math.min(1, Math.max(0, (DURATION_MS - (now - newest)) / (DURATION_MS - FULL_MS)));
+    const newestStart = Math.max(...this.links.map(({ startMs }) => startMs));
+    this.outline.strength = Math.min(1, Math.max(0, (DURATION_MS - (now - newestStart)) / (DURATION_MS - FULL_MS)));
     this.outline.set(objects);
     this.outline.render();
     this.outline.set([]);

@@ -11,18 +11,18 @@ export class FocalShape {
   );
 
   /** Whether the disc is to be visible, provided the view has a focal point. */
-  shown = false;
+  isShown = false;
 
   constructor() {
     this.root.visible = false;
   }
 
-  place(view: ViewState): void {
+  updatePose(view: ViewState): void {
     const { values, controller, camera } = view;
-    this.root.visible = this.shown && camera.focal !== null;
+    this.root.visible = this.isShown && camera.focal !== null;
     if (!camera.focal) return;
-    const fixed = values["Focal Shape Fixed Size"] !== false;
-    const diameter = number(values, "Focal Shape Size", 0.05) * (fixed ? 1 : number(values, "Distance", 1));
+    const hasFixedSize = values["Focal Shape Fixed Size"] !== false;
+    const diameter = number(values, "Focal Shape Size", 0.05) * (hasFixedSize ? 1 : number(values, "Distance", 1));
     this.root.position.set(...camera.focal);
     this.root.scale.set(diameter / 2, diameter / 2, diameter / 10);
     this.root.material.color.set(controller.focalColor);

@@ -66,16 +66,16 @@ export class FrameLoop {
   private frameCount = 0;
 
   /**
-   * @param held - whether to draw nothing before `release`. For a software renderer, a frame of an empty scene is as
+   * @param isHeld - whether to draw nothing before `release`. For a software renderer, a frame of an empty scene is as
    * much work as one of a robot, and would delay it.
    */
   constructor(
     private readonly draw: (detail: Detail) => void,
-    private held = false,
+    private isHeld = false,
   ) {}
 
   /** Whether nothing has changed since the last frame, in the scene or outside it, and that frame was a fine one. */
-  get settled(): boolean {
+  get isSettled(): boolean {
     return this.requestedAt === null && this.scheduled.size === 0 && this.wasLastFine;
   }
 
@@ -90,19 +90,19 @@ export class FrameLoop {
 
   /** Returns the number of frames in the last second; null while the scene is idle. */
   framesPerSecond(nowMs: number): number | null {
-    this.recentTimes = this.recentTimes.filter((at) => nowMs - at < 1000);
+    this.recentTimes = this.recentTimes.filter((timeMs) => nowMs - timeMs < 1000);
     return nowMs - this.drawnAt > IDLE_AFTER_MS ? null : this.recentTimes.length;
   }
 
   /** Starts drawing, now that there is something to draw. */
   release(): void {
-    this.held = false;
+    this.isHeld = false;
     if (this.requestedAt !== null) this.requestTick();
   }
 
   /** Redraws immediately after the canvas was resized, which clears it: it would flicker until the next frame. */
   redraw(detail: Detail): void {
-    if (!this.held) this.draw(detail);
+    if (!this.isHeld) this.draw(detail);
   }
 
   /** Requests a frame because something changed. */
@@ -138,7 +138,7 @@ export class FrameLoop {
     const besides = [...this.scheduled];
     this.scheduled.clear();
     for (const show of besides) show();
-    if (this.requestedAt === null || this.held) return;
+    if (this.requestedAt === null || this.isHeld) return;
     if (this.frameCount >= FIRST_FRAMES) this.judge(now - Math.max(this.requestedAt, due));
     this.requestedAt = null;
     // The first frame must appear quickly.
@@ -149,10 +149,10 @@ export class FrameLoop {
   };
 
   private judge(delay: number): void {
-    const late = delay > LATE_MS;
-    this.judged.emit(late);
-    this.lateness = Math.max(0, this.lateness + (late ? 1 : -1));
-    this.timelyCount = late ? 0 : this.timelyCount + 1;
+    const isLate = delay > LATE_MS;
+    this.judged.emit(isLate);
+    this.lateness = Math.max(0, this.lateness + (isLate ? 1 : -1));
+    this.timelyCount = isLate ? 0 : this.timelyCount + 1;
     if (this.lateness >= LATE_FRAMES) this.changeLevel(1);
     else if (this.timelyCount >= this.patience && this.detailLevel > 0) {
       this.patience *= 2;

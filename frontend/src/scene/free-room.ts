@@ -17,16 +17,16 @@ interface ShiftedView {
 /** The part of the canvas that nothing covers, and the moves of the view that bring robots into it. */
 export class FreeRoom {
   /** Returns the width covered at the right of the canvas, pixels. */
-  covered: () => number = () => 0;
+  coveredWidth: () => number = () => 0;
   private coveredAbove = 0;
 
   /**
-   * @param robots - returns the bounding box of all robots.
+   * @param spanOfRobots - returns the bounding box of all robots.
    * @param aim - updates the camera.
    */
   constructor(
     private readonly viewport: ShiftedView,
-    private readonly robots: () => Span | null,
+    private readonly spanOfRobots: () => Span | null,
     private readonly aim: () => void,
     private readonly invalidate: () => void,
   ) {}
@@ -34,9 +34,9 @@ export class FreeRoom {
   /** Returns the size of the free part, and moves the camera's center to the center of that part. */
   center(): ViewSize {
     const { width, height } = this.viewport.size;
-    const [right, above] = [Math.min(this.covered(), width * MAX_COVERED), Math.min(this.coveredAbove, height * MAX_COVERED)];
-    Object.assign(this.viewport, { shiftLeft: right / 2, shiftDown: above / 2 });
-    return { width: width - right, height: height - above };
+    const [right, coveredHeight] = [Math.min(this.coveredWidth(), width * MAX_COVERED), Math.min(this.coveredAbove, height * MAX_COVERED)];
+    Object.assign(this.viewport, { shiftLeft: right / 2, shiftDown: coveredHeight / 2 });
+    return { width: width - right, height: height - coveredHeight };
   }
 
   /**
@@ -45,12 +45,12 @@ export class FreeRoom {
    */
   makeRoom(): void {
     const { viewport } = this;
-    const before = viewport.shiftLeft;
+    const previousShift = viewport.shiftLeft;
     viewport.shiftLeft = 0;
-    const target = Math.min(this.covered(), viewport.size.width * MAX_COVERED) / 2;
-    const reach = target > 0 ? this.reach() : null;
-    viewport.shiftLeft = reach ? Math.max(0, Math.min(target, reach.left)) : target;
-    if (viewport.shiftLeft !== before) this.invalidate();
+    const target = Math.min(this.coveredWidth(), viewport.size.width * MAX_COVERED) / 2;
+    const extent = target > 0 ? this.extentOfRobots() : null;
+    viewport.shiftLeft = extent ? Math.max(0, Math.min(target, extent.left)) : target;
+    if (viewport.shiftLeft !== previousShift) this.invalidate();
   }
 
   /**
@@ -59,21 +59,21 @@ export class FreeRoom {
    */
   makeRoomAbove(height: number): void {
     const { viewport } = this;
-    const before = viewport.shiftDown;
+    const previousShift = viewport.shiftDown;
     this.coveredAbove = height;
     viewport.shiftDown = 0;
-    const reach = height > 0 ? this.reach() : null;
-    if (reach) viewport.shiftDown = Math.max(0, Math.min(height - reach.top, viewport.size.height - reach.bottom));
-    if (viewport.shiftDown !== before) this.invalidate();
+    const extent = height > 0 ? this.extentOfRobots() : null;
+    if (extent) viewport.shiftDown = Math.max(0, Math.min(height - extent.top, viewport.size.height - extent.bottom));
+    if (viewport.shiftDown !== previousShift) this.invalidate();
   }
 
   /** The rightmost pixel column that robots cover, from the left edge of the canvas; 0 without robots. */
   get robotsReach(): number {
-    return this.reach()?.right ?? 0;
+    return this.extentOfRobots()?.right ?? 0;
   }
 
-  private reach(): ScreenExtent | null {
-    const box = this.robots();
+  private extentOfRobots(): ScreenExtent | null {
+    const box = this.spanOfRobots();
     this.aim();
     return box && extentOf(box, this.viewport.camera, this.viewport.size);
   }

@@ -35,9 +35,9 @@ export function setInitialView(world: InitialViewWorld, view: ViewState, size: V
     return;
   }
   const boundsByKind = world.boundsByKind();
-  const [robots, all] = [spanOf(boundsByKind.robots), spanOf(boundsByKind.world)];
-  if (robots) view.proposeValues(orbitAround(view.values, robots, size, (eye, place) => sees(world, eye, place)), SHOWS_ROBOTS, true);
-  else view.proposeValues(all ? orbitOverview(view.values, all, size) : {}, SHOWS_WORLD, world.hasRobots);
+  const [robots, everything] = [spanOf(boundsByKind.robots), spanOf(boundsByKind.world)];
+  if (robots) view.proposeValues(orbitAround(view.values, robots, size, (eye, position) => canSee(world, eye, position)), SHOWS_ROBOTS, true);
+  else view.proposeValues(everything ? orbitOverview(view.values, everything, size) : {}, SHOWS_WORLD, world.hasRobots);
 }
 
 /** Returns the values of an Orbit view that looks like a camera of the world's file, without its roll. */
@@ -50,14 +50,14 @@ function orbitFromCamera(world: InitialViewWorld, camera: Matrix4): ViewValues {
 }
 
 /** Whether nothing except robots is between a camera and a place. */
-function sees(world: InitialViewWorld, eye: Vector, place: Vector): boolean {
-  const from = new Vector3(...eye);
-  const direction = new Vector3(...place).sub(from);
-  return world.isClear(rayFrom(from, direction.clone().normalize(), direction.length()));
+function canSee(world: InitialViewWorld, eye: Vector, position: Vector): boolean {
+  const start = new Vector3(...eye);
+  const direction = new Vector3(...position).sub(start);
+  return world.isClear(rayFrom(start, direction.clone().normalize(), direction.length()));
 }
 
-function rayFrom(eye: Vector3, direction: Vector3, far = Infinity): Raycaster {
-  const ray = new Raycaster(eye, direction, 0, far);
+function rayFrom(eye: Vector3, direction: Vector3, maxDistance = Infinity): Raycaster {
+  const ray = new Raycaster(eye, direction, 0, maxDistance);
   ray.layers.enable(PICKABLE);
   return ray;
 }

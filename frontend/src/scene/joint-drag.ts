@@ -21,9 +21,9 @@ interface JointGrab {
   readonly joint: JointDetails;
   readonly axis: Vector3;
   readonly origin: Vector3;
-  readonly grabbed: Vector3;
+  readonly grabPoint: Vector3;
   readonly start: number;
-  moved: number;
+  movement: number;
 }
 
 /**
@@ -31,7 +31,7 @@ interface JointGrab {
  * can be moved.
  */
 export class JointDrag {
-  private grabbed: JointGrab | null = null;
+  private currentGrab: JointGrab | null = null;
   private hasAxes = false;
   private isHovering = false;
 
@@ -41,9 +41,9 @@ export class JointDrag {
   ) {}
 
   /** Handles a mouse event; returns false if the event is left to the active tool. */
-  pointer(event: ToolEvent): boolean {
-    if (this.grabbed) {
-      if (event.type === "move" && event.left) this.pull(this.grabbed, event);
+  onPointer(event: ToolEvent): boolean {
+    if (this.currentGrab) {
+      if (event.type === "move" && event.left) this.pull(this.currentGrab, event);
       else if (event.type === "up" && !event.left) this.release();
       return true;
     }
@@ -66,41 +66,41 @@ export class JointDrag {
   }
 
   private hover(event: ToolEvent): boolean {
-    const found = this.find(event);
-    this.isHovering = found !== null;
-    this.session.focus.setHovered(found && { display: found.model.display, kind: "joint", name: found.joint.name });
-    this.stage.viewport.canvas.style.cursor = found ? "grab" : "default";
-    return found !== null;
+    const picked = this.find(event);
+    this.isHovering = picked !== null;
+    this.session.focus.setHovered(picked && { display: picked.model.display, kind: "joint", name: picked.joint.name });
+    this.stage.viewport.canvas.style.cursor = picked ? "grab" : "default";
+    return picked !== null;
   }
 
   private grab(event: ToolEvent): boolean {
-    const found = this.find(event);
-    if (!found) return false;
-    const { model, joint, point } = found;
+    const picked = this.find(event);
+    if (!picked) return false;
+    const { model, joint, point } = picked;
     const { frames, joints } = this.session;
     const pose = new Matrix4();
     if (!framePose(frames, frames.rowOf(model.links.get(joint.child)?.frame ?? ""), pose)) return false;
     // A joint's axis is the same in its own frame and in the frame of its child link.
     const axis = new Vector3().fromArray(joint.axis).transformDirection(pose);
     const origin = new Vector3().setFromMatrixPosition(pose);
-    this.grabbed = { joint, axis, origin, grabbed: point, start: joints.positions[joint.name] ?? 0, moved: 0 };
+    this.currentGrab = { joint, axis, origin, grabPoint: point, start: joints.positions[joint.name] ?? 0, movement: 0 };
     this.stage.viewport.canvas.style.cursor = "grabbing";
     return true;
   }
 
   private pull(hold: JointGrab, event: ToolEvent): void {
     const { ray } = this.stage.picker.rayAt(event.x, event.y);
-    const { joint, axis, origin, grabbed } = hold;
-    hold.moved =
-      joint.kind === "prismatic" ? slideTowards(ray, axis, grabbed) : turnTowards(ray, axis, origin, grabbed, hold.moved);
-    const target = this.session.joints.leaderOf(joint.name, hold.start + hold.moved);
+    const { joint, axis, origin, grabPoint } = hold;
+    hold.movement =
+      joint.kind === "prismatic" ? slideTowards(ray, axis, grabPoint) : turnTowards(ray, axis, origin, grabPoint, hold.movement);
+    const target = this.session.joints.leaderOf(joint.name, hold.start + hold.movement);
     if (!target) return;
     const { control, position } = target;
     this.session.joints.move({ [control.name]: Math.min(Math.max(position, control.lower), control.upper) });
   }
 
   private release(): void {
-    this.grabbed = null;
+    this.currentGrab = null;
     this.isHovering = true;
     this.stopHovering();
   }
@@ -114,23 +114,23 @@ export class JointDrag {
 
   /** Returns the nearest movable joint above the link under the pointer. */
   private find(event: ToolEvent): { model: DescriptionModel; joint: JointDetails; point: Vector3 } | null {
-    const found = this.stage.picker.objectAt(event.x, event.y);
-    const model = found && this.session.description.modelOf(found.display);
+    const picked = this.stage.picker.objectAt(event.x, event.y);
+    const model = picked && this.session.description.modelOf(picked.display);
     if (!model) return null;
-    for (let joint = model.jointAbove(found.hit.key); joint; joint = model.jointAbove(joint.parent)) {
-      if (this.session.joints.leaderOf(joint.name, 0)) return { model, joint, point: found.hit.point.clone() };
+    for (let joint = model.jointAbove(picked.hit.key); joint; joint = model.jointAbove(joint.parent)) {
+      if (this.session.joints.leaderOf(joint.name, 0)) return { model, joint, point: picked.hit.point.clone() };
     }
     return null;
   }
 }
 
 /** Returns the distance that a point must slide along an axis to come closest to a ray, m; 0 if they are parallel. */
-export function slideTowards(ray: Ray, axis: Vector3, grabbed: Vector3): number {
-  const between = grabbed.clone().sub(ray.origin);
+export function slideTowards(ray: Ray, axis: Vector3, grabPoint: Vector3): number {
+  const between = grabPoint.clone().sub(ray.origin);
   const cosine = axis.dot(ray.direction);
-  const across = 1 - cosine * cosine;
-  if (across < 1e-6) return 0;
-  return (cosine * between.dot(ray.direction) - between.dot(axis)) / across;
+  const sineSquared = 1 - cosine * cosine;
+  if (sineSquared < 1e-6) return 0;
+  return (cosine * between.dot(ray.direction) - between.dot(axis)) / sineSquared;
 }
 
 /**
@@ -139,23 +139,23 @@ export function slideTowards(ray: Ray, axis: Vector3, grabbed: Vector3): number 
  * The search starts at the previous angle, so that the point can turn more than once, and stays on its side of the
  * circle when the circle is seen edge-on, where both sides are equally close.
  */
-export function turnTowards(ray: Ray, axis: Vector3, origin: Vector3, grabbed: Vector3, before: number): number {
-  const arm = grabbed.clone().sub(origin);
+export function turnTowards(ray: Ray, axis: Vector3, origin: Vector3, grabPoint: Vector3, startAngle: number): number {
+  const arm = grabPoint.clone().sub(origin);
   const point = new Vector3();
-  const distance = (angle: number): number =>
+  const distanceAt = (angle: number): number =>
     ray.distanceSqToPoint(point.copy(arm).applyAxisAngle(axis, angle).add(origin));
-  let best = before;
-  let least = distance(before);
+  let bestAngle = startAngle;
+  let minDistance = distanceAt(startAngle);
   for (let i = -STEPS; i <= STEPS; i++) {
-    const angle = before + (REACH * i) / STEPS;
-    const here = distance(angle);
-    if (here < least) [best, least] = [angle, here];
+    const angle = startAngle + (REACH * i) / STEPS;
+    const angleDistance = distanceAt(angle);
+    if (angleDistance < minDistance) [bestAngle, minDistance] = [angle, angleDistance];
   }
   for (let i = 0, step = REACH / STEPS; i < REFINEMENTS; i++, step /= 2) {
-    for (const angle of [best - step, best + step]) {
-      const here = distance(angle);
-      if (here < least) [best, least] = [angle, here];
+    for (const angle of [bestAngle - step, bestAngle + step]) {
+      const angleDistance = distanceAt(angle);
+      if (angleDistance < minDistance) [bestAngle, minDistance] = [angle, angleDistance];
     }
   }
-  return best;
+  return bestAngle;
 }

@@ -22,23 +22,23 @@ export class Keyboard {
     });
   }
 
-  private runKey(key: string, shift: boolean): boolean {
+  private runKey(key: string, isShiftDown: boolean): boolean {
     const { session, toolbox } = this;
     const { tools } = session;
     if (key === "Escape") return this.escape();
-    const tool = tools.tools.find((each) => each.isSupported && TOOLS.get(each.cls)?.key === key);
+    const tool = tools.tools.find((candidate) => candidate.isSupported && TOOLS.get(candidate.cls)?.key === key);
     if (tool && (tool === tools.current || toolbox.current.grabsKeys !== true)) {
       tools.toggle(tool);
       return true;
     }
-    if (toolbox.current.pressKey?.(key) === true && (tool || (key === "f" && !shift))) return true;
+    if (toolbox.current.pressKey?.(key) === true && (tool || (key === "f" && !isShiftDown))) return true;
     switch (key) {
       case "f":
-        if (shift) this.stage.fit();
+        if (isShiftDown) this.stage.fit();
         else this.focus();
         return true;
       case "z":
-        if (shift) session.view.reset();
+        if (isShiftDown) session.view.reset();
         else session.view.zero();
         return true;
       case "r":

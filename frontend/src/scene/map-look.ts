@@ -12,9 +12,9 @@ const SMALL = "(max-width: 900px), (max-height: 480px)";
  * On a phone, fits all maps into a camera above them until the user moves it; repeats this when maps grow or the phone
  * is rotated.
  */
-export function frameMaps(enabled: Iterable<readonly [string, Drawing]>, view: ViewState, room: FreeRoom): void {
+export function frameMaps(drawings: Iterable<readonly [string, Drawing]>, view: ViewState, room: FreeRoom): void {
   if (!matchMedia(SMALL).matches) return;
-  const maps = [...enabled].flatMap(([, drawing]) => (drawing instanceof MapDrawing ? [drawing] : []));
+  const maps = [...drawings].flatMap(([, drawing]) => (drawing instanceof MapDrawing ? [drawing] : []));
   if (maps.length === 0) return;
   const [width, height] = [window.innerWidth, window.innerHeight];
   const key = [...maps.map((map) => map.size), `${width} x ${height}`].join(";");

@@ -23,12 +23,12 @@ export class Picker {
     private readonly viewport: Viewport,
     private readonly session: Session,
     /** Returns the enabled displays with their drawings. */
-    private readonly drawings: () => Iterable<readonly [string, Drawing]>,
+    private readonly listDrawings: () => Iterable<readonly [string, Drawing]>,
   ) {}
 
   /** Returns the drawing of an enabled display. */
-  drawing(display: string): Drawing | undefined {
-    for (const [id, drawing] of this.drawings()) if (id === display) return drawing;
+  drawingOf(display: string): Drawing | undefined {
+    for (const [id, drawing] of this.listDrawings()) if (id === display) return drawing;
     return undefined;
   }
 
@@ -43,22 +43,22 @@ export class Picker {
 
   /** Returns the nearest object at a position. */
   objectAt(x: number, y: number): PickedObject | null {
-    return this.alongRay(this.rayAt(x, y));
+    return this.pickAlongRay(this.rayAt(x, y));
   }
 
-  alongRay(ray: Raycaster): PickedObject | null {
-    let best: PickedObject | null = null;
-    for (const [display, drawing] of this.drawings()) {
+  pickAlongRay(ray: Raycaster): PickedObject | null {
+    let nearest: PickedObject | null = null;
+    for (const [display, drawing] of this.listDrawings()) {
       const hit = drawing.pick?.(ray);
-      if (hit && (best === null || hit.distance < best.hit.distance)) best = { display, drawing, hit };
+      if (hit && (nearest === null || hit.distance < nearest.hit.distance)) nearest = { display, drawing, hit };
     }
-    return best;
+    return nearest;
   }
 
   /** Returns the point of the nearest object at a position, in the fixed frame. */
   pointAt(x: number, y: number): Vector | null {
-    const found = this.objectAt(x, y);
-    return found && [found.hit.point.x, found.hit.point.y, found.hit.point.z];
+    const picked = this.objectAt(x, y);
+    return picked && [picked.hit.point.x, picked.hit.point.y, picked.hit.point.z];
   }
 
   /** Returns the point of the plane z = 0 of the fixed frame at a position. */
@@ -71,20 +71,20 @@ export class Picker {
 
   /** Selects the nearest object at a position, or clears the selection. */
   selectAt(x: number, y: number, mode: SelectionMode = "replace"): void {
-    const found = this.objectAt(x, y);
-    const selected = found && !found.hit.isGround;
-    this.session.selection.pick(selected ? [{ display: found.display, key: found.hit.key }] : [], mode);
+    const picked = this.objectAt(x, y);
+    const selectedObject = picked && !picked.hit.isGround;
+    this.session.selection.pick(selectedObject ? [{ display: picked.display, key: picked.hit.key }] : [], mode);
   }
 
   /** Selects all visible objects in the rectangle between two positions. */
-  selectBox(from: Vector2, to: Vector2, mode: SelectionMode): void {
+  selectBox(start: Vector2, end: Vector2, mode: SelectionMode): void {
     this.viewport.aim(this.session.view);
-    const [a, b] = [this.toDevice(from.x, from.y), this.toDevice(to.x, to.y)];
+    const [a, b] = [this.toDevice(start.x, start.y), this.toDevice(end.x, end.y)];
     const depths = new DepthMap(this.viewport);
     const isSeen = depths.isVisible.bind(depths);
     const box = new ScreenBox(this.viewport.camera, a.clone().min(b), a.clone().max(b), isSeen);
     const items: SelectedItem[] = [];
-    for (const [display, drawing] of this.drawings()) {
+    for (const [display, drawing] of this.listDrawings()) {
       for (const key of drawing.pickBox?.(box) ?? []) items.push({ display, key });
     }
     this.session.selection.pick(items, mode);
@@ -92,7 +92,7 @@ export class Picker {
 
   /** Returns the rows of the Selection panel for an object; null if the object is no longer drawn. */
   describe(item: SelectedItem): DescriptionRow | null {
-    for (const [display, drawing] of this.drawings()) {
+    for (const [display, drawing] of this.listDrawings()) {
       if (display === item.display) return drawing.describe?.(item.key) ?? null;
     }
     return null;
@@ -107,20 +107,20 @@ export class Picker {
   /** Returns the bounding box of all selectable objects in the fixed frame. */
   boundsOfAll(): Span | null {
     const box = new Box3();
-    for (const [, drawing] of this.drawings()) if (drawing.pick) box.expandByObject(drawing.root);
+    for (const [, drawing] of this.listDrawings()) if (drawing.pick) box.expandByObject(drawing.root);
     return spanOf(box);
   }
 
   /** Returns the bounding box of the selection in the fixed frame; null if nothing is selected. */
   boundsOfSelection(): Span | null {
     const box = new Box3();
-    for (const [display, drawing] of this.drawings()) {
+    for (const [display, drawing] of this.listDrawings()) {
       for (const item of this.session.selection.items) {
         if (item.display !== display) continue;
         const objects = drawing.objectsOf?.(item.key) ?? [];
         for (const object of objects) box.expandByObject(object);
-        const place = objects.length === 0 ? drawing.positionOf?.(item.key) : null;
-        if (place) box.expandByPoint(place);
+        const position = objects.length === 0 ? drawing.positionOf?.(item.key) : null;
+        if (position) box.expandByPoint(position);
       }
     }
     return spanOf(box);

@@ -37,8 +37,8 @@ export class RobotLight {
     this.studio.root.visible = lighting === "Studio";
     this.shadow.root.visible = lighting === "Soft";
     if (lighting === "Camera") return null;
-    const what = robots.map((robot) => robot.visibleKey).join(";");
-    if (what !== this.ground.what) this.ground = { what, height: Math.min(...robots.map((robot) => robot.ground())) };
+    const key = robots.map((robot) => robot.visibleKey).join(";");
+    if (key !== this.ground.what) this.ground = { what: key, height: Math.min(...robots.map((robot) => robot.ground())) };
     const { height } = this.ground;
     if (lighting === "Soft") {
       this.shadow.update(robots.flatMap((robot) => robot.visibleMeshes), height);

@@ -16,8 +16,8 @@ export function extentOf({ min, max }: Span, camera: Camera, { width, height }: 
     return new Vector3(...([0, 1, 2] as const).map((axis) => ((corner >> axis) & 1 ? max : min)[axis])).applyMatrix4(camera.matrixWorldInverse);
   });
   if (corners.some(({ z }) => z >= 0)) return { left: -Infinity, right: Infinity, top: -Infinity, bottom: Infinity };
-  const seen = corners.map((corner) => corner.applyMatrix4(camera.projectionMatrix));
-  const xs = seen.map(({ x }) => ((x + 1) / 2) * width);
-  const ys = seen.map(({ y }) => ((1 - y) / 2) * height);
+  const projected = corners.map((corner) => corner.applyMatrix4(camera.projectionMatrix));
+  const xs = projected.map(({ x }) => ((x + 1) / 2) * width);
+  const ys = projected.map(({ y }) => ((1 - y) / 2) * height);
   return { left: Math.min(...xs), right: Math.max(...xs), top: Math.min(...ys), bottom: Math.max(...ys) };
 }

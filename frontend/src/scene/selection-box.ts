@@ -22,19 +22,19 @@ export class ScreenBox implements SelectionBox {
   }
 
   hasPoint(x: number, y: number, z: number): boolean {
-    const at = this.corner.set(x, y, z, 1).applyMatrix4(this.toScreen);
-    if (at.w <= 0 || Math.abs(at.z) > at.w) return false;
-    const [u, v] = [at.x / at.w, at.y / at.w];
-    const inside = u >= this.low.x && u <= this.high.x && v >= this.low.y && v <= this.high.y;
-    return inside && this.isSeen(u, v, at.z / at.w);
+    const projected = this.corner.set(x, y, z, 1).applyMatrix4(this.toScreen);
+    if (projected.w <= 0 || Math.abs(projected.z) > projected.w) return false;
+    const [u, v] = [projected.x / projected.w, projected.y / projected.w];
+    const isInside = u >= this.low.x && u <= this.high.x && v >= this.low.y && v <= this.high.y;
+    return isInside && this.isSeen(u, v, projected.z / projected.w);
   }
 
   hasObject(object: Object3D): boolean {
     const meshes: Mesh[] = [];
-    object.traverseVisible((each) => {
-      if (each instanceof Mesh) meshes.push(each as Mesh);
+    object.traverseVisible((child) => {
+      if (child instanceof Mesh) meshes.push(child as Mesh);
     });
-    return meshes.some((mesh) => this.hasCorner(mesh)) || this.meetsRay(meshes);
+    return meshes.some((mesh) => this.hasCorner(mesh)) || this.isHitByRay(meshes);
   }
 
   private hasCorner(mesh: Mesh): boolean {
@@ -49,15 +49,15 @@ export class ScreenBox implements SelectionBox {
   }
 
   /** Tests rays: a rectangle within a large face contains none of its vertices. */
-  private meetsRay(meshes: Mesh[]): boolean {
+  private isHitByRay(meshes: Mesh[]): boolean {
     const ray = new Raycaster();
     ray.layers.enable(PICKABLE);
     for (const u of [0.5, 0, 1]) {
       for (const v of [0.5, 0, 1]) {
-        const at = new Vector2(this.low.x + (this.high.x - this.low.x) * u, this.low.y + (this.high.y - this.low.y) * v);
-        ray.setFromCamera(at, this.camera);
+        const screenPoint = new Vector2(this.low.x + (this.high.x - this.low.x) * u, this.low.y + (this.high.y - this.low.y) * v);
+        ray.setFromCamera(screenPoint, this.camera);
         const [hit] = ray.intersectObjects(meshes, false);
-        if (hit && this.isSeen(at.x, at.y, hit.point.project(this.camera).z)) return true;
+        if (hit && this.isSeen(screenPoint.x, screenPoint.y, hit.point.project(this.camera).z)) return true;
       }
     }
     return false;

@@ -55,9 +55,9 @@ export class Stage {
   private interaction: Interaction = { isEnabled: false, hidesOthers: false };
   private readonly robotLight = new RobotLight();
   private readonly backdrop = new Backdrop();
-  private robotSettled = false;
+  private hasRobotSettled = false;
   /** The displays that were still loading something in the last frame. */
-  private loading = "";
+  private loadingKey = "";
   /** The time when all meshes were drawn but no link had a pose. */
   private placelessSince: number | null = null;
   /** The part of the canvas that nothing covers. */
@@ -74,7 +74,7 @@ export class Stage {
     this.meshes = new MeshLibrary(session.meshProgress, files, standIns);
     this.viewport = new Viewport(container, () => this.loop.redraw(NOT_ANTIALIASED));
     this.freeRoom = new FreeRoom(this.viewport, () => this.boundsOfRobots(), () => this.viewport.aim(session.view), () => this.loop.invalidate());
-    this.picker = new Picker(this.viewport, session, () => this.enabled());
+    this.picker = new Picker(this.viewport, session, () => this.enabledDrawings());
     this.outline = new Outline(this.viewport);
     const invalidate = (): void => this.loop.invalidate();
     this.flash = new Flash(this.viewport, session, (display, link) => this.objectsOf(display, link), invalidate);
@@ -87,14 +87,14 @@ export class Stage {
   }
 
   /** Whether robot or world, their meshes and transforms have been drawn, or transforms failed to arrive in time. */
-  get ready(): boolean {
-    const since = this.placelessSince;
-    return this.robotSettled || (since !== null && performance.now() - since > POSE_TIMEOUT_MS);
+  get isReady(): boolean {
+    const startMs = this.placelessSince;
+    return this.hasRobotSettled || (startMs !== null && performance.now() - startMs > POSE_TIMEOUT_MS);
   }
 
   /** Whether the last frame shows the current state, so that none is due. */
-  get settled(): boolean {
-    return this.loop.settled && ![...this.drawings.values()].some(({ pacing }) => pacing.isWaiting);
+  get isSettled(): boolean {
+    return this.loop.isSettled && ![...this.drawings.values()].some(({ pacing }) => pacing.isWaiting);
   }
 
   /** The number of visuals of all robots drawn in the last frame. */
@@ -112,30 +112,30 @@ export class Stage {
     return this.inspectLayer.inspect();
   }
 
-  set focalShapeVisible(visible: boolean) {
-    if (this.focalShape.shown === visible) return;
-    this.focalShape.shown = visible;
+  set isFocalShapeVisible(isVisible: boolean) {
+    if (this.focalShape.isShown === isVisible) return;
+    this.focalShape.isShown = isVisible;
     this.loop.invalidate();
   }
 
   /** Returns the scene as PNG, without marks of the selection and of camera motion. */
-  async screenshot(scale: number): Promise<Blob | null> {
+  async takeScreenshot(scale: number): Promise<Blob | null> {
     this.overlays.visible = false;
-    const screenshot = this.viewport.screenshot(scale);
+    const takeScreenshot = this.viewport.takeScreenshot(scale);
     this.overlays.visible = true;
     this.draw(FINEST);
-    return screenshot;
+    return takeScreenshot;
   }
 
   /** Whether a display has objects that the Interact tool can move. */
   get isInteractive(): boolean {
-    return [...this.enabled()].some(([, drawing]) => "pointer" in drawing);
+    return [...this.enabledDrawings()].some(([, drawing]) => "onPointer" in drawing);
   }
 
   /** Looks at the center of the selection, or of all selectable objects if nothing is selected. */
   focusSelected(): void {
-    const middle = this.picker.centerOfSelection();
-    if (middle) this.session.view.lookAt(middle);
+    const center = this.picker.centerOfSelection();
+    if (center) this.session.view.lookAt(center);
   }
 
   /** Fits the whole selection, or everything if nothing is selected, into view from the current direction. */
@@ -158,7 +158,7 @@ export class Stage {
   }
 
   /** Returns the enabled displays by ID. */
-  private *enabled(): Generator<readonly [string, Drawing]> {
+  private *enabledDrawings(): Generator<readonly [string, Drawing]> {
     for (const [id, { display, drawing }] of this.drawings) if (display.isEnabled) yield [id, drawing];
   }
 
@@ -167,23 +167,23 @@ export class Stage {
     const { displays, frames, view, selection } = session;
     session.drawingPace.software = this.viewport.software;
     if (this.viewport.software !== null) loop.expectSlow();
-    loop.judged.on((late) => session.drawingPace.countFrame(late));
+    loop.judged.on((isLate) => session.drawingPace.countFrame(isLate));
     session.drawingPace.changed.on(() => {
       this.viewport.isSlow ||= session.drawingPace.isSlow;
-      for (const display of displays.displays) this.propertiesChanged(display);
+      for (const display of displays.displays) this.onPropertiesChanged(display);
     });
     const invalidate = (): void => loop.invalidate();
     displays.treeChanged.on(() => this.matchDisplays());
-    displays.rowsChanged.on((display) => this.propertiesChanged(display));
+    displays.rowsChanged.on((display) => this.onPropertiesChanged(display));
     displays.valueChanged.on(({ display }) => {
-      if (display) this.propertiesChanged(display);
-      else this.globalOptionsChanged();
+      if (display) this.onPropertiesChanged(display);
+      else this.onGlobalOptionsChanged();
     });
-    displays.enabledChanged.on((display) => this.propertiesChanged(display));
+    displays.enabledChanged.on((display) => this.onPropertiesChanged(display));
     session.data.received.on((data) => {
-      const drawn = this.drawings.get(data.display);
-      drawn?.drawing.onDataChanged?.(data);
-      if (drawn?.display.isEnabled && !drawn.drawing.isElsewhere) loop.invalidate();
+      const drawing = this.drawings.get(data.display);
+      drawing?.drawing.onDataChanged?.(data);
+      if (drawing?.display.isEnabled && !drawing.drawing.isElsewhere) loop.invalidate();
     });
     session.data.removed.on(({ display, key }) => {
       this.drawings.get(display)?.drawing.onDataForgotten?.(key);
@@ -192,7 +192,7 @@ export class Stage {
     frames.tableChanged.on(invalidate);
     frames.posesChanged.on(invalidate);
     view.changed.on(invalidate);
-    selection.changed.on(() => this.selectionChanged());
+    selection.changed.on(() => this.onSelectionChanged());
     session.focus.hoverChanged.on(invalidate);
     session.time.wasReset.on(invalidate);
     const applyTheme = (theme: Theme): void => {
@@ -213,9 +213,9 @@ export class Stage {
       this.drawings.delete(id);
     }
     for (const display of displays) {
-      const known = this.drawings.get(display.id);
+      const existing = this.drawings.get(display.id);
       const Drawing = DRAWINGS.get(display.drawing);
-      if (known) this.propertiesChanged(known.display);
+      if (existing) this.onPropertiesChanged(existing.display);
       else if (Drawing && display.isSupported) {
         const { session, meshes, panels } = this;
         const invalidate = (): void => this.loop.invalidate();
@@ -229,19 +229,19 @@ export class Stage {
         for (const data of session.data.contentsOf(display.id)) drawing.onDataChanged?.(data);
       }
     }
-    this.globalOptionsChanged();
-    this.selectionChanged();
+    this.onGlobalOptionsChanged();
+    this.onSelectionChanged();
     if (this.session.displays.isKnown) this.loop.release();
   }
 
-  private propertiesChanged(display: DisplayState): void {
-    const drawn = this.drawings.get(display.id);
-    drawn?.drawing.onPropertiesChanged();
-    drawn?.pacing.restart();
+  private onPropertiesChanged(display: DisplayState): void {
+    const drawing = this.drawings.get(display.id);
+    drawing?.drawing.onPropertiesChanged();
+    drawing?.pacing.restart();
     this.loop.invalidate();
   }
 
-  private globalOptionsChanged(): void {
+  private onGlobalOptionsChanged(): void {
     const options = this.session.displays.globalOptions;
     this.viewport.background = this.backgroundColor;
     this.loop.rate = options.number(30, "Frame Rate");
@@ -255,36 +255,36 @@ export class Stage {
   private draw(detail: Detail): void {
     const { view } = this.session;
     this.viewport.share = detail.share;
-    frameMaps(this.enabled(), view, this.freeRoom);
+    frameMaps(this.enabledDrawings(), view, this.freeRoom);
     this.viewport.aim(view);
-    this.focalShape.place(view);
+    this.focalShape.updatePose(view);
     const { lighting } = this;
     for (const robot of this.robots()) robot.light = lighting;
-    let loading = "";
+    let loadingKey = "";
     const now = performance.now();
     for (const { display, drawing, pacing } of this.drawings.values()) {
       drawing.root.visible = display.isEnabled;
       if (!display.isEnabled) continue;
       if (pacing.isDue(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
-      if (drawing.isSettled?.() === false) loading += ` ${display.id}`;
+      if (drawing.isSettled?.() === false) loadingKey += ` ${display.id}`;
     }
-    const settled = loading === "";
-    if (loading !== this.loading) {
-      this.loading = loading;
+    const isSettled = loadingKey === "";
+    if (loadingKey !== this.loadingKey) {
+      this.loadingKey = loadingKey;
       this.session.displays.statusChanged.emit(null);
     }
-    this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.hasPose);
-    if (settled && this.session.robot !== null) this.placelessSince ??= now;
-    this.setInitialView(settled);
+    this.hasRobotSettled ||= isSettled && [...this.robots(), ...this.worlds()].some((model) => model.hasPose);
+    if (isSettled && this.session.robot !== null) this.placelessSince ??= now;
+    this.setInitialView(isSettled);
     const ownLight = this.worlds().find((world) => world.ownLight)?.ownLight ?? this.robotLight.update(this.worlds().length > 0 ? "Camera" : lighting, this.robots(), this.backgroundColor);
     this.backdrop.root.visible = this.session.displays.hasBackdrop && !hasOwnBackground(ownLight);
-    this.viewport.light(ownLight);
+    this.viewport.applyLight(ownLight);
     this.inspectLayer.update();
     this.outline.set(this.selectedObjects());
     const isMoving = detail.moving && ownLight === null;
-    if (isMoving) for (const [, drawing] of this.enabled()) drawing.simplify?.(this.viewport.drawn);
+    if (isMoving) for (const [, drawing] of this.enabledDrawings()) drawing.simplify?.(this.viewport.drawnView);
     this.viewport.render(detail.smooth);
-    if (isMoving) for (const [, drawing] of this.enabled()) drawing.simplify?.(null);
+    if (isMoving) for (const [, drawing] of this.enabledDrawings()) drawing.simplify?.(null);
     this.outline.render();
     this.flash.render();
     this.drawElsewhere();
@@ -300,34 +300,34 @@ export class Stage {
   }
 
   /** Places the camera if no user has: in front of the robot's visible parts, or into a world once it is complete. */
-  private setInitialView(settled: boolean): void {
+  private setInitialView(isSettled: boolean): void {
     const { view } = this.session;
     const [robots, [world]] = [this.robots(), this.worlds()];
     if (robots.length === 0 && world?.hasPose) {
-      if (settled) setInitialView(world, view, this.viewport.size);
+      if (isSettled) setInitialView(world, view, this.viewport.size);
     } else {
-      const seen = robots.flatMap((robot) => robot.visibleKey || []).join(";");
-      const fits = view.awaitsFit(seen);
-      if (seen === "" || !(fits || view.awaitsSize)) return;
+      const visibleKey = robots.flatMap((robot) => robot.visibleKey || []).join(";");
+      const needsFit = view.awaitsFit(visibleKey);
+      if (visibleKey === "" || !(needsFit || view.awaitsSize)) return;
       const box = this.spanOfRobots();
-      if (box && fits) view.fitFirst(box, this.freeRoom.center(), seen);
-      if (box && settled) view.reportSize(box, Math.min(...robots.map((robot) => robot.ground())));
+      if (box && needsFit) view.fitFirst(box, this.freeRoom.center(), visibleKey);
+      if (box && isSettled) view.reportSize(box, Math.min(...robots.map((robot) => robot.ground())));
     }
     this.viewport.aim(view);
   }
 
   private robots(): RobotModelDrawing[] {
-    return [...this.enabled()].flatMap(([, drawing]) => (drawing instanceof RobotModelDrawing ? [drawing] : []));
+    return [...this.enabledDrawings()].flatMap(([, drawing]) => (drawing instanceof RobotModelDrawing ? [drawing] : []));
   }
 
   /** The simulated world, if one is shown, with the display's ID. */
   get world(): { id: string; drawing: WorldDrawing } | null {
-    for (const [id, drawing] of this.enabled()) if (drawing instanceof WorldDrawing) return { id, drawing };
+    for (const [id, drawing] of this.enabledDrawings()) if (drawing instanceof WorldDrawing) return { id, drawing };
     return null;
   }
 
   private worlds(): WorldDrawing[] {
-    return [...this.enabled()].flatMap(([, drawing]) => (drawing instanceof WorldDrawing ? [drawing] : []));
+    return [...this.enabledDrawings()].flatMap(([, drawing]) => (drawing instanceof WorldDrawing ? [drawing] : []));
   }
 
   private boundsOfRobots(): Span | null {
@@ -351,12 +351,12 @@ export class Stage {
   /** Draws the displays that show the scene in their own panels. */
   private drawElsewhere(): void {
     const { renderer, scene } = this.viewport;
-    const view: DrawnScene = { renderer, scene, background: this.backgroundColor, drawOnly: (accepts, draw) => this.withOnly(accepts, draw) };
+    const view: DrawnScene = { renderer, scene, background: this.backgroundColor, drawOnly: (accepts, draw) => this.drawOnly(accepts, draw) };
     for (const { display, drawing } of this.drawings.values()) if (display.isEnabled) drawing.afterFrame?.(view);
   }
 
-  private withOnly(accepts: (display: DisplayState) => boolean, draw: () => void): void {
-    const decorations = [this.overlays, this.backdrop.root, this.robotLight.root].filter((each) => each.visible);
+  private drawOnly(accepts: (display: DisplayState) => boolean, draw: () => void): void {
+    const decorations = [this.overlays, this.backdrop.root, this.robotLight.root].filter((object) => object.visible);
     for (const decoration of decorations) decoration.visible = false;
     for (const { display, drawing } of this.drawings.values()) {
       drawing.root.visible = display.isEnabled && accepts(display);
@@ -366,15 +366,15 @@ export class Stage {
     for (const decoration of decorations) decoration.visible = true;
   }
 
-  private selectionChanged(): void {
+  private onSelectionChanged(): void {
     const keys = new Map<string, Set<string>>();
     for (const { display, key } of this.session.selection.items) {
-      let mine = keys.get(display);
-      if (!mine) keys.set(display, (mine = new Set()));
-      mine.add(key);
+      let displayKeys = keys.get(display);
+      if (!displayKeys) keys.set(display, (displayKeys = new Set()));
+      displayKeys.add(key);
     }
-    const none: ReadonlySet<string> = new Set();
-    for (const [id, { drawing }] of this.drawings) drawing.highlight?.(keys.get(id) ?? none);
+    const noKeys: ReadonlySet<string> = new Set();
+    for (const [id, { drawing }] of this.drawings) drawing.highlight?.(keys.get(id) ?? noKeys);
     this.loop.invalidate();
   }
 
@@ -388,13 +388,13 @@ export class Stage {
   }
 
   private objectsOf(display: string, key: string): readonly Object3D[] {
-    const drawn = this.drawings.get(display);
-    return (drawn?.display.isEnabled && drawn.drawing.objectsOf?.(key)) || [];
+    const drawing = this.drawings.get(display);
+    return (drawing?.display.isEnabled && drawing.drawing.objectsOf?.(key)) || [];
   }
 
   /** Returns the bounding box of a display's objects, in the fixed frame, m. */
   boundsOf(display: string): Box3 {
-    const drawn = this.drawings.get(display);
-    return drawn ? new Box3().expandByObject(drawn.drawing.root) : new Box3();
+    const drawing = this.drawings.get(display);
+    return drawing ? new Box3().expandByObject(drawing.drawing.root) : new Box3();
   }
 }

@@ -19,7 +19,7 @@ export class VideoRecorder {
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly redraw: () => void,
-    private readonly finished: (video: Blob) => void,
+    private readonly onFinished: (video: Blob) => void,
   ) {}
 
   static get isPossible(): boolean {
@@ -37,14 +37,14 @@ export class VideoRecorder {
 
   start(): void {
     if (this.recorder) return;
-    const type = TYPES.find((each) => MediaRecorder.isTypeSupported(each)) ?? "";
+    const type = TYPES.find((candidate) => MediaRecorder.isTypeSupported(candidate)) ?? "";
     const stream = this.canvas.captureStream(FRAME_RATE);
     const recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: BITS_PER_SECOND });
     const parts: Blob[] = [];
     recorder.ondataavailable = ({ data }) => parts.push(data);
     recorder.onstop = () => {
       for (const track of stream.getTracks()) track.stop();
-      this.finished(new Blob(parts, { type: recorder.mimeType }));
+      this.onFinished(new Blob(parts, { type: recorder.mimeType }));
     };
     recorder.start(1000);
     this.recorder = recorder;
@@ -65,6 +65,6 @@ export class VideoRecorder {
 }
 
 /** Returns minutes and seconds. */
-export function timeText(seconds: number): string {
+export function formatTime(seconds: number): string {
   return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
 }

@@ -58,7 +58,7 @@ export class Viewport {
   isSlow = false;
   private readonly headlight = new DirectionalLight(0xffffff, (1 - AMBIENT) * Math.PI);
 
-  constructor(readonly container: HTMLElement, resized: () => void) {
+  constructor(readonly container: HTMLElement, onResized: () => void) {
     this.renderer = makeRenderer();
     // Reading the result of compilation blocks until shaders are compiled, and only developers can act on it.
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV;
@@ -72,7 +72,7 @@ export class Viewport {
     container.prepend(this.canvas);
     new ResizeObserver(() => {
       this.resize();
-      resized();
+      onResized();
     }).observe(container);
     this.resize();
   }
@@ -100,13 +100,13 @@ export class Viewport {
   /**
    * Lights the scene: by the camera's light (null), or by lights in the scene, which leave the camera a faint light.
    */
-  light(own: OwnLight | null): void {
+  applyLight(ownLight: OwnLight | null): void {
     const { renderer } = this;
-    this.headlight.intensity = (own ? FAINT_LIGHT : 1 - AMBIENT) * Math.PI;
-    this.ambient.intensity = own ? 0 : AMBIENT * Math.PI;
-    renderer.shadowMap.enabled = own?.hasShadows ?? false;
-    renderer.setClearColor(new Color(own?.background ?? this.ownBackground));
-    this.surroundings.set(own ?? NOTHING, this.activeCamera === this.orthographic);
+    this.headlight.intensity = (ownLight ? FAINT_LIGHT : 1 - AMBIENT) * Math.PI;
+    this.ambient.intensity = ownLight ? 0 : AMBIENT * Math.PI;
+    renderer.shadowMap.enabled = ownLight?.hasShadows ?? false;
+    renderer.setClearColor(new Color(ownLight?.background ?? this.ownBackground));
+    this.surroundings.set(ownLight ?? NOTHING, this.activeCamera === this.orthographic);
   }
 
   /** The current camera: views differ in their projection. */
@@ -116,15 +116,15 @@ export class Viewport {
 
   /** Moves the camera to the pose of the view. */
   aim(view: ViewState): void {
-    const seen = view.camera;
-    this.activeCamera = seen.scale === null ? this.perspective : this.orthographic;
-    this.project(seen, number(view.values, "Near Clip Distance", 0.01));
+    const viewCamera = view.camera;
+    this.activeCamera = viewCamera.scale === null ? this.perspective : this.orthographic;
+    this.project(viewCamera, number(view.values, "Near Clip Distance", 0.01));
     this.applyShift();
     this.activeCamera.matrix
-      .makeBasis(new Vector3(...seen.right), new Vector3(...seen.up), new Vector3(...seen.back))
-      .setPosition(...seen.position);
+      .makeBasis(new Vector3(...viewCamera.right), new Vector3(...viewCamera.up), new Vector3(...viewCamera.back))
+      .setPosition(...viewCamera.position);
     this.activeCamera.updateMatrixWorld(true);
-    this.headlight.position.set(...seen.back);
+    this.headlight.position.set(...viewCamera.back);
   }
 
   /** The share of the screen's pixels drawn along each side; the size of the image on the page does not change. */
@@ -140,20 +140,20 @@ export class Viewport {
   }
 
   /** The camera of the next frame, and the height of the frame in its own pixels. */
-  get drawn(): { camera: PerspectiveCamera | OrthographicCamera; height: number } {
+  get drawnView(): { camera: PerspectiveCamera | OrthographicCamera; height: number } {
     return { camera: this.activeCamera, height: this.canvas.height };
   }
 
   /** Draws the scene; with antialiasing if `fine`. */
-  render(fine: boolean): void {
+  render(isFine: boolean): void {
     const draw = (): void => this.renderer.render(this.scene, this.camera);
-    if (fine) this.smoothing.render(this.renderer, draw);
+    if (isFine) this.smoothing.render(this.renderer, draw);
     else draw();
     this.canvas.style.visibility = "";
   }
 
   /** Returns the scene as PNG, enlarged by `scale` relative to the canvas, as far as the GPU permits. */
-  screenshot(scale: number): Promise<Blob | null> {
+  takeScreenshot(scale: number): Promise<Blob | null> {
     const { renderer, canvas } = this;
     const { width, height } = this.size;
     const largest = Math.min(renderer.capabilities.maxTextureSize, LARGEST_SCREENSHOT) / Math.max(width, height);
@@ -161,22 +161,22 @@ export class Viewport {
     renderer.setSize(width, height, false);
     this.render(true);
     // The frame is available only until the browser regains control.
-    const screenshot = new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
+    const takeScreenshot = new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
     this.resize();
-    return screenshot;
+    return takeScreenshot;
   }
 
-  private project(seen: Camera, near: number): void {
+  private project(viewCamera: Camera, nearDistance: number): void {
     const { perspective, orthographic } = this;
     const { width, height } = this.size;
-    if (seen.scale !== null) {
-      const [x, y] = [width / seen.scale / 2, height / seen.scale / 2];
-      Object.assign(orthographic, { left: -x, right: x, bottom: -y, top: y, near, far: FAR_CLIP });
+    if (viewCamera.scale !== null) {
+      const [x, y] = [width / viewCamera.scale / 2, height / viewCamera.scale / 2];
+      Object.assign(orthographic, { left: -x, right: x, bottom: -y, top: y, near: nearDistance, far: FAR_CLIP });
       orthographic.updateProjectionMatrix();
       return;
     }
-    const distance = seen.focal ? distanceBetween(seen.position, seen.focal) : 0;
-    const clip = { near: Math.max(near, distance / MAX_DEPTH_RATIO), far: Math.max(FAR_CLIP, distance * 10) };
+    const distance = viewCamera.focal ? distanceBetween(viewCamera.position, viewCamera.focal) : 0;
+    const clip = { near: Math.max(nearDistance, distance / MAX_DEPTH_RATIO), far: Math.max(FAR_CLIP, distance * 10) };
     Object.assign(perspective, { aspect: width / height, ...clip });
     perspective.updateProjectionMatrix();
   }

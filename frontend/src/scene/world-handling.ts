@@ -41,7 +41,7 @@ interface ModelGrab {
  * force, and a right click opens its menu.
  */
 export class WorldHandling {
-  private grabbed: ModelGrab | null = null;
+  private currentGrab: ModelGrab | null = null;
   /** The line from the pulled point to the mouse. */
   private readonly line = new ThinLines();
 
@@ -57,10 +57,10 @@ export class WorldHandling {
   }
 
   /** Handles an event; returns false if it is left to the active tool. */
-  pointer(event: ToolEvent): boolean {
-    if (this.grabbed) {
-      if (event.type === "move" && event.left) this.move(this.grabbed, event);
-      else if (event.type === "up" && !event.left) this.release(this.grabbed);
+  onPointer(event: ToolEvent): boolean {
+    if (this.currentGrab) {
+      if (event.type === "move" && event.left) this.move(this.currentGrab, event);
+      else if (event.type === "up" && !event.left) this.release(this.currentGrab);
       return true;
     }
     const { simulation, modeling, tools } = this.session;
@@ -71,29 +71,29 @@ export class WorldHandling {
   }
 
   private grab(event: ToolEvent): boolean {
-    const found = this.find(event);
+    const picked = this.find(event);
     const camera = this.stage.viewport.camera;
-    if (!found?.matrix) return false;
-    const { drawing, link, at, matrix } = found;
+    if (!picked?.matrix) return false;
+    const { drawing, link, point: at, matrix } = picked;
     const normal = event.shift ? camera.getWorldDirection(new Vector3()) : new Vector3(0, 0, 1);
     const plane = new Plane().setFromNormalAndCoplanarPoint(normal, at);
     const point = at.clone().applyMatrix4(matrix.clone().invert());
-    this.grabbed = { drawing, link, point, start: at.clone(), plane, isPull: event.shift, lastMs: -Infinity, offset: new Vector3(), target: at.clone(), timer: 0 };
-    if (event.shift) this.grabbed.timer = window.setInterval(() => this.repeatPull(), PERIOD_MS);
+    this.currentGrab = { drawing, link, point, start: at.clone(), plane, isPull: event.shift, lastMs: -Infinity, offset: new Vector3(), target: at.clone(), timer: 0 };
+    if (event.shift) this.currentGrab.timer = window.setInterval(() => this.repeatPull(), PERIOD_MS);
     this.stage.viewport.canvas.style.cursor = "grabbing";
     if (!event.shift) this.session.simulation.drag(modelOf(link), [0, 0, 0], true);
     return true;
   }
 
   private move(hold: ModelGrab, event: ToolEvent): void {
-    const to = this.stage.picker.rayAt(event.x, event.y).ray.intersectPlane(hold.plane, new Vector3());
-    if (!to) return;
+    const target = this.stage.picker.rayAt(event.x, event.y).ray.intersectPlane(hold.plane, new Vector3());
+    if (!target) return;
     if (hold.isPull) {
-      hold.target.copy(to);
+      hold.target.copy(target);
       return;
     }
-    to.z = hold.start.z; // the height stays exactly, which the intersection does not
-    hold.offset = to.sub(hold.start);
+    target.z = hold.start.z; // the height stays exactly, which the intersection does not
+    hold.offset = target.sub(hold.start);
     const now = performance.now();
     if (now - hold.lastMs < PERIOD_MS) return;
     hold.lastMs = now;
@@ -102,14 +102,14 @@ export class WorldHandling {
 
   /** Pulls the grabbed point towards the mouse from their current positions. */
   private repeatPull(): void {
-    const { grabbed } = this;
-    const matrix = grabbed?.drawing.poseOf(grabbed.link);
-    if (!grabbed || !matrix) return;
-    const from = grabbed.point.clone().applyMatrix4(matrix);
-    grabbed.offset = grabbed.target.clone().sub(from);
-    this.line.setSegments(new Float32Array([...from.toArray(), ...grabbed.target.toArray()]));
+    const { currentGrab: grab } = this;
+    const matrix = grab?.drawing.poseOf(grab.link);
+    if (!grab || !matrix) return;
+    const start = grab.point.clone().applyMatrix4(matrix);
+    grab.offset = grab.target.clone().sub(start);
+    this.line.setSegments(new Float32Array([...start.toArray(), ...grab.target.toArray()]));
     this.stage.loop.invalidate();
-    this.send(grabbed);
+    this.send(grab);
   }
 
   private release(hold: ModelGrab): void {
@@ -117,7 +117,7 @@ export class WorldHandling {
     clearInterval(hold.timer);
     this.line.setSegments(new Float32Array(0));
     this.stage.loop.invalidate();
-    this.grabbed = null;
+    this.currentGrab = null;
     this.stage.viewport.canvas.style.cursor = "default";
   }
 
@@ -129,16 +129,16 @@ export class WorldHandling {
   }
 
   private openMenu(event: ToolEvent): void {
-    const found = this.find(event);
+    const picked = this.find(event);
     const { simulation, view, frames, sceneMenu } = this.session;
     const texts = strings.simulation;
-    const at = found?.at ?? this.stage.picker.groundAt(event.x, event.y);
-    const place = at instanceof Vector3 ? at.toArray() : at;
-    if (!place) return;
-    const choices = [{ label: texts.spawnHere, run: () => simulation.spawnRequested.emit(found ? found.drawing.pointToWorld(place) : place) }];
-    if (found) {
-      const model = modelOf(found.link);
-      const frame = found.link.split("::").at(-1) ?? "";
+    const point = picked?.point ?? this.stage.picker.groundAt(event.x, event.y);
+    const coordinates = point instanceof Vector3 ? point.toArray() : point;
+    if (!coordinates) return;
+    const choices = [{ label: texts.spawnHere, run: () => simulation.spawnRequested.emit(picked ? picked.drawing.pointToWorld(coordinates) : coordinates) }];
+    if (picked) {
+      const model = modelOf(picked.link);
+      const frame = picked.link.split("::").at(-1) ?? "";
       if (frames.has(frames.rowOf(frame))) choices.push({ label: texts.follow(frame), run: () => view.set("Target Frame", frame) });
       choices.push({ label: texts.remove(model), run: () => simulation.remove(model) });
     }
@@ -146,10 +146,10 @@ export class WorldHandling {
   }
 
   /** Returns the link of a world under the pointer. */
-  private find(event: ToolEvent): { drawing: WorldDrawing; link: string; at: Vector3; matrix: Matrix4 | null } | null {
-    const found = this.stage.picker.objectAt(event.x, event.y);
-    if (!(found?.drawing instanceof WorldDrawing)) return null;
-    const { key, point } = found.hit;
-    return { drawing: found.drawing, link: key, at: point.clone(), matrix: found.drawing.poseOf(key) };
+  private find(event: ToolEvent): { drawing: WorldDrawing; link: string; point: Vector3; matrix: Matrix4 | null } | null {
+    const picked = this.stage.picker.objectAt(event.x, event.y);
+    if (!(picked?.drawing instanceof WorldDrawing)) return null;
+    const { key, point } = picked.hit;
+    return { drawing: picked.drawing, link: key, point: point.clone(), matrix: picked.drawing.poseOf(key) };
   }
 }

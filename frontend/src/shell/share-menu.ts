@@ -1,7 +1,7 @@
 import type { Tokens } from "../connection/tokens";
 import { button, h } from "../dom";
 import type { Stage } from "../scene/stage";
-import { timeText, VideoRecorder } from "../scene/video";
+import { formatTime, VideoRecorder } from "../scene/video";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 import { copyText } from "../widgets/copy-text";
@@ -47,7 +47,7 @@ export class ShareMenu {
         run: () => void this.saveImage(scale),
       })),
       {
-        label: recording ? texts.stopVideo(timeText(video?.seconds ?? 0)) : texts.startVideo,
+        label: recording ? texts.stopVideo(formatTime(video?.seconds ?? 0)) : texts.startVideo,
         icon: "record",
         disabled: video === null,
         separate: true,
@@ -64,7 +64,7 @@ export class ShareMenu {
   }
 
   private async saveImage(scale: number): Promise<void> {
-    const image = await this.stage?.screenshot(scale);
+    const image = await this.stage?.takeScreenshot(scale);
     if (image) saveBlob(this.fileName("png"), image);
   }
 
@@ -87,8 +87,8 @@ export class ShareMenu {
   private showTime(): void {
     const recording = this.video?.isRecording ?? false;
     this.element.hidden = !recording;
-    const label = strings.sharing.stopVideo(timeText(this.video?.seconds ?? 0));
-    this.stop.textContent = `● ${timeText(this.video?.seconds ?? 0)}`;
+    const label = strings.sharing.stopVideo(formatTime(this.video?.seconds ?? 0));
+    this.stop.textContent = `● ${formatTime(this.video?.seconds ?? 0)}`;
     this.stop.title = label;
     this.stop.setAttribute("aria-label", label);
   }

@@ -3,7 +3,7 @@ import { h } from "../../dom";
 /** The scene below the cards. */
 export interface SceneBelow {
   /** Returns the width covered at the right, pixels. */
-  covered: () => number;
+  coveredWidth: () => number;
   /** The rightmost pixel column that robots cover, from the left edge. */
   readonly robotsReach: number;
   /** Moves the focal point to the center of the uncovered part. */
@@ -19,7 +19,7 @@ export class CardColumn {
 
   connectScene(below: SceneBelow): void {
     this.below = below;
-    below.covered = () => this.covered;
+    below.coveredWidth = () => this.coveredWidth;
   }
 
   /** Whether a card that opens would cover a robot. */
@@ -30,7 +30,7 @@ export class CardColumn {
   /** Updates the scene after the user opened or closed a card. */
   readonly changed = (): void => this.below?.makeRoom();
 
-  private get covered(): number {
+  private get coveredWidth(): number {
     const cards = [...this.element.querySelectorAll<HTMLElement>(".inspect-card, .selection-card:not(.folded)")];
     const isOpen = cards.some((card) => card.offsetHeight > 0);
     return isOpen ? (this.element.parentElement?.clientWidth ?? 0) - this.left : 0;

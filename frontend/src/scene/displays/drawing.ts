@@ -71,7 +71,7 @@ export interface Drawing {
   /** Called with the keys of the selected objects, for drawings that mark the selection themselves. */
   highlight?(keys: ReadonlySet<string>): void;
   /** Handles the Interact tool's events over an object that `pick` returned; returns true to keep the camera still. */
-  pointer?(event: ScenePointer): boolean;
+  onPointer?(event: ScenePointer): boolean;
   /** Called when the Interact tool is activated or deactivated, or an object is held with it. */
   onInteractionChanged?(interaction: Interaction): void;
   /** Returns what is drawn, for tests: counts, bounds, colors. */

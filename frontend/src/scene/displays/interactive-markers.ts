@@ -94,7 +94,7 @@ export class InteractiveMarkersDrawing implements Drawing {
     this.context.invalidate();
   }
 
-  pointer(event: ScenePointer): boolean {
+  onPointer(event: ScenePointer): boolean {
     const found = event.hit && this.find(event.hit.key);
     if (!event.hit || !found) return false;
     const { marker, control } = found;

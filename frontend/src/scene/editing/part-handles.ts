@@ -52,7 +52,7 @@ export class PartHandles {
   }
 
   /** Handles an event; returns false if it is left to others. */
-  pointer(event: ToolEvent): boolean {
+  onPointer(event: ToolEvent): boolean {
     const { gizmo } = this;
     if (gizmo.isHeld) {
       if (event.type === "move") this.drag(event);
@@ -86,24 +86,24 @@ export class PartHandles {
     const { editing, gizmo, currentDraft } = this;
     const { chosenPart } = editing;
     if (editing.draft) this.session.view.keepCamera();
-    const shown = editing.isActive && chosenPart && currentDraft && editing.unavailableReason === "" ? chosenPart : null;
-    this.preview(shown);
+    const shownPart = editing.isActive && chosenPart && currentDraft && editing.unavailableReason === "" ? chosenPart : null;
+    this.preview(shownPart);
     if (gizmo.isHeld) return;
-    const base = shown && this.base(shown);
-    if (!shown) this.framedPart = "";
-    if (!shown || !currentDraft || !base) {
+    const base = shownPart && this.basePoseOf(shownPart);
+    if (!shownPart) this.framedPart = "";
+    if (!shownPart || !currentDraft || !base) {
       gizmo.show(null, "translate");
       this.axis.visible = false;
       return;
     }
-    const pose = base.clone().multiply(partMatrix(shown, currentDraft));
-    if (editing.frame === "parent" && shown.part !== "axis") {
-      const turn = new Quaternion().setFromRotationMatrix(base);
-      pose.compose(new Vector3().setFromMatrixPosition(pose), turn, ONE);
+    const pose = base.clone().multiply(partMatrix(shownPart, currentDraft));
+    if (editing.frame === "parent" && shownPart.part !== "axis") {
+      const rotation = new Quaternion().setFromRotationMatrix(base);
+      pose.compose(new Vector3().setFromMatrixPosition(pose), rotation, ONE);
     }
     gizmo.show(pose, editing.mode, "local");
-    this.showAxis(shown, currentDraft, base);
-    this.frameHandles(shown);
+    this.showAxis(shownPart, currentDraft, base);
+    this.frameHandles(shownPart);
   }
 
   /**
@@ -111,9 +111,9 @@ export class PartHandles {
    * in view.
    */
   private frameHandles({ part, name, index }: EditablePart): void {
-    const chosen = [part, name, index].join(" ");
-    if (chosen === this.framedPart) return;
-    this.framedPart = chosen;
+    const chosenKey = [part, name, index].join(" ");
+    if (chosenKey === this.framedPart) return;
+    this.framedPart = chosenKey;
     const { x, y } = this.gizmo.positionOf(new Vector3());
     const { width, height } = this.stage.viewport.size;
     const margin = Math.min(MIN_MARGIN, width / 4, height / 4);
@@ -126,12 +126,12 @@ export class PartHandles {
   }
 
   /** Returns the frame of a part's values, in the fixed frame; null without a transform. */
-  private base(part: EditablePart): Matrix4 | null {
+  private basePoseOf(part: EditablePart): Matrix4 | null {
     const { current } = this.editing;
     const robot = this.session.robots.get(current?.display ?? "");
-    const joint = robot?.joints.find((each) => each.name === part.name);
+    const joint = robot?.joints.find((candidate) => candidate.name === part.name);
     const link = part.part === "joint" ? joint?.parent : part.part === "axis" ? joint?.child : part.name;
-    const frame = robot?.links.find((each) => each.name === link)?.frame;
+    const frame = robot?.links.find((candidate) => candidate.name === link)?.frame;
     const pose = new Matrix4();
     return frame !== undefined && framePose(this.session.frames, this.session.frames.rowOf(frame), pose) ? pose : null;
   }
@@ -139,32 +139,32 @@ export class PartHandles {
   private drag(event: ToolEvent): void {
     const { start, gizmo, editing } = this;
     const { chosenPart } = editing;
-    const base = chosenPart && this.base(chosenPart);
+    const base = chosenPart && this.basePoseOf(chosenPart);
     const steps = editing.snapping.currentSteps(event.ctrl);
     gizmo.drag(event, { length: 0, angle: steps.angle });
     if (!start || !base) return;
     // Express the motion of the handles in the frame of the part's values.
-    const by = gizmo.pose.multiply(start.handles.clone().invert());
-    const inBase = base.clone().invert().multiply(by).multiply(base);
-    editing.move(chosenPart.part === "axis" ? turnedAxis(start.draft, inBase) : this.draftAfter(chosenPart, start.draft, inBase, steps));
+    const motion = gizmo.pose.multiply(start.handles.clone().invert());
+    const inBase = base.clone().invert().multiply(motion).multiply(base);
+    editing.move(chosenPart.part === "axis" ? turnAxis(start.draft, inBase) : this.moveDraft(chosenPart, start.draft, inBase, steps));
   }
 
-  private draftAfter(part: EditablePart, from: Draft, by: Matrix4, steps: { length: number; angle: number }): Draft {
-    const before = partMatrix(part, from);
-    const after = by.clone().multiply(before);
-    const [at, turn] = [new Vector3(), new Quaternion()];
-    after.decompose(at, turn, new Vector3());
+  private moveDraft(part: EditablePart, draft: Draft, motion: Matrix4, steps: { length: number; angle: number }): Draft {
+    const oldPose = partMatrix(part, draft);
+    const newPose = motion.clone().multiply(oldPose);
+    const [position, rotation] = [new Vector3(), new Quaternion()];
+    newPose.decompose(position, rotation, new Vector3());
     if (this.editing.mode === "rotate") {
-      const rpy = nearestRpy([turn.x, turn.y, turn.z, turn.w], from.rpy);
-      return { xyz: from.xyz, rpy: roundChanged(rpy, from.rpy, steps.angle > 0 ? 0 : ANGLE_ROUNDING) };
+      const rpy = nearestRpy([rotation.x, rotation.y, rotation.z, rotation.w], draft.rpy);
+      return { xyz: draft.xyz, rpy: roundChanged(rpy, draft.rpy, steps.angle > 0 ? 0 : ANGLE_ROUNDING) };
     }
     const step = steps.length || LENGTH_ROUNDING;
-    if (this.editing.frame === "parent") return { xyz: roundChanged(at.toArray(), from.xyz, step), rpy: from.rpy };
+    if (this.editing.frame === "parent") return { xyz: roundChanged(position.toArray(), draft.xyz, step), rpy: draft.rpy };
     // Along the part's own axes, round the distance to the grid rather than the position.
-    const own = new Quaternion().setFromRotationMatrix(before);
-    const way = at.sub(new Vector3().fromArray(from.xyz)).applyQuaternion(own.clone().invert());
-    const offset = new Vector3(...way.toArray().map((part) => snap(part, step))).applyQuaternion(own);
-    return { xyz: roundChanged(offset.toArray().map((part, i) => part + (from.xyz[i] ?? 0)), from.xyz, 0), rpy: from.rpy };
+    const oldRotation = new Quaternion().setFromRotationMatrix(oldPose);
+    const movement = position.sub(new Vector3().fromArray(draft.xyz)).applyQuaternion(oldRotation.clone().invert());
+    const offset = new Vector3(...movement.toArray().map((part) => snap(part, step))).applyQuaternion(oldRotation);
+    return { xyz: roundChanged(offset.toArray().map((part, i) => part + (draft.xyz[i] ?? 0)), draft.xyz, 0), rpy: draft.rpy };
   }
 
   private release(event: ToolEvent): void {
@@ -177,78 +177,78 @@ export class PartHandles {
   private preview(part: EditablePart | null): void {
     const { editing, stage, currentDraft } = this;
     const display = part && (editing.draft || part.part === "collision") ? (editing.current?.display ?? null) : null;
-    if (this.previewed !== null && this.previewed !== display) this.robot(this.previewed)?.displace(null);
+    if (this.previewed !== null && this.previewed !== display) this.robotOf(this.previewed)?.displace(null);
     this.previewed = display;
     if (display === null || !part || !currentDraft || part.part === "axis" || part.part === "inertial") {
-      if (display !== null) this.robot(display)?.displace(null);
+      if (display !== null) this.robotOf(display)?.displace(null);
       stage.loop.invalidate();
       return;
     }
-    const [before, after] = [partMatrix(part, part), partMatrix(part, currentDraft)];
+    const [oldPose, newPose] = [partMatrix(part, part), partMatrix(part, currentDraft)];
     if (part.part === "joint") {
       const links = this.linksBelow(display, part.name);
-      this.robot(display)?.displace({
+      this.robotOf(display)?.displace({
         link: (name, matrix) => {
-          const base = links.has(name) ? this.base(part) : null;
-          if (base) matrix.premultiply(base.clone().multiply(after).multiply(before.clone().invert()).multiply(base.invert()));
+          const base = links.has(name) ? this.basePoseOf(part) : null;
+          if (base) matrix.premultiply(base.clone().multiply(newPose).multiply(oldPose.clone().invert()).multiply(base.invert()));
         },
       });
     } else {
-      const twins = editing.parts.filter((each) => each.part === part.part && each.index < part.index && isPlacedAs(each, part));
-      this.robot(display)?.displace({ shape: { link: part.name, kind: part.part, among: twins.length, from: before, to: after } });
+      const twins = editing.parts.filter((candidate) => candidate.part === part.part && candidate.index < part.index && isPlacedAs(candidate, part));
+      this.robotOf(display)?.displace({ shape: { link: part.name, kind: part.part, among: twins.length, from: oldPose, to: newPose } });
     }
     stage.loop.invalidate();
   }
 
-  private robot(display: string): RobotModelDrawing | null {
-    const drawing = this.stage.picker.drawing(display);
+  private robotOf(display: string): RobotModelDrawing | null {
+    const drawing = this.stage.picker.drawingOf(display);
     return drawing instanceof RobotModelDrawing ? drawing : null;
   }
 
   /** Returns the links that a joint carries. */
   private linksBelow(display: string, joint: string): ReadonlySet<string> {
     const joints = this.session.robots.get(display)?.joints ?? [];
-    const found = new Set<string>();
-    const pending = joints.filter(({ name }) => name === joint).map(({ child }) => child);
-    for (let link = pending.pop(); link !== undefined; link = pending.pop()) {
-      if (found.has(link)) continue;
-      found.add(link);
-      for (const { parent, child } of joints) if (parent === link) pending.push(child);
+    const links = new Set<string>();
+    const stack = joints.filter(({ name }) => name === joint).map(({ child }) => child);
+    for (let link = stack.pop(); link !== undefined; link = stack.pop()) {
+      if (links.has(link)) continue;
+      links.add(link);
+      for (const { parent, child } of joints) if (parent === link) stack.push(child);
     }
-    return found;
+    return links;
   }
 
   private showAxis(part: EditablePart, { xyz }: Draft, base: Matrix4): void {
     this.axis.visible = part.part === "axis";
     if (!this.axis.visible) return;
-    const reach = this.stage.boundsOf(this.editing.current?.display ?? "").getSize(new Vector3()).length() / 4 || 0.2;
-    const along = new Vector3().fromArray(xyz).normalize().multiplyScalar(reach);
-    this.axis.geometry.setFromPoints([along.clone().negate().applyMatrix4(base), along.applyMatrix4(base)]);
+    const axisLength = this.stage.boundsOf(this.editing.current?.display ?? "").getSize(new Vector3()).length() / 4 || 0.2;
+    const axisEnd = new Vector3().fromArray(xyz).normalize().multiplyScalar(axisLength);
+    this.axis.geometry.setFromPoints([axisEnd.clone().negate().applyMatrix4(base), axisEnd.applyMatrix4(base)]);
   }
 }
 
 /** Returns the pose of a part; for an axis, the rotation from x to its direction. */
 function partMatrix(part: EditablePart, { xyz, rpy }: Draft): Matrix4 {
   if (part.part === "axis") {
-    const turn = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0), new Vector3().fromArray(xyz).normalize());
-    return new Matrix4().makeRotationFromQuaternion(turn);
+    const rotation = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0), new Vector3().fromArray(xyz).normalize());
+    return new Matrix4().makeRotationFromQuaternion(rotation);
   }
   return poseMatrix([...xyz, ...quaternionOf(rpy)], new Matrix4());
 }
 
-function turnedAxis({ xyz }: Draft, by: Matrix4): Draft {
-  const [x, y, z] = new Vector3().fromArray(xyz).normalize().transformDirection(by).toArray();
+function turnAxis({ xyz }: Draft, motion: Matrix4): Draft {
+  const [x, y, z] = new Vector3().fromArray(xyz).normalize().transformDirection(motion).toArray();
   return { xyz: [x, y, z].map((part) => snap(part, AXIS_ROUNDING)), rpy: [] };
 }
 
 /** Rounds numbers to a grid, and keeps those that hardly changed. */
-function roundChanged(numbers: readonly number[], before: readonly number[], step: number): number[] {
+function roundChanged(numbers: readonly number[], oldNumbers: readonly number[], step: number): number[] {
   return numbers.map((number, i) => {
-    const old = before[i] ?? 0;
-    return Math.abs(number - old) < 1e-6 ? old : Number(snap(number, step).toPrecision(12));
+    const oldNumber = oldNumbers[i] ?? 0;
+    return Math.abs(number - oldNumber) < 1e-6 ? oldNumber : Number(snap(number, step).toPrecision(12));
   });
 }
 
-function isPlacedAs(one: EditablePart, other: EditablePart): boolean {
-  return [...one.xyz, ...one.rpy].every((value, i) => value === [...other.xyz, ...other.rpy][i]);
+function isPlacedAs(first: EditablePart, second: EditablePart): boolean {
+  return [...first.xyz, ...first.rpy].every((value, i) => value === [...second.xyz, ...second.rpy][i]);
 }

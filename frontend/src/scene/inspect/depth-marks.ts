@@ -30,24 +30,24 @@ export class DepthMarks {
   }
 
   /** Draws the frames down to the level `deepest`, or all for null; null for `robots` draws nothing. */
-  update(robots: readonly InspectedRobot[] | null, deepest: number | null): void {
+  update(robots: readonly InspectedRobot[] | null, maxDepth: number | null): void {
     const frames = (robots ?? []).flatMap((robot) =>
       [...robot.model.links.keys()].flatMap((link) => {
         const depth = robot.model.depthOf(link);
-        return deepest === null || depth <= deepest ? [{ robot, link, depth }] : [];
+        return maxDepth === null || depth <= maxDepth ? [{ robot, link, depth }] : [];
       }),
     );
-    const named = frames.length <= MAX_NAMES;
-    const text = (depth: number, link: string): string => (named ? `${depth} ${link}` : String(depth));
+    const showsNames = frames.length <= MAX_NAMES;
+    const textOf = (depth: number, link: string): string => (showsNames ? `${depth} ${link}` : String(depth));
     this.axes.begin(frames.length);
     this.balls.begin(frames.length);
-    this.labels.begin(frames.reduce((sum, { depth, link }) => sum + text(depth, link).length, 0));
+    this.labels.begin(frames.reduce((sum, { depth, link }) => sum + textOf(depth, link).length, 0));
     this.levels = [];
     const pose = new Matrix4();
     for (const { robot, link, depth } of frames) {
       if (!linkPose(robot, link, pose)) continue;
       const size = robot.unit * Math.max(MIN_SIZE, SIZE_RATIO ** depth);
-      this.labels.add(text(depth, link), new Vector3().setFromMatrixPosition(pose), LABEL_SIZE * size, 0, 1);
+      this.labels.add(textOf(depth, link), new Vector3().setFromMatrixPosition(pose), LABEL_SIZE * size, 0, 1);
       this.axes.add(pose.clone().scale(cube(AXES_SIZE * size)));
       this.balls.add(pose.scale(cube(BALL_SIZE * size)), 0, 1, levelColor(depth));
       this.levels[depth] = (this.levels[depth] ?? 0) + 1;

@@ -47,7 +47,7 @@ export class InspectLayer {
       joints: new JointMarks(this.root),
       frames: new DepthMarks(this.root),
     };
-    const robots = isActive ? this.robots() : [];
+    const robots = isActive ? this.listRobots() : [];
     this.marks.masses.update(robots, current);
     this.marks.joints.update(robots, current.joints);
     this.marks.frames.update(current.frames ? robots : null, maxDepth);
@@ -58,7 +58,7 @@ export class InspectLayer {
     return { ...masses?.inspect(), ...joints?.inspect(), frames: frames?.inspect() ?? [] };
   }
 
-  private robots(): InspectedRobot[] {
+  private listRobots(): InspectedRobot[] {
     const { displays, description, frames, joints } = this.session;
     return displays.displays.flatMap(({ id, isEnabled }) => {
       const model = isEnabled ? description.modelOf(id) : undefined;
@@ -71,8 +71,8 @@ export class InspectLayer {
   /** Returns the mark size. Marks keep their size while the robot moves; a new description may change it. */
   private unitOf(display: string, revision: number): number {
     const { scale } = this.session.inspect;
-    const known = this.units.get(display);
-    if (known?.revision === revision) return known.unit * scale;
+    const knownUnit = this.units.get(display);
+    if (knownUnit?.revision === revision) return knownUnit.unit * scale;
     const box = this.boundsOf(display);
     const unit = box.isEmpty() ? DEFAULT_UNIT : UNIT * box.getSize(new Vector3()).length();
     if (!box.isEmpty()) this.units.set(display, { revision, unit });
@@ -83,10 +83,10 @@ export class InspectLayer {
     const { inspect, description } = this.session;
     const { centers, boxes, ellipsoids } = inspect.current;
     this.showsMasses = centers || boxes || ellipsoids;
-    const before = this.releases;
+    const previousReleases = this.releases;
     this.releases = [];
     if (inspect.isActive) this.releases.push(description.hold());
     if (this.showsMasses) this.releases.push(description.holdFindings());
-    for (const release of before) release();
+    for (const release of previousReleases) release();
   }
 }

@@ -23,8 +23,8 @@ export function linkPose({ model, frames }: InspectedRobot, link: string, matrix
 
 const origin = new Matrix4();
 const child = new Matrix4();
-const at = new Vector3();
-const turn = new Quaternion();
+const jointPosition = new Vector3();
+const jointRotation = new Quaternion();
 const scale = new Vector3();
 
 /**
@@ -32,19 +32,19 @@ const scale = new Vector3();
  *
  * @returns the position of the joint according to the transforms, rad or m; null if they do not contain it.
  */
-export function jointPose(robot: InspectedRobot, joint: JointDetails, matrix: Matrix4): number | null {
+export function computeJointPose(robot: InspectedRobot, joint: JointDetails, matrix: Matrix4): number | null {
   if (!linkPose(robot, joint.parent, matrix)) return null;
   const [x = 0, y = 0, z = 0] = joint.xyz;
   const [qx = 0, qy = 0, qz = 0, qw = 1] = joint.quaternion;
-  matrix.multiply(origin.compose(at.set(x, y, z), turn.set(qx, qy, qz, qw), ONE));
+  matrix.multiply(origin.compose(jointPosition.set(x, y, z), jointRotation.set(qx, qy, qz, qw), ONE));
   if (!linkPose(robot, joint.child, child)) return null;
-  child.premultiply(origin.copy(matrix).invert()).decompose(at, turn, scale);
+  child.premultiply(origin.copy(matrix).invert()).decompose(jointPosition, jointRotation, scale);
   const [ax = 0, ay = 0, az = 0] = joint.axis;
-  if (joint.kind === "prismatic") return at.x * ax + at.y * ay + at.z * az;
-  const angle = 2 * Math.atan2(turn.x * ax + turn.y * ay + turn.z * az, turn.w);
-  const known = robot.positions[joint.name];
+  if (joint.kind === "prismatic") return jointPosition.x * ax + jointPosition.y * ay + jointPosition.z * az;
+  const angle = 2 * Math.atan2(jointRotation.x * ax + jointRotation.y * ay + jointRotation.z * az, jointRotation.w);
+  const knownPosition = robot.positions[joint.name];
   // Transforms give angles only modulo whole turns.
-  if (known !== undefined) return known;
+  if (knownPosition !== undefined) return knownPosition;
   return Math.atan2(Math.sin(angle), Math.cos(angle));
 }
 

@@ -1,6 +1,6 @@
 import { Matrix4, Vector3, type Object3D } from "three";
 import type { JointDetails } from "../../protocol";
-import { jointPose, type InspectedRobot } from "./inspected-robot";
+import { computeJointPose, type InspectedRobot } from "./inspected-robot";
 import { VertexStream } from "./vertex-stream";
 
 const AXIS = 0xff9d3c;
@@ -21,18 +21,18 @@ const TOLERANCE = 1e-4;
 export class JointMarks {
   private readonly fans: VertexStream;
   private readonly lines: VertexStream;
-  private shown: { name: string; position: number | null; lower: number | null; upper: number | null }[] = [];
+  private shownJoints: { name: string; position: number | null; lower: number | null; upper: number | null }[] = [];
 
   constructor(parent: Object3D) {
     this.fans = new VertexStream(parent, "triangles");
     this.lines = new VertexStream(parent, "lines");
   }
 
-  update(robots: readonly InspectedRobot[], wanted: boolean): void {
+  update(robots: readonly InspectedRobot[], isWanted: boolean): void {
     this.fans.begin();
     this.lines.begin();
-    this.shown = [];
-    for (const robot of wanted ? robots : []) {
+    this.shownJoints = [];
+    for (const robot of isWanted ? robots : []) {
       for (const joint of robot.model.joints.values()) this.mark(robot, joint);
     }
     this.fans.end();
@@ -40,52 +40,52 @@ export class JointMarks {
   }
 
   inspect(): object {
-    return { joints: this.shown.map((each) => ({ ...each })), vertices: this.lines.size };
+    return { joints: this.shownJoints.map((joint) => ({ ...joint })), vertices: this.lines.size };
   }
 
   private mark(robot: InspectedRobot, joint: JointDetails): void {
-    const moves = joint.kind === "revolute" || joint.kind === "continuous" || joint.kind === "prismatic";
+    const isMovable = joint.kind === "revolute" || joint.kind === "continuous" || joint.kind === "prismatic";
     const axis = new Vector3().fromArray(joint.axis);
-    if (!moves || axis.lengthSq() === 0) return;
+    if (!isMovable || axis.lengthSq() === 0) return;
     const pose = new Matrix4();
-    const position = jointPose(robot, joint, pose);
+    const position = computeJointPose(robot, joint, pose);
     if (position === null && !robot.frames.has(robot.frames.rowOf(joint.parent))) return;
     const { name, lower, upper } = joint;
-    this.shown.push({ name, position, lower, upper });
-    const reach = AXIS_REACH * robot.unit;
+    this.shownJoints.push({ name, position, lower, upper });
+    const axisLength = AXIS_REACH * robot.unit;
     if (joint.kind === "prismatic") this.addRail(pose, axis, joint, position, robot.unit);
     else {
       this.lines.setLook(AXIS);
-      this.lines.add(...[-reach, reach].map((along) => axis.clone().multiplyScalar(along).applyMatrix4(pose)));
+      this.lines.add(...[-axisLength, axisLength].map((distance) => axis.clone().multiplyScalar(distance).applyMatrix4(pose)));
       this.addArc(pose, axis, joint, position, robot.unit);
     }
   }
 
   /** Draws an arc between the limits, or a circle without limits, and a pointer at the position. */
   private addArc(pose: Matrix4, axis: Vector3, joint: JointDetails, position: number | null, unit: number): void {
-    const [u, v] = perpendiculars(axis);
+    const [u, v] = perpendicularsOf(axis);
     const point = (angle: number, radius: number): Vector3 =>
       new Vector3()
         .addScaledVector(u, radius * Math.cos(angle))
         .addScaledVector(v, radius * Math.sin(angle))
         .applyMatrix4(pose);
     const radius = RADIUS * unit;
-    const limited = joint.lower !== null && joint.upper !== null;
-    const from = limited ? (joint.lower ?? 0) : 0;
+    const isLimited = joint.lower !== null && joint.upper !== null;
+    const startAngle = isLimited ? (joint.lower ?? 0) : 0;
     // Limits may span several turns; draw one full circle at most.
-    const to = limited ? Math.min(joint.upper ?? 0, from + 2 * Math.PI) : 2 * Math.PI;
+    const endAngle = isLimited ? Math.min(joint.upper ?? 0, startAngle + 2 * Math.PI) : 2 * Math.PI;
     const center = new Vector3().setFromMatrixPosition(pose);
-    const steps = Math.max(1, Math.ceil((to - from) / ARC_STEP));
+    const steps = Math.max(1, Math.ceil((endAngle - startAngle) / ARC_STEP));
     this.lines.setLook(RANGE);
     this.fans.setLook(RANGE, FAN_ALPHA);
-    let last = point(from, radius);
+    let previousPoint = point(startAngle, radius);
     for (let i = 1; i <= steps; i++) {
-      const next = point(from + ((to - from) * i) / steps, radius);
-      this.lines.add(last, next);
-      if (limited) this.fans.add(center, last, next);
-      last = next;
+      const next = point(startAngle + ((endAngle - startAngle) * i) / steps, radius);
+      this.lines.add(previousPoint, next);
+      if (isLimited) this.fans.add(center, previousPoint, next);
+      previousPoint = next;
     }
-    if (limited) for (const end of [joint.lower ?? 0, joint.upper ?? 0]) this.lines.add(center, point(end, radius * 1.12));
+    if (isLimited) for (const end of [joint.lower ?? 0, joint.upper ?? 0]) this.lines.add(center, point(end, radius * 1.12));
     if (position === null) return;
     this.lines.setLook(isBeyond(joint, position) ? BEYOND_LIMIT : CURRENT);
     this.lines.add(center, point(position, radius * 1.2));
@@ -95,9 +95,9 @@ export class JointMarks {
 
   /** Draws a rail between the limits along the axis with stops at its ends, and a bead at the position. */
   private addRail(pose: Matrix4, axis: Vector3, joint: JointDetails, position: number | null, unit: number): void {
-    const [u, v] = perpendiculars(axis);
-    const point = (along: number, x = 0, y = 0): Vector3 =>
-      axis.clone().multiplyScalar(along).addScaledVector(u, x).addScaledVector(v, y).applyMatrix4(pose);
+    const [u, v] = perpendicularsOf(axis);
+    const point = (distance: number, x = 0, y = 0): Vector3 =>
+      axis.clone().multiplyScalar(distance).addScaledVector(u, x).addScaledVector(v, y).applyMatrix4(pose);
     const { lower, upper } = joint;
     const end = STOP_SIZE * unit;
     if (lower !== null && upper !== null) {
@@ -107,16 +107,16 @@ export class JointMarks {
         this.lines.add(point(stop, -end), point(stop, end), point(stop, 0, -end), point(stop, 0, end));
       }
     }
-    const reach = AXIS_REACH * unit;
+    const axisLength = AXIS_REACH * unit;
     this.lines.setLook(AXIS, 0.8);
-    this.lines.add(point((lower ?? 0) - reach / 2), point(lower ?? 0), point(upper ?? 0), point((upper ?? 0) + reach / 2));
+    this.lines.add(point((lower ?? 0) - axisLength / 2), point(lower ?? 0), point(upper ?? 0), point((upper ?? 0) + axisLength / 2));
     if (position === null) return;
     this.fans.setLook(isBeyond(joint, position) ? BEYOND_LIMIT : CURRENT, 0.95);
     const ring = [point(position, end), point(position, 0, end), point(position, -end), point(position, 0, -end)];
-    const [ahead, behind] = [point(position + end), point(position - end)];
+    const [frontPoint, backPoint] = [point(position + end), point(position - end)];
     ring.forEach((corner, i) => {
       const next = ring[(i + 1) % 4] ?? corner;
-      this.fans.add(ahead, corner, next, behind, corner, next);
+      this.fans.add(frontPoint, corner, next, backPoint, corner, next);
     });
   }
 }
@@ -125,7 +125,7 @@ export class JointMarks {
  * Returns two directions perpendicular to an axis; angle 0 is along the first, which is the projection of the
  * coordinate axis farthest from the joint's axis.
  */
-function perpendiculars(axis: Vector3): [Vector3, Vector3] {
+function perpendicularsOf(axis: Vector3): [Vector3, Vector3] {
   const parts = axis.toArray().map(Math.abs);
   const helper = new Vector3().setComponent(parts.indexOf(Math.min(...parts)), 1);
   const u = helper.addScaledVector(axis, -helper.dot(axis)).normalize();

@@ -49,15 +49,15 @@ export class MassMarks {
 
   update(robots: readonly InspectedRobot[], choice: MassMarkChoice): void {
     const links = robots.reduce((sum, { model }) => sum + model.links.size, 0);
-    const some = choice.centers || choice.boxes || choice.ellipsoids;
+    const hasChoice = choice.centers || choice.boxes || choice.ellipsoids;
     const names = robots.flatMap((robot) => [...robot.implausible]).reduce((sum, name) => sum + name.length + 2, 0);
     this.boxes.begin(choice.boxes ? links : 0);
     this.ellipsoids.begin(choice.ellipsoids ? links : 0);
     this.balls.begin(choice.centers ? links + robots.length : 0);
-    this.labels.begin(some ? names : 0);
+    this.labels.begin(hasChoice ? names : 0);
     this.edges.begin();
     this.totals = [];
-    if (some) for (const robot of robots) this.mark(robot, choice);
+    if (hasChoice) for (const robot of robots) this.mark(robot, choice);
     for (const batch of [this.boxes, this.ellipsoids, this.balls, this.edges, this.labels]) batch.end();
   }
 
@@ -76,19 +76,19 @@ export class MassMarks {
     let mass = 0;
     for (const link of robot.model.links.values()) {
       if (!linkPose(robot, link.name, pose)) continue;
-      const implausible = robot.implausible.has(link.name);
+      const isImplausible = robot.implausible.has(link.name);
       const { inertia } = link;
       center.fromArray(inertia?.center ?? [0, 0, 0]).applyMatrix4(pose);
-      if (implausible) this.labels.add(`! ${link.name}`, center, LABEL_SIZE * robot.unit, 0, 1);
+      if (isImplausible) this.labels.add(`! ${link.name}`, center, LABEL_SIZE * robot.unit, 0, 1);
       if (!inertia) continue;
-      this.markLink(inertia, pose, center, implausible ? IMPLAUSIBLE : PLAUSIBLE, robot.unit, choice);
+      this.markLink(inertia, pose, center, isImplausible ? IMPLAUSIBLE : PLAUSIBLE, robot.unit, choice);
       sum.addScaledVector(center, inertia.mass);
       mass += inertia.mass;
     }
     if (!(mass > 0) || !choice.centers) return;
     const total = sum.divideScalar(mass);
     this.totals.push(total);
-    this.balls.add(sized(pose.identity().setPosition(total), TOTAL_BALL_SIZE * robot.unit), 0, 1, TOTAL);
+    this.balls.add(scaledPose(pose.identity().setPosition(total), TOTAL_BALL_SIZE * robot.unit), 0, 1, TOTAL);
   }
 
   private markLink(
@@ -101,14 +101,14 @@ export class MassMarks {
   ): void {
     if (choice.centers && inertia.mass !== 0) {
       const look = color === PLAUSIBLE ? 0xffffff : color;
-      this.balls.add(sized(pose.clone().setPosition(center), BALL_SIZE * unit), 0, 1, look);
+      this.balls.add(scaledPose(pose.clone().setPosition(center), BALL_SIZE * unit), 0, 1, look);
     }
     const [a = 0, b = 0, c = 0] = inertia.box;
     if (inertia.box.length === 0) return;
     const [qx = 0, qy = 0, qz = 0, qw = 1] = inertia.quaternion;
     const size = new Vector3(a, b, c);
     const axes = new Matrix4().compose(center, new Quaternion(), ONE);
-    axes.multiply(new Matrix4().extractRotation(pose)).multiply(turned(qx, qy, qz, qw));
+    axes.multiply(new Matrix4().extractRotation(pose)).multiply(rotationMatrix(qx, qy, qz, qw));
     if (choice.boxes) {
       const box = axes.clone().scale(size);
       this.boxes.add(box, 0, BOX_ALPHA, color);
@@ -122,26 +122,26 @@ export class MassMarks {
 
 const ONE = new Vector3(1, 1, 1);
 
-function sized(pose: Matrix4, size: number): Matrix4 {
+function scaledPose(pose: Matrix4, size: number): Matrix4 {
   return pose.scale(new Vector3(size, size, size));
 }
 
-function turned(x: number, y: number, z: number, w: number): Matrix4 {
+function rotationMatrix(x: number, y: number, z: number, w: number): Matrix4 {
   return new Matrix4().makeRotationFromQuaternion(new Quaternion(x, y, z, w));
 }
 
 /** Paints a ball with the symbol of a center of mass: quarters in black and white. */
 function paintQuarters(ball: BufferGeometry): BufferGeometry {
-  const flat = ball.toNonIndexed();
-  const [positions, colors] = [flat.getAttribute("position"), flat.getAttribute("color")];
+  const triangles = ball.toNonIndexed();
+  const [positions, colors] = [triangles.getAttribute("position"), triangles.getAttribute("color")];
   for (let i = 0; i < positions.count; i += 3) {
-    const middle = [0, 1, 2].map((axis) => [0, 1, 2].reduce((sum, j) => sum + positions.getComponent(i + j, axis), 0));
-    const dark = middle.filter((part) => part < 0).length % 2 === 1;
-    const gray = dark ? 0.12 : 1;
+    const center = [0, 1, 2].map((axis) => [0, 1, 2].reduce((sum, j) => sum + positions.getComponent(i + j, axis), 0));
+    const isDark = center.filter((part) => part < 0).length % 2 === 1;
+    const gray = isDark ? 0.12 : 1;
     for (let j = 0; j < 3; j++) colors.setXYZ(i + j, gray, gray, gray);
   }
   const index = Uint32Array.from({ length: positions.count }, (_, i) => i);
-  return flat.setIndex(new BufferAttribute(index, 1));
+  return triangles.setIndex(new BufferAttribute(index, 1));
 }
 
 function cubeEdges(): Vector3[] {
@@ -153,9 +153,9 @@ function cubeEdges(): Vector3[] {
       [0.5, -0.5],
       [0.5, 0.5],
     ] as const) {
-      for (const along of [-0.5, 0.5]) {
+      for (const coordinate of [-0.5, 0.5]) {
         const corner = new Vector3();
-        corner.setComponent(axis, along).setComponent((axis + 1) % 3, u).setComponent((axis + 2) % 3, v);
+        corner.setComponent(axis, coordinate).setComponent((axis + 1) % 3, u).setComponent((axis + 2) % 3, v);
         corners.push(corner);
       }
     }

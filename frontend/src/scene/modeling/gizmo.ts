@@ -56,15 +56,15 @@ export class Gizmo {
     const { camera, size } = this.stage.viewport;
     const angle = camera instanceof PerspectiveCamera ? (camera.fov * Math.PI) / 180 : 1;
     const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld);
-    const reach = REACH * this.frame.position.distanceTo(eye) * this.controls.size * Math.tan(angle / 2);
-    const tip = axis.clone().multiplyScalar(reach).applyQuaternion(this.frame.quaternion).add(this.frame.position).project(camera);
+    const radius = REACH * this.frame.position.distanceTo(eye) * this.controls.size * Math.tan(angle / 2);
+    const tip = axis.clone().multiplyScalar(radius).applyQuaternion(this.frame.quaternion).add(this.frame.position).project(camera);
     return { x: ((tip.x + 1) / 2) * size.width, y: ((1 - tip.y) / 2) * size.height };
   }
 
   /** Whether the pointer is over a handle. */
   hover(event: ToolEvent): boolean {
     this.controls.camera = this.stage.viewport.camera;
-    this.controls.pointerHover(this.pointer(event, -1));
+    this.controls.pointerHover(this.toPointerEvent(event, -1));
     return this.controls.axis !== null;
   }
 
@@ -72,7 +72,7 @@ export class Gizmo {
   grab(event: ToolEvent): boolean {
     if (!this.hover(event)) return false;
     this.helper.updateMatrixWorld(true); // the plane of this handle
-    this.controls.pointerDown(this.pointer(event, 0));
+    this.controls.pointerDown(this.toPointerEvent(event, 0));
     return this.isHeld;
   }
 
@@ -80,11 +80,11 @@ export class Gizmo {
   drag(event: ToolEvent, steps: { length: number; angle: number }): void {
     this.controls.translationSnap = steps.length || null;
     this.controls.rotationSnap = steps.angle || null;
-    this.controls.pointerMove(this.pointer(event, -1));
+    this.controls.pointerMove(this.toPointerEvent(event, -1));
   }
 
   release(event: ToolEvent): void {
-    this.controls.pointerUp(this.pointer(event, 0));
+    this.controls.pointerUp(this.toPointerEvent(event, 0));
   }
 
   /** Ends the drag and restores the frame. */
@@ -94,7 +94,7 @@ export class Gizmo {
   }
 
   /** Returns the event for three.js's controls: the position from -1 to 1, and a button as browsers number them. */
-  private pointer({ x, y }: ToolEvent, button: number): PointerEvent {
+  private toPointerEvent({ x, y }: ToolEvent, button: number): PointerEvent {
     const { width, height } = this.stage.viewport.size;
     return { x: (x / width) * 2 - 1, y: 1 - (y / height) * 2, button } as PointerEvent;
   }

@@ -18,7 +18,7 @@ export class LightMarks {
   }
 
   /** Updates the marks of all lights; `moved` has the displacements of lights being dragged. */
-  update(world: Matrix4, moved: ReadonlyMap<string, Matrix4>): void {
+  update(world: Matrix4, displacements: ReadonlyMap<string, Matrix4>): void {
     const { isActive, entities, selectedNames } = this.modeling;
     const lights = isActive ? entities.filter(({ kind }) => kind === "light") : [];
     for (const [name, mark] of this.marks) {
@@ -30,7 +30,7 @@ export class LightMarks {
     for (const { name, pose } of lights) {
       const mark = this.marks.get(name) ?? this.make(name);
       mark.matrix.copy(entityMatrix(pose));
-      mark.matrix.premultiply(moved.get(name) ?? new Matrix4());
+      mark.matrix.premultiply(displacements.get(name) ?? new Matrix4());
       mark.material.color.setHex(selectedNames.includes(name) ? SELECTED : COLOR);
     }
     this.root.matrix.copy(world);

@@ -12,7 +12,7 @@ import { worldFrame } from "./world-frame";
 const MIN_CHANGE = 1e-8;
 
 /** Shows entities displaced in the world, by the matrices that premultiply their poses. */
-export type Displace = (moved: ReadonlyMap<string, Matrix4>) => void;
+export type Displace = (displacements: ReadonlyMap<string, Matrix4>) => void;
 
 /** The gizmo on the selection: dragging shows the change immediately, and releasing applies it to the world. */
 export class Manipulation {
@@ -32,12 +32,12 @@ export class Manipulation {
     const { modeling } = this;
     if (this.gizmo.isHeld) return;
     const entity = modeling.isActive && modeling.placing === null ? modeling.selectedEntities.at(-1) : undefined;
-    const shown = entity && (modeling.gizmo !== "scale" || modeling.canScale);
-    this.gizmo.show(shown ? worldFrame(this.stage).multiply(entityMatrix(entity.pose)) : null, modeling.gizmo);
+    const isShown = entity && (modeling.gizmo !== "scale" || modeling.canScale);
+    this.gizmo.show(isShown ? worldFrame(this.stage).multiply(entityMatrix(entity.pose)) : null, modeling.gizmo);
   }
 
   /** Handles an event; returns false if it is left to others. */
-  pointer(event: ToolEvent): boolean {
+  onPointer(event: ToolEvent): boolean {
     const { gizmo } = this;
     if (gizmo.isHeld) {
       if (event.type === "move") this.move(event);
@@ -83,11 +83,11 @@ export class Manipulation {
 
   /** Moves all selected entities together with the one that has the gizmo. */
   private moveAll(entities: readonly WorldEntity[], main: WorldEntity): void {
-    const to = worldFrame(this.stage).invert().multiply(this.gizmo.pose);
-    const by = to.multiply(entityMatrix(main.pose).invert());
-    const moved = entities.map(({ name, pose }) => ({ name, pose: entityPose(by.clone().multiply(entityMatrix(pose))) }));
-    this.changes = same(moved.flatMap(({ pose }) => pose), entities.flatMap(({ pose }) => pose)) ? [] : moved;
-    this.displace(new Map(entities.map(({ name }) => [name, by])));
+    const newPose = worldFrame(this.stage).invert().multiply(this.gizmo.pose);
+    const motion = newPose.multiply(entityMatrix(main.pose).invert());
+    const changes = entities.map(({ name, pose }) => ({ name, pose: entityPose(motion.clone().multiply(entityMatrix(pose))) }));
+    this.changes = areSame(changes.flatMap(({ pose }) => pose), entities.flatMap(({ pose }) => pose)) ? [] : changes;
+    this.displace(new Map(entities.map(({ name }) => [name, motion])));
   }
 
   private scale(entity: WorldEntity, step: number): void {
@@ -96,11 +96,11 @@ export class Manipulation {
     const next = scaledSize(shape, size, this.gizmo.scale, step);
     const change = resizeChange(entity, next);
     const stretched = new Matrix4().scale(new Vector3(...stretchFactors(shape, size, next)));
-    this.changes = same(size, next) ? [] : [change];
+    this.changes = areSame(size, next) ? [] : [change];
     this.displace(new Map([[name, entityMatrix(change.pose ?? pose).multiply(stretched).multiply(entityMatrix(pose).invert())]]));
   }
 }
 
-function same(some: readonly number[], others: readonly number[]): boolean {
-  return some.every((value, i) => Math.abs(value - (others[i] ?? NaN)) < MIN_CHANGE);
+function areSame(first: readonly number[], second: readonly number[]): boolean {
+  return first.every((value, i) => Math.abs(value - (second[i] ?? NaN)) < MIN_CHANGE);
 }

@@ -50,14 +50,14 @@ export class Modeler {
   }
 
   /** Handles an event. Returns the event to pass to the active tool; null to pass none. */
-  pointer(event: ToolEvent): ToolEvent | null {
+  onPointer(event: ToolEvent): ToolEvent | null {
     const { modeling, tools } = this.session;
     if (!modeling.isActive || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return event;
-    if (this.manipulation.pointer(event)) return null;
+    if (this.manipulation.onPointer(event)) return null;
     const { placing } = modeling;
-    if (this.placer.pointer(event)) return null;
+    if (this.placer.onPointer(event)) return null;
     if (event.type !== "up" || !event.click) return event;
-    if (event.button === "left" && !placing) this.click(event);
+    if (event.button === "left" && !placing) this.onClick(event);
     else if (event.button === "right") this.openMenu(event);
     return { ...event, click: false };
   }
@@ -70,7 +70,7 @@ export class Modeler {
     else modeling.select([]);
   }
 
-  private click({ x, y, shift, ctrl }: ToolEvent): void {
+  private onClick({ x, y, shift, ctrl }: ToolEvent): void {
     const { modeling } = this.session;
     const name = this.entityAt(x, y);
     if (name !== null) modeling.select([name], shift || ctrl ? "toggle" : "replace");
@@ -82,11 +82,11 @@ export class Modeler {
     const { picker } = this.stage;
     const ray = picker.rayAt(x, y);
     const light = this.lights.pick(ray);
-    const found = picker.alongRay(ray);
-    if (light && (!found || light.distance < found.hit.distance)) return light.name;
-    if (!(found?.drawing instanceof WorldDrawing)) return null;
-    const name = modelOf(found.hit.key);
-    return this.session.modeling.find(name) && !found.drawing.isFlat(found.hit.key) ? name : null;
+    const picked = picker.pickAlongRay(ray);
+    if (light && (!picked || light.distance < picked.hit.distance)) return light.name;
+    if (!(picked?.drawing instanceof WorldDrawing)) return null;
+    const name = modelOf(picked.hit.key);
+    return this.session.modeling.find(name) && !picked.drawing.isFlat(picked.hit.key) ? name : null;
   }
 
   private showHint(): void {

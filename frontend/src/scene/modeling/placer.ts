@@ -27,7 +27,7 @@ export class Placer {
   }
 
   /** Handles an event; returns false if it is left to others. */
-  pointer(event: ToolEvent): boolean {
+  onPointer(event: ToolEvent): boolean {
     const { placing } = this.modeling;
     if (!placing || event.type === "wheel") return false;
     if (event.type === "leave") this.show(placing, null);
@@ -41,13 +41,13 @@ export class Placer {
 
   /** Places an entity at the pointer. */
   drop(placing: Placing, x: number, y: number): void {
-    const position = this.ground(x, y, false);
+    const position = this.placeOnGround(x, y, false);
     if (position && placing.kind !== "wall") this.add(placing, placementAt(placing.kind, position), false);
     else if (position) this.add(placing, placeWall([position[0] - 0.5, position[1]], [position[0] + 0.5, position[1]]), false);
   }
 
   private handleWall(placing: Placing, event: ToolEvent): boolean {
-    const position = this.ground(event.x, event.y, event.ctrl);
+    const position = this.placeOnGround(event.x, event.y, event.ctrl);
     if (event.type === "down" && event.button === "left" && !this.hasFirstEnd) this.start = position;
     const placement = this.start && position && placeWall(this.start, position);
     if (event.type === "move" && !event.middle && !event.right) {
@@ -64,20 +64,20 @@ export class Placer {
     return true;
   }
 
-  private add(placing: Placing, placement: Placement | null, stays: boolean): void {
+  private add(placing: Placing, placement: Placement | null, staysActive: boolean): void {
     if (!placement) return;
     this.modeling.add(placing, placement);
-    if (!stays) this.modeling.startPlacing(null);
+    if (!staysActive) this.modeling.startPlacing(null);
   }
 
   private placementAt({ kind }: Placing, event: ToolEvent): Placement | null {
-    const position = this.ground(event.x, event.y, event.ctrl);
+    const position = this.placeOnGround(event.x, event.y, event.ctrl);
     return position && placementAt(kind, position);
   }
 
-  private ground(x: number, y: number, inverted: boolean): Place | null {
+  private placeOnGround(x: number, y: number, isInverted: boolean): Place | null {
     const position = groundAt(this.stage, x, y);
-    const step = this.modeling.snapping.currentSteps(inverted).length;
+    const step = this.modeling.snapping.currentSteps(isInverted).length;
     return position && [snap(position[0], step), snap(position[1], step)];
   }
 

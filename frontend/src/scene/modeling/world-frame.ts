@@ -12,6 +12,6 @@ export function worldFrame(stage: Stage): Matrix4 {
 /** Returns the point of the world's ground, z = 0, at a position on the canvas, pixels. */
 export function groundAt(stage: Stage, x: number, y: number): Place | null {
   const ray = stage.picker.rayAt(x, y).ray.clone().applyMatrix4(worldFrame(stage).invert());
-  const at = ray.intersectPlane(GROUND, new Vector3());
-  return at && [at.x, at.y];
+  const point = ray.intersectPlane(GROUND, new Vector3());
+  return point && [point.x, point.y];
 }

@@ -11,7 +11,7 @@ export class FocusCameraTool implements SceneTool {
     this.context.setCursor("default");
   }
 
-  pointer(event: ToolEvent): void {
+  onPointer(event: ToolEvent): void {
     if (event.type === "wheel" || event.type === "leave") return;
     const { stage, session } = this.context;
     const point = stage.picker.pointAt(event.x, event.y);
@@ -19,8 +19,8 @@ export class FocusCameraTool implements SceneTool {
     this.context.setHint(point ? strings.tools.hints.focus(pointText(point)) : strings.tools.hints.focusNowhere);
     if (event.type !== "up" || event.button !== "left") return;
     const { origin, direction } = stage.picker.rayAt(event.x, event.y).ray;
-    const ahead = origin.clone().add(direction);
-    session.view.lookAt(point ?? [ahead.x, ahead.y, ahead.z]);
+    const target = origin.clone().add(direction);
+    session.view.lookAt(point ?? [target.x, target.y, target.z]);
     this.context.finish();
   }
 }

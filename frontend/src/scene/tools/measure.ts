@@ -28,7 +28,7 @@ export class MeasureTool implements SceneTool {
     this.line.root.material.depthTest = false;
     this.line.root.renderOrder = 1;
     this.stopListening = context.session.view.changed.on(() => this.placeLabel());
-    this.settingsChanged();
+    this.onSettingsChanged();
   }
 
   activate(): void {
@@ -37,7 +37,7 @@ export class MeasureTool implements SceneTool {
     this.showLength();
   }
 
-  pointer(event: ToolEvent): void {
+  onPointer(event: ToolEvent): void {
     if (event.type === "wheel" || event.type === "leave") return;
     const point = this.context.stage.picker.pointAt(event.x, event.y);
     this.context.setCursor(point ? "crosshair" : "default");
@@ -47,7 +47,7 @@ export class MeasureTool implements SceneTool {
     this.showLength();
   }
 
-  settingsChanged(): void {
+  onSettingsChanged(): void {
     this.line.setStyle(this.context.state?.rows.text(DARK_YELLOW, "Line color") ?? DARK_YELLOW, 1);
     this.context.stage.loop.invalidate();
   }
@@ -109,17 +109,17 @@ export class MeasureTool implements SceneTool {
     const { labelText: text, start, end } = this;
     this.label.begin(text.length);
     if (text !== "" && start && end) {
-      const middle = new Vector3(...start).add(new Vector3(...end)).multiplyScalar(0.5);
+      const center = new Vector3(...start).add(new Vector3(...end)).multiplyScalar(0.5);
       const { session, stage } = this.context;
-      const pixel = computePixelSize(session.view.camera, middle.toArray(), stage.viewport.size);
-      this.label.add(text, middle, LABEL_PX * pixel, 0, 1);
+      const pixel = computePixelSize(session.view.camera, center.toArray(), stage.viewport.size);
+      this.label.add(text, center, LABEL_PX * pixel, 0, 1);
     }
     this.label.end();
   }
 
   private showLength(): void {
     const { length } = this;
-    const measured = length !== null && length > 0 ? `[Length: ${Number(length.toPrecision(6))}m] ` : "";
-    this.context.setHint(measured + strings.tools.hints.measure);
+    const lengthText = length !== null && length > 0 ? `[Length: ${Number(length.toPrecision(6))}m] ` : "";
+    this.context.setHint(lengthText + strings.tools.hints.measure);
   }
 }

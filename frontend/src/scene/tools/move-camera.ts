@@ -20,26 +20,26 @@ export class MoveCameraTool implements SceneTool {
   }
 
   deactivate(): void {
-    this.context.stage.focalShapeVisible = false;
+    this.context.stage.isFocalShapeVisible = false;
   }
 
-  pointer(event: ToolEvent): void {
+  onPointer(event: ToolEvent): void {
     const { stage, session } = this.context;
     const { view } = session;
-    const held = event.left || event.middle || event.right;
+    const isHeld = event.left || event.middle || event.right;
     this.showHint(event.shift);
-    this.context.setCursor(held ? CURSORS[view.controller.motionOf(event)] : "default");
+    this.context.setCursor(isHeld ? CURSORS[view.controller.motionOf(event)] : "default");
     switch (event.type) {
       case "move":
-        if (!held) return;
-        stage.focalShapeVisible = true;
+        if (!isHeld) return;
+        stage.isFocalShapeVisible = true;
         view.drag({ ...event, ...stage.viewport.size, x: event.x - event.dx, y: event.y - event.dy });
         return;
       case "wheel":
         view.wheel(event.wheel, event.shift);
         return;
       case "up":
-        if (!held) stage.focalShapeVisible = false;
+        if (!isHeld) stage.isFocalShapeVisible = false;
         if (event.click && event.button === "left" && !event.shift) stage.picker.selectAt(event.x, event.y);
         return;
       case "down":
@@ -47,8 +47,8 @@ export class MoveCameraTool implements SceneTool {
     }
   }
 
-  private showHint(shift: boolean): void {
+  private showHint(isShiftDown: boolean): void {
     const { mouse } = strings.views;
-    this.context.setHint(mouse[this.context.session.view.controller.hintFor(shift)]);
+    this.context.setHint(mouse[this.context.session.view.controller.hintFor(isShiftDown)]);
   }
 }

@@ -31,14 +31,14 @@ export class PoseTool implements SceneTool {
     this.hide();
   }
 
-  pointer(event: ToolEvent): void {
+  onPointer(event: ToolEvent): void {
     const { picker } = this.context.stage;
     if (event.type === "down" && event.button === "left") {
       this.position = picker.groundAt(event.x, event.y);
       this.yaw = 0;
     } else if (event.type === "move" && event.left && this.position) {
-      const towards = picker.groundAt(event.x, event.y);
-      if (towards) this.aim(this.position, towards);
+      const target = picker.groundAt(event.x, event.y);
+      if (target) this.aim(this.position, target);
     } else if (event.type === "up" && event.button === "left" && this.position) {
       this.send(this.position);
     }
@@ -53,10 +53,10 @@ export class PoseTool implements SceneTool {
     this.arrow.dispose();
   }
 
-  private aim(from: Vector, towards: Vector): void {
-    this.yaw = Math.atan2(towards[1] - from[1], towards[0] - from[0]);
+  private aim(start: Vector, target: Vector): void {
+    this.yaw = Math.atan2(target[1] - start[1], target[0] - start[0]);
     this.arrow.begin(1);
-    this.arrow.add(new Matrix4().makeRotationZ(this.yaw).setPosition(...from), ARROW, { color: GREEN });
+    this.arrow.add(new Matrix4().makeRotationZ(this.yaw).setPosition(...start), ARROW, { color: GREEN });
     this.arrow.end();
     this.context.stage.loop.invalidate();
   }

@@ -11,7 +11,7 @@ export class PublishPointTool implements SceneTool {
     this.context.setCursor("default");
   }
 
-  pointer(event: ToolEvent): void {
+  onPointer(event: ToolEvent): void {
     if (event.type === "wheel" || event.type === "leave") return;
     const { stage, session, state } = this.context;
     const point = stage.picker.pointAt(event.x, event.y);

@@ -12,7 +12,7 @@ export class SelectTool implements SceneTool {
   readonly grabsKeys = true;
   private readonly camera: MoveCameraTool;
   private readonly band = h("div", { class: "rubber-band" });
-  private from: Vector2 | null = null;
+  private start: Vector2 | null = null;
   private isMovingCamera = false;
 
   constructor(private readonly context: ToolContext) {
@@ -29,23 +29,23 @@ export class SelectTool implements SceneTool {
     this.camera.deactivate();
   }
 
-  pointer(event: ToolEvent): void {
+  onPointer(event: ToolEvent): void {
     if (event.type === "down") this.isMovingCamera = event.alt;
     if (this.isMovingCamera || event.type === "wheel") {
-      this.camera.pointer({ ...event, click: false });
+      this.camera.onPointer({ ...event, click: false });
       this.context.setHint(strings.tools.hints.select);
       return;
     }
     const { stage } = this.context;
-    const at = new Vector2(event.x, event.y);
+    const pointer = new Vector2(event.x, event.y);
     if (event.type === "down" && event.button === "left") {
-      this.from = at;
-    } else if (event.type === "move" && this.from && event.left) {
-      this.draw(this.from, at);
-    } else if (event.type === "up" && event.button === "left" && this.from) {
+      this.start = pointer;
+    } else if (event.type === "move" && this.start && event.left) {
+      this.draw(this.start, pointer);
+    } else if (event.type === "up" && event.button === "left" && this.start) {
       const mode: SelectionMode = event.shift ? "add" : event.ctrl ? "remove" : "replace";
       if (event.click) stage.picker.selectAt(event.x, event.y, mode);
-      else stage.picker.selectBox(this.from, at, mode);
+      else stage.picker.selectBox(this.start, pointer, mode);
       this.endDrag();
     }
   }
@@ -69,7 +69,7 @@ export class SelectTool implements SceneTool {
   }
 
   private endDrag(): void {
-    this.from = null;
+    this.start = null;
     this.band.remove();
   }
 }

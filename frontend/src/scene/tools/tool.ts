@@ -50,10 +50,10 @@ export interface SceneTool {
   readonly grabsKeys?: boolean;
   activate?(): void;
   deactivate?(): void;
-  pointer(event: ToolEvent): void;
+  onPointer(event: ToolEvent): void;
   /** Handles a key; returns true if the tool uses it. */
   pressKey?(key: string): boolean;
-  settingsChanged?(): void;
+  onSettingsChanged?(): void;
   /** Returns the tool's state, for tests. */
   inspect?(): object;
   dispose?(): void;

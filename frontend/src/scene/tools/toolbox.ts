@@ -10,45 +10,45 @@ export class Toolbox {
   private readonly tools = new Map<string, { state: ToolState; tool: SceneTool }>();
   /** The tool that is active while the toolbar has none. */
   private readonly fallback: SceneTool;
-  private active: SceneTool;
+  private activeTool: SceneTool;
 
   constructor(
     private readonly stage: Stage,
     private readonly session: Session,
   ) {
     const { tools, view } = session;
-    this.fallback = this.active = new MoveCameraTool(this.context(null));
+    this.fallback = this.activeTool = new MoveCameraTool(this.createContext(null));
     this.fallback.activate?.();
     tools.currentChanged.on((state) => this.activate(state));
-    tools.valueChanged.on((state) => this.tools.get(state.id)?.tool.settingsChanged?.());
+    tools.valueChanged.on((state) => this.tools.get(state.id)?.tool.onSettingsChanged?.());
     // In another class of view the mouse works differently: update the tool's hint.
     let { cls } = view.current;
     view.changed.on(() => {
       if (cls === view.current.cls) return;
       cls = view.current.cls;
-      this.active.activate?.();
+      this.activeTool.activate?.();
     });
     this.activate(tools.current);
   }
 
   get current(): SceneTool {
-    return this.active;
+    return this.activeTool;
   }
 
   private activate(state: ToolState | null): void {
     this.disposeRemoved();
     const next = state ? this.toolOf(state) : this.fallback;
-    if (next === this.active) return;
-    this.active.deactivate?.();
-    this.active = next;
+    if (next === this.activeTool) return;
+    this.activeTool.deactivate?.();
+    this.activeTool = next;
     next.activate?.();
   }
 
   private toolOf(state: ToolState): SceneTool {
-    const known = this.tools.get(state.id);
-    if (known) return known.tool;
+    const existing = this.tools.get(state.id);
+    if (existing) return existing.tool;
     const Tool = TOOLS.get(state.cls)?.make;
-    const tool = Tool ? new Tool(this.context(state)) : this.fallback;
+    const tool = Tool ? new Tool(this.createContext(state)) : this.fallback;
     this.tools.set(state.id, { state, tool });
     return tool;
   }
@@ -58,16 +58,16 @@ export class Toolbox {
     const { tools } = this.session.tools;
     for (const [id, { state, tool }] of this.tools) {
       if (tools.includes(state)) continue;
-      if (tool === this.active) {
+      if (tool === this.activeTool) {
         tool.deactivate?.();
-        this.active = this.fallback;
+        this.activeTool = this.fallback;
       }
       tool.dispose?.();
       this.tools.delete(id);
     }
   }
 
-  private context(state: ToolState | null): ToolContext {
+  private createContext(state: ToolState | null): ToolContext {
     const { stage, session } = this;
     const { tools } = session;
     return {
