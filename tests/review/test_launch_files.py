@@ -300,7 +300,7 @@ def test_name_that_is_assigned_again_has_the_value_before_the_action(changes_of)
     text = LOOPS.replace("    ld = Launch", "    side = 'a'\n    side = side + '_arm'\n    ld = Launch")
     text = text.replace('    for side in ["left", "right"]:\n        ld', "    ld")
     found, _ = changes_of("arm.launch.py", text, "side = 'a'", "side = 'b'")
-    assert found[0] == "node 'arm/driver': namespace a + _arm -> b + _arm"
+    assert found[0] == "node 'arm/driver': namespace a_arm -> b_arm"
 
 
 def test_name_with_values_in_branches_stays_a_name(changes_of):
@@ -599,3 +599,55 @@ def test_removed_include_stops_its_nodes(changes_with_reasons):
     assert changes_with_reasons(READING.replace(line, "")) == {
         "include of '$(dirname)/part.launch.py' removed": "its nodes do not start any more"
     }
+
+
+UNUSED = """import os
+from launch import LaunchDescription
+from launch.actions import EmitEvent, RegisterEventHandler
+from launch.event_handlers import OnProcessExit
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    speed = LaunchConfiguration("speed", default="1")
+    driver = Node(package="arm", executable="driver", parameters=[{"speed": speed}])
+    hand = Node(package="arm", executable="hand", name="hand", arguments=["a" + "/b", os.path.join("c", "d") + "/e"])
+    return LaunchDescription([
+        driver,
+        hand,
+        RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[EmitEvent()])),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("        hand,\n", "", ["node 'arm/hand' removed"], True),
+        ('"a" + "/b", os.path.join("c", "d") + "/e"', '"a/b", "c/d/e"', [], False),
+        (', name="hand"', "", ["node 'arm/hand': name hand -> -"], False),
+        ("target_action=driver", "target_action=hand",
+         ["event handler OnProcessExit of arm/hand added", "event handler OnProcessExit of arm/driver removed"], False),
+        ("on_exit=[EmitEvent()]", "on_exit=[hand]",
+         ["event handler OnProcessExit of arm/driver: on_exit [EmitEvent] -> [arm/hand]"], False),
+        ('{"speed": speed}', '{"speed": 1}',
+         ["node 'arm/driver': parameter speed $(var speed 1) -> 1"], False),
+        ('speed = LaunchConfiguration("speed", default="1")', "speed = 1",
+         ["node 'arm/driver': parameter speed $(var speed 1) -> 1"], False),
+    ],
+)  # fmt: skip
+def test_only_what_is_used_is_compared(changes_of, old, new, expected, is_breaking):
+    found, found_breaking = changes_of("arm.launch.py", UNUSED, old, new)
+    assert found == expected
+    assert bool(found_breaking) is is_breaking
+
+
+def test_argument_that_is_used_without_being_declared_is_removed(changes_of):
+    text = (
+        UNUSED.replace('"speed": speed', '"rate": speed').replace("speed = L", "rate = L").replace(": speed", ": rate")
+    )
+    new = text.replace('LaunchConfiguration("speed", default="1")', "1")
+    found, found_breaking = changes_of("arm.launch.py", text, text, new)
+    assert found == ["node 'arm/driver': parameter rate $(var speed 1) -> 1", "argument 'speed' removed"]
+    assert found_breaking == found[1:]

@@ -141,6 +141,8 @@ def setting_reason(
         if is_input or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
             return None
         return _remapping_reason(source, old, new, old_outline, new_outline)
+    if setting == "name" and None in (old, new) and _is_name_of_program(entry, old or new or ""):
+        return None
     if setting in _NAMES_OF_NODES:
         return _renaming_reason(old, new, old_outline, new_outline)
     if setting == "arguments":
@@ -251,6 +253,12 @@ def _renaming_reason(
     if _resolved_name(old, old_outline) == _resolved_name(new, new_outline):
         return None
     return phrase("programs that use the names of the node, its topics or its services do not find them")
+
+
+def _is_name_of_program(entry: Entry, name: str) -> bool:
+    """Return whether a node has a name without being given one, as far as the name of its program shows."""
+    program = entry.name.rpartition("/")[2].removesuffix(".py")
+    return name.removesuffix("_node") == program.removesuffix("_node")
 
 
 def _resolved_name(text: str | None, outline: LaunchOutline) -> str:

@@ -74,7 +74,7 @@ class IncludedActions:
         shared = _SHARED.fullmatch(entry.name)
         if shared is not None:
             share = self._version.shares.get(shared["package"])
-            file = None if share is None else share / shared["path"]
+            file = None if share is None else _file_below(share, shared["path"])
         elif entry.name.startswith(_BESIDE) and "$" not in entry.name.removeprefix(_BESIDE):
             file = includer.parent / entry.name.removeprefix(_BESIDE)
         else:
@@ -108,3 +108,11 @@ class IncludedActions:
                     if match["name"] not in declared:
                         undeclared.setdefault(match["name"], entry)
         return undeclared
+
+
+def _file_below(share: Path, path: str) -> Path | None:
+    """Return a file of a package, whose build may install it in another folder than that of its source."""
+    if (share / path).is_file() or ".." in Path(path).parts:
+        return share / path
+    found = [file for file in sorted(share.rglob(Path(path).name)) if file.is_file()]
+    return found[0] if len(found) == 1 else None
