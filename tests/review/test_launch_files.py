@@ -651,3 +651,20 @@ def test_argument_that_is_used_without_being_declared_is_removed(changes_of):
     found, found_breaking = changes_of("arm.launch.py", text, text, new)
     assert found == ["node 'arm/driver': parameter rate $(var speed 1) -> 1", "argument 'speed' removed"]
     assert found_breaking == found[1:]
+
+
+def test_node_that_moves_to_another_launch_file_is_missing_where_it_was(changes_with_reasons):
+    part = PART.replace("LaunchDescription([", 'LaunchDescription([Node(package="arm", executable="hand"), ')
+    alone = READING.replace('PathJoinSubstitution([ThisLaunchFileDir(), "part.launch.py"])', '"other.launch.py"')
+    new = alone.replace('        Node(package="arm", executable="hand"),\n', "")
+    assert changes_with_reasons(new, part, old=alone) == {
+        "node 'arm/hand' moved to arm/launch/part.launch.py": "the topics and services of the node are missing"
+    }
+
+
+def test_items_of_lists_are_split_outside_of_parentheses(changes_of):
+    text = """def generate_launch_description():
+    return LaunchDescription([Node(package="a", executable="b", arguments=[f(1, 2), "c", "d", "e", "f"])])
+"""
+    found, _ = changes_of("arm.launch.py", text, "f(1, 2)", "f(1, 3)")
+    assert found == ["node 'a/b': arguments: f(1, 3) added, f(1, 2) removed"]

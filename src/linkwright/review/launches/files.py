@@ -11,7 +11,7 @@ from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import addition_reason, removal_reason, value_reason
-from linkwright.review.launches.included import IncludedActions
+from linkwright.review.launches.included import IncludedActions, file_with_moved_action
 from linkwright.review.launches.matching import MIN_SIMILARITY, matched_entries, replacements
 from linkwright.review.launches.outlines import CodePart, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
@@ -87,17 +87,21 @@ def _add_lone_entries(
     moved: dict[tuple[str, bool], list[Entry]] = {}
     for entry in come:
         file = old_included.lone_file(entry, new_included)
+        file = file or file_with_moved_action(entry, pair.versions, pair.new_path, is_removed=False)
         if file is None:
             pair.add(added_entry(entry), pair.location(entry.span), addition_reason(entry))
         else:
             moved.setdefault((file, False), []).append(entry)
     for entry in gone:
         file = new_included.lone_file(entry, old_included)
-        if file is None:
-            text, location = phrase("{entry} removed", entry=title(entry)), pair.location(entry.span, is_old=True)
-            pair.add(text, location, removal_reason(entry, old, new))
-        else:
+        if file is not None:
             moved.setdefault((file, True), []).append(entry)
+            continue
+        text, location = phrase("{entry} removed", entry=title(entry)), pair.location(entry.span, is_old=True)
+        file = file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
+        if file is not None:
+            text = phrase("{entry} moved to {file}", entry=title(entry), file=file)
+        pair.add(text, location, removal_reason(entry, old, new))
     for (file, is_old), entries in moved.items():
         titles = joined_titles(entries)
         text = phrase("{entry} moved from {file}", entry=titles, file=file)
