@@ -668,3 +668,47 @@ def test_items_of_lists_are_split_outside_of_parentheses(changes_of):
 """
     found, _ = changes_of("arm.launch.py", text, "f(1, 2)", "f(1, 3)")
     assert found == ["node 'a/b': arguments: f(1, 3) added, f(1, 2) removed"]
+
+
+def test_delay_of_a_timer_is_compared(changes_of):
+    text = """def generate_launch_description():
+    hand = Node(package="arm", executable="hand")
+    return LaunchDescription([TimerAction(period=3.0, actions=[hand])])
+"""
+    found, _ = changes_of("arm.launch.py", text, "3.0", "5.0")
+    assert found == ["node 'arm/hand': condition after 3.0 s -> after 5.0 s"]
+
+
+def test_same_notations_in_python_and_xml(repository, compare):
+    python = """def generate_launch_description():
+    share = get_package_share_directory("arm")
+    return LaunchDescription([
+        DeclareLaunchArgument("model", default_value=[share, "/arm.urdf"]),
+        Node(package="arm", executable="hand", prefix="xterm -e", parameters=[
+            LaunchConfiguration("file"),
+            {"robot_description": Command(["xacro ", LaunchConfiguration("model")])},
+        ]),
+    ])
+"""
+    xml = """<launch>
+  <arg name="model" default="$(find-pkg-share arm)/arm.urdf"/>
+  <node pkg="arm" exec="hand" launch-prefix="xterm -e">
+    <param from="$(var file)"/>
+    <param name="robot_description" value="$(command 'xacro $(var model)')"/>
+  </node>
+</launch>
+"""
+    repository.commit({"arm/launch/arm.launch.py": python})
+    repository.git("rm", "--quiet", "arm/launch/arm.launch.py")
+    repository.write({"arm/launch/arm.launch.xml": xml})
+    assert sentences(subject(compare(repository), "arm/launch/arm.launch.xml")) == [
+        "renamed from arm/launch/arm.launch.py"
+    ]
+
+
+def test_prefix_of_frames_that_is_unknown_is_not_breaking(changes_of):
+    text = """def generate_launch_description():
+    return LaunchDescription([Node(package="robot_state_publisher", executable="robot_state_publisher", parameters=[{}])])
+"""
+    found, found_breaking = changes_of("arm.launch.py", text, "{}", '{"frame_prefix": Mixin.prefix()}')
+    assert (len(found), found_breaking) == (1, [])

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.breaking import frame_reason, name_reason
+from linkwright.review.breaking import name_reason
 from linkwright.review.files.parameter_names import offers_frame
 from linkwright.review.launches.conditions import condition_holds
 from linkwright.review.launches.outlines import (
@@ -157,7 +157,9 @@ def _parameter_reason(
 ) -> Phrase | None:
     """Return why a changed parameter is breaking: other programs use the frame that it names."""
     if setting == _FRAME_PREFIX:
-        if old_outline.resolved(old or "") == new_outline.resolved(new or ""):
+        old_prefix, new_prefix = old_outline.resolved(old or ""), new_outline.resolved(new or "")
+        is_unknown = any(_CODE.search(prefix) or setting.endswith(f" {prefix}") for prefix in (old_prefix, new_prefix))
+        if old_prefix == new_prefix or is_unknown:
             return None
         return phrase("programs that look up the frames by their old names do not find them")
     if old is None or new is None or not setting.startswith(PARAMETER):
@@ -243,7 +245,7 @@ def _served_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase
     if not names:
         return None
     if is_transform:
-        return frame_reason(names[0])
+        return phrase("the transform of the frame '{name}' is missing", name=names[0])
     return phrase("the topics and services of {controllers} are missing", controllers=", ".join(names))
 
 

@@ -174,6 +174,9 @@ class _Reader:
             self._add(call, scope)
         condition = next((keyword.value for keyword in call.keywords if keyword.arg == CONDITION), None)
         inner = scope.under(self.texts.condition(condition))
+        if function == "TimerAction":
+            period = next((keyword.value for keyword in call.keywords if keyword.arg == "period"), None)
+            inner = inner.under(f"after {self.texts.text(period)} s")
         if function in _LISTS or function in _ADDITIONS:
             for action in self._foreign_actions(call):
                 self._add(action, inner)
@@ -272,6 +275,8 @@ class _Reader:
             kind, name = "argument", text(call.args[0] if call.args else keywords.get("name"))
             names = {"default_value": "default", "choices": "choices"}
             settings = {names[key]: text(value) for key, value in keywords.items() if key in names}
+            if "default" in settings:
+                settings["default"] = self.texts.joined_text(keywords["default_value"])
         elif function == "SetLaunchConfiguration":
             kind, name, settings = "variable", first_text, {"value": second_text}
         elif function == "SetRemap":

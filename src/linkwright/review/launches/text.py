@@ -84,6 +84,10 @@ class ExpressionTexts:
             known = self._texts[id(node)] = shortened_text(self._text(node, depth))
         return known
 
+    def joined_text(self, node: ast.expr) -> str:
+        """Return an expression as text. A list of substitutions is one text."""
+        return "".join(map(self.text, self._pieces(node)))
+
     def condition(self, node: ast.expr | None) -> str:
         """Return a condition as text, such as ``unless $(var headless)``; empty if there is none."""
         if node is None:
