@@ -300,7 +300,7 @@ def test_name_that_is_assigned_again_has_the_value_before_the_action(changes_of)
     text = LOOPS.replace("    ld = Launch", "    side = 'a'\n    side = side + '_arm'\n    ld = Launch")
     text = text.replace('    for side in ["left", "right"]:\n        ld', "    ld")
     changes, _ = changes_of("arm.launch.py", text, "side = 'a'", "side = 'b'")
-    assert changes[0] == "node 'arm/driver': namespace a + _arm -> b + _arm"
+    assert changes[0] == "node 'arm/driver': namespace a_arm -> b_arm"
 
 
 def test_name_with_values_in_branches_stays_a_name(changes_of):
@@ -599,3 +599,116 @@ def test_removed_include_stops_its_nodes(changes_with_reasons):
     assert changes_with_reasons(READING.replace(line, "")) == {
         "include of '$(dirname)/part.launch.py' removed": "its nodes do not start any more"
     }
+
+
+UNUSED = """import os
+from launch import LaunchDescription
+from launch.actions import EmitEvent, RegisterEventHandler
+from launch.event_handlers import OnProcessExit
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    speed = LaunchConfiguration("speed", default="1")
+    driver = Node(package="arm", executable="driver", parameters=[{"speed": speed}])
+    hand = Node(package="arm", executable="hand", name="hand", arguments=["a" + "/b", os.path.join("c", "d") + "/e"])
+    return LaunchDescription([
+        driver,
+        hand,
+        RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[EmitEvent()])),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("        hand,\n", "", ["node 'arm/hand' removed"], True),
+        ('"a" + "/b", os.path.join("c", "d") + "/e"', '"a/b", "c/d/e"', [], False),
+        (', name="hand"', "", ["node 'arm/hand': name hand -> -"], False),
+        ("target_action=driver", "target_action=hand",
+         ["event handler OnProcessExit of arm/hand added", "event handler OnProcessExit of arm/driver removed"], False),
+        ("on_exit=[EmitEvent()]", "on_exit=[hand]",
+         ["event handler OnProcessExit of arm/driver: on_exit [EmitEvent] -> [arm/hand]"], False),
+        ('{"speed": speed}', '{"speed": 1}',
+         ["node 'arm/driver': parameter speed $(var speed 1) -> 1"], False),
+        ('speed = LaunchConfiguration("speed", default="1")', "speed = 1",
+         ["node 'arm/driver': parameter speed $(var speed 1) -> 1"], False),
+    ],
+)  # fmt: skip
+def test_only_what_is_used_is_compared(changes_of, old, new, expected, is_breaking):
+    found, found_breaking = changes_of("arm.launch.py", UNUSED, old, new)
+    assert found == expected
+    assert bool(found_breaking) is is_breaking
+
+
+def test_argument_that_is_used_without_being_declared_is_removed(changes_of):
+    text = (
+        UNUSED.replace('"speed": speed', '"rate": speed').replace("speed = L", "rate = L").replace(": speed", ": rate")
+    )
+    new = text.replace('LaunchConfiguration("speed", default="1")', "1")
+    found, found_breaking = changes_of("arm.launch.py", text, text, new)
+    assert found == ["node 'arm/driver': parameter rate $(var speed 1) -> 1", "argument 'speed' removed"]
+    assert found_breaking == found[1:]
+
+
+def test_node_that_moves_to_another_launch_file_is_missing_where_it_was(changes_with_reasons):
+    part = PART.replace("LaunchDescription([", 'LaunchDescription([Node(package="arm", executable="hand"), ')
+    alone = READING.replace('PathJoinSubstitution([ThisLaunchFileDir(), "part.launch.py"])', '"other.launch.py"')
+    new = alone.replace('        Node(package="arm", executable="hand"),\n', "")
+    assert changes_with_reasons(new, part, old=alone) == {
+        "node 'arm/hand' moved to arm/launch/part.launch.py": "the topics and services of the node are missing"
+    }
+
+
+def test_items_of_lists_are_split_outside_of_parentheses(changes_of):
+    text = """def generate_launch_description():
+    return LaunchDescription([Node(package="a", executable="b", arguments=[f(1, 2), "c", "d", "e", "f"])])
+"""
+    found, _ = changes_of("arm.launch.py", text, "f(1, 2)", "f(1, 3)")
+    assert found == ["node 'a/b': arguments: f(1, 3) added, f(1, 2) removed"]
+
+
+def test_delay_of_a_timer_is_compared(changes_of):
+    text = """def generate_launch_description():
+    hand = Node(package="arm", executable="hand")
+    return LaunchDescription([TimerAction(period=3.0, actions=[hand])])
+"""
+    found, _ = changes_of("arm.launch.py", text, "3.0", "5.0")
+    assert found == ["node 'arm/hand': condition after 3.0 s -> after 5.0 s"]
+
+
+def test_same_notations_in_python_and_xml(repository, compare):
+    python = """def generate_launch_description():
+    share = get_package_share_directory("arm")
+    return LaunchDescription([
+        DeclareLaunchArgument("model", default_value=[share, "/arm.urdf"]),
+        Node(package="arm", executable="hand", prefix="xterm -e", parameters=[
+            LaunchConfiguration("file"),
+            {"robot_description": Command(["xacro ", LaunchConfiguration("model")])},
+        ]),
+    ])
+"""
+    xml = """<launch>
+  <arg name="model" default="$(find-pkg-share arm)/arm.urdf"/>
+  <node pkg="arm" exec="hand" launch-prefix="xterm -e">
+    <param from="$(var file)"/>
+    <param name="robot_description" value="$(command 'xacro $(var model)')"/>
+  </node>
+</launch>
+"""
+    repository.commit({"arm/launch/arm.launch.py": python})
+    repository.git("rm", "--quiet", "arm/launch/arm.launch.py")
+    repository.write({"arm/launch/arm.launch.xml": xml})
+    assert sentences(subject(compare(repository), "arm/launch/arm.launch.xml")) == [
+        "renamed from arm/launch/arm.launch.py"
+    ]
+
+
+def test_prefix_of_frames_that_is_unknown_is_not_breaking(changes_of):
+    text = """def generate_launch_description():
+    return LaunchDescription([Node(package="robot_state_publisher", executable="robot_state_publisher", parameters=[{}])])
+"""
+    found, found_breaking = changes_of("arm.launch.py", text, "{}", '{"frame_prefix": Mixin.prefix()}')
+    assert (len(found), found_breaking) == (1, [])

@@ -64,4 +64,15 @@ def list_items(text: str) -> list[str]:
     content = text[1:-1] if is_list else text
     if not is_list or set(content) & set("[]{}"):
         return [text]
-    return [item.strip() for item in content.split(",") if item.strip()]
+    return [item.strip() for item in _split(content) if item.strip()]
+
+
+def _split(text: str) -> list[str]:
+    """Split a text at the commas outside of parentheses."""
+    parts, start, depth = [], 0, 0
+    for index, character in enumerate(text):
+        depth += (character == "(") - (character == ")")
+        if character == "," and depth <= 0:
+            parts.append(text[start:index])
+            start = index + 1
+    return [*parts, text[start:]]

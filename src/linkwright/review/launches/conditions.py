@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 
-_PARTS = re.compile(r" and (?=(?:if|unless) )")
+_PARTS = re.compile(r" and (?=(?:if|unless|after) )")
 _EVALUATION = re.compile(r"\$\(eval (.*)\)", re.DOTALL)
 _COMPARISON = re.compile(r"(?P<left>\S*) (?P<operator>==|!=) (?P<right>\S*)")
 _TRUTH = {"true": True, "1": True, "false": False, "0": False}
@@ -27,6 +27,8 @@ def condition_holds(condition: str) -> bool | None:
 
 def _part_holds(part: str) -> bool | None:
     word, _, text = part.partition(" ")
+    if word == "after":
+        return True  # the delay of a timer
     value = _truth(text.strip())
     return value if value is None or word == "if" else not value
 

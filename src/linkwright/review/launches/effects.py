@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.breaking import frame_reason, name_reason
+from linkwright.review.breaking import name_reason
 from linkwright.review.files.parameter_names import offers_frame
 from linkwright.review.launches.conditions import condition_holds
 from linkwright.review.launches.outlines import (
@@ -141,6 +141,8 @@ def setting_reason(
         if is_input or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
             return None
         return _remapping_reason(source, old, new, old_outline, new_outline)
+    if setting == "name" and None in (old, new) and _is_name_of_program(entry, old or new or ""):
+        return None
     if setting in _NAMES_OF_NODES:
         return _renaming_reason(old, new, old_outline, new_outline)
     if setting == "arguments":
@@ -155,7 +157,9 @@ def _parameter_reason(
 ) -> Phrase | None:
     """Return why a changed parameter is breaking: other programs use the frame that it names."""
     if setting == _FRAME_PREFIX:
-        if old_outline.resolved(old or "") == new_outline.resolved(new or ""):
+        old_prefix, new_prefix = old_outline.resolved(old or ""), new_outline.resolved(new or "")
+        is_unknown = any(_CODE.search(prefix) or setting.endswith(f" {prefix}") for prefix in (old_prefix, new_prefix))
+        if old_prefix == new_prefix or is_unknown:
             return None
         return phrase("programs that look up the frames by their old names do not find them")
     if old is None or new is None or not setting.startswith(PARAMETER):
@@ -241,7 +245,7 @@ def _served_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase
     if not names:
         return None
     if is_transform:
-        return frame_reason(names[0])
+        return phrase("the transform of the frame '{name}' is missing", name=names[0])
     return phrase("the topics and services of {controllers} are missing", controllers=", ".join(names))
 
 
@@ -251,6 +255,12 @@ def _renaming_reason(
     if _resolved_name(old, old_outline) == _resolved_name(new, new_outline):
         return None
     return phrase("programs that use the names of the node, its topics or its services do not find them")
+
+
+def _is_name_of_program(entry: Entry, name: str) -> bool:
+    """Return whether a node has a name without being given one, as far as the name of its program shows."""
+    program = entry.name.rpartition("/")[2].removesuffix(".py")
+    return name.removesuffix("_node") == program.removesuffix("_node")
 
 
 def _resolved_name(text: str | None, outline: LaunchOutline) -> str:

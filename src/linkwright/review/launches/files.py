@@ -10,8 +10,8 @@ from difflib import SequenceMatcher
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launches.effects import addition_reason, removal_reason
-from linkwright.review.launches.included import IncludedActions
+from linkwright.review.launches.effects import addition_reason, removal_reason, value_reason
+from linkwright.review.launches.included import IncludedActions, file_with_moved_action
 from linkwright.review.launches.matching import MIN_SIMILARITY, matched_entries, replacements
 from linkwright.review.launches.outlines import CodePart, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
@@ -24,6 +24,7 @@ _MAX_SOURCE = 120
 """The number of characters of a statement that are shown."""
 _MAX_STATEMENTS = 3
 """The number of changed statements up to which each is shown."""
+_WITH_DEFAULT = re.compile(r"\$\(var ([\w.-]+) ")
 _VARIABLE = re.compile(r"(?<=\bname )\w+\b|(?<=\barg=')\w+\b(?=')")
 """The names of variables and parameters in the texts of statements."""
 
@@ -70,6 +71,7 @@ def compare_launch_files(pair: FilePair) -> None:
         text = phrase("{entry} uses argument '{name}', which is not declared", entry=title(entry), name=name)
         reason = phrase("the launch file fails if no other file declares '{name}'", name=name)
         pair.add(text, pair.location(entry.span), reason)
+    _add_unused_arguments(pair, old, new)
     if gone or come:
         _add_lone_entries(pair, gone, come, old, new)
     if pair.old_file.suffix == pair.new_file.suffix:
@@ -85,17 +87,21 @@ def _add_lone_entries(
     moved: dict[tuple[str, bool], list[Entry]] = {}
     for entry in come:
         file = old_included.lone_file(entry, new_included)
+        file = file or file_with_moved_action(entry, pair.versions, pair.new_path, is_removed=False)
         if file is None:
             pair.add(added_entry(entry), pair.location(entry.span), addition_reason(entry))
         else:
             moved.setdefault((file, False), []).append(entry)
     for entry in gone:
         file = new_included.lone_file(entry, old_included)
-        if file is None:
-            text, location = phrase("{entry} removed", entry=title(entry)), pair.location(entry.span, is_old=True)
-            pair.add(text, location, removal_reason(entry, old, new))
-        else:
+        if file is not None:
             moved.setdefault((file, True), []).append(entry)
+            continue
+        text, location = phrase("{entry} removed", entry=title(entry)), pair.location(entry.span, is_old=True)
+        file = file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
+        if file is not None:
+            text = phrase("{entry} moved to {file}", entry=title(entry), file=file)
+        pair.add(text, location, removal_reason(entry, old, new))
     for (file, is_old), entries in moved.items():
         titles = joined_titles(entries)
         text = phrase("{entry} moved from {file}", entry=titles, file=file)
@@ -111,6 +117,22 @@ def _undeclared_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline
     old_names = IncludedActions(pair.versions.old, pair.old_path, old).undeclared()
     new_names = IncludedActions(pair.versions.new, pair.new_path, new).undeclared()
     return {name: entry for name, entry in new_names.items() if name not in old_names}
+
+
+def _add_unused_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
+    """Add the arguments that the old version uses without declaring them, and that the new one does not name."""
+    used = {name: entry for entry in old.entries for name in _names_with_default(entry)}
+    declared = {entry.name for outline in (old, new) for entry in outline.entries if entry.has_value}
+    text = pair.new_file.read_text("utf-8", errors="replace") if used.keys() - declared else ""
+    for name, entry in used.items():
+        if name not in declared and not re.search(rf"\b{re.escape(name)}\b", text):
+            location = pair.location(entry.span, is_old=True)
+            pair.add(phrase("argument '{name}' removed", name=name), location, value_reason(name))
+
+
+def _names_with_default(entry: Entry) -> list[str]:
+    texts = (entry.name, *entry.settings.values())
+    return [name for text in texts for name in _WITH_DEFAULT.findall(text)]
 
 
 def _keeps_name(entry: Entry) -> bool:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
-from linkwright.review.versions import Version
+from linkwright.review.launches.titles import served_names
+from linkwright.review.versions import Version, Versions
 
 _SHARED = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/(?P<path>[^$]+)")
 _BESIDE = "$(dirname)/"
@@ -18,6 +20,9 @@ _MOVABLE = ("node", "include", "process", "argument")
 _MAX_DEPTH = 3
 _MAX_FILES = 30
 _MAX_BYTES = 1 << 20
+_MAX_CHANGED = 60
+_Key = tuple[str, str, "str | None", tuple[str, ...]]
+"""The kind, the name, the name of the node and the names that it serves."""
 _USED = re.compile(r"\$\((?:var|arg) (?P<name>[\w./-]+)\)")
 
 
@@ -61,7 +66,7 @@ class IncludedActions:
                 path = None if inner is None else self._version.relative(inner)
                 if inner is None or path is None or path in found or len(found) >= _MAX_FILES:
                     continue
-                inner_outline = self._read(inner)
+                inner_outline = _read(inner, self._version.root)
                 if inner_outline is not None:
                     found[path] = inner_outline
                     waiting.append((inner, inner_outline, depth + 1))
@@ -74,18 +79,12 @@ class IncludedActions:
         shared = _SHARED.fullmatch(entry.name)
         if shared is not None:
             share = self._version.shares.get(shared["package"])
-            file = None if share is None else share / shared["path"]
+            file = None if share is None else _file_below(share, shared["path"])
         elif entry.name.startswith(_BESIDE) and "$" not in entry.name.removeprefix(_BESIDE):
             file = includer.parent / entry.name.removeprefix(_BESIDE)
         else:
             file = None
         return None if file is None or ".." in file.parts or not file.is_file() else file
-
-    def _read(self, file: Path) -> LaunchOutline | None:
-        try:
-            return read_outline(file, self._version.root) if file.stat().st_size <= _MAX_BYTES else None
-        except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
-            return None
 
     def undeclared(self) -> dict[str, Entry]:
         """Return the arguments without a default that nothing declares, each with the first action that uses it.
@@ -108,3 +107,52 @@ class IncludedActions:
                     if match["name"] not in declared:
                         undeclared.setdefault(match["name"], entry)
         return undeclared
+
+
+def _file_below(share: Path, path: str) -> Path | None:
+    """Return a file of a package, whose build may install it in another folder than that of its source."""
+    if (share / path).is_file() or ".." in Path(path).parts:
+        return share / path
+    found = [file for file in sorted(share.rglob(Path(path).name)) if file.is_file()]
+    return found[0] if len(found) == 1 else None
+
+
+def file_with_moved_action(entry: Entry, versions: Versions, path: str, *, is_removed: bool) -> str | None:
+    """Return another changed launch file to which an action moved, or from which it came; None if there is none.
+
+    Args:
+        entry: the action.
+        versions: both versions.
+        path: the path of the launch file, in the version that has the action.
+        is_removed: whether the new version of the file does not have the action, and not the old one.
+    """
+    if entry.kind not in ("node", "include"):
+        return None
+    key = _key(entry)
+    for file in versions.changed_files[:_MAX_CHANGED]:
+        if path in (file.old_path, file.new_path) or not is_launch_file_name(file.path):
+            continue
+        old = _keys(versions.old.file(file.old_path), versions.old.root) if file.old_path else frozenset()
+        new = _keys(versions.new.file(file.new_path), versions.new.root) if file.new_path else frozenset()
+        if (key in new) > (key in old) if is_removed else (key in old) > (key in new):
+            return file.new_path if is_removed else file.old_path
+    return None
+
+
+def _key(entry: Entry) -> _Key:
+    """Return what an action keeps if it moves into another file."""
+    return entry.kind, entry.name, entry.settings.get("name"), tuple(served_names(entry))
+
+
+@lru_cache(maxsize=256)
+def _keys(file: Path, root: Path) -> frozenset[_Key]:
+    """Return the actions of a file, which does not change during a review."""
+    outline = _read(file, root)
+    return frozenset() if outline is None else frozenset(map(_key, outline.entries))
+
+
+def _read(file: Path, root: Path) -> LaunchOutline | None:
+    try:
+        return read_outline(file, root) if file.stat().st_size <= _MAX_BYTES else None
+    except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
+        return None

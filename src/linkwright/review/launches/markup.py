@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -31,6 +32,7 @@ _ENVIRONMENT = ("set_env", "env", "append_env", "unset_env")
 _REMAPPINGS = ("remap", "set_remap")
 _CONDITIONS = ("if", "unless")
 _NOT_COMPARED = frozenset({"pkg", "exec", "type", "plugin", "description", "doc", "cmd"})
+_QUOTED_COMMAND = re.compile(r"\$\(command (['\"])(.*)\1( \w+)?\)")
 _MAX_NODES = 20_000
 """The maximum number of actions of a file. Aliases of YAML can repeat one billions of times."""
 
@@ -208,7 +210,7 @@ def _some(attributes: Mapping[str, str], names: Mapping[str, str]) -> dict[str, 
 
 
 def _others(attributes: Mapping[str, str], ignored: Sequence[str] = ()) -> dict[str, str]:
-    names = {"ns": NAMESPACE, "args": "arguments"}
+    names = {"ns": NAMESPACE, "args": "arguments", "launch-prefix": "prefix"}
     left_out = {*_NOT_COMPARED, *_CONDITIONS, *ignored}
     return {names.get(key, key): value for key, value in attributes.items() if key not in left_out}
 
@@ -220,10 +222,11 @@ def _node_name(attributes: Mapping[str, str]) -> str:
 
 def _node_settings(tag: LaunchTag) -> dict[str, str]:
     settings = _others(tag.attributes)
+    files: list[str] = []
     for child in tag.children:
         attributes = child.attributes
         if child.name == "param" and "from" in attributes:
-            settings[f"{PARAMETER}{attributes['from']}"] = ""
+            files.append(attributes["from"])
         elif child.name == "param":
             settings |= _parameters(child, "")
         elif child.name == "rosparam":
@@ -233,7 +236,7 @@ def _node_settings(tag: LaunchTag) -> dict[str, str]:
             settings[f"{REMAPPING}{attributes.get('from', '')}"] = attributes.get("to", "")
         elif child.name == "env":
             settings[f"environment variable {attributes.get('name', '')}"] = attributes.get("value", "")
-    return settings
+    return {**settings, "parameters": f"[{', '.join(files)}]"} if files else settings
 
 
 def _parameters(tag: LaunchTag, path: str) -> dict[str, str]:
@@ -251,7 +254,8 @@ def _parameters(tag: LaunchTag, path: str) -> dict[str, str]:
 def _parameter_value(tag: LaunchTag) -> str:
     """Return the value of a parameter, or the file or command that it comes from."""
     keys = ("value", "textfile", "binfile", "command")
-    return next((tag.attributes[key] for key in keys if key in tag.attributes), tag.text)
+    text = next((tag.attributes[key] for key in keys if key in tag.attributes), tag.text)
+    return _QUOTED_COMMAND.sub(r"$(command \2\3)", text)
 
 
 def _rosparam(tag: LaunchTag) -> dict[str, str]:

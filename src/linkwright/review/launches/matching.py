@@ -12,6 +12,7 @@ from linkwright.review.launches.titles import served_names
 
 MIN_SIMILARITY = 0.5
 _MIN_SIMILARITY_OF_PROGRAMS = 0.75
+_MIN_SIMILARITY_OF_FILES = 0.6
 _SEPARATORS = re.compile(r"[\W_]+|node")
 Match = tuple["Entry | None", "Entry | None"]
 """The old and the new action; None for the version that does not have it."""
@@ -53,7 +54,9 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
     if old.kind == "include":
         old_name = PurePosixPath(old.name).name
         is_same = _file_key(new_names.get(old_name, old_name)) == _file_key(new.name)
-        return 1.0 + similarity if is_same else 0.0
+        likeness = SequenceMatcher(None, _file_key(old.name), _file_key(new.name), autojunk=False).ratio()
+        is_like = bool(old.settings) and old.settings == new.settings and likeness >= _MIN_SIMILARITY_OF_FILES
+        return 1.0 + similarity if is_same else likeness * is_like
     if old.kind != "node":
         return 0.0
     (old_package, old_program), (new_package, new_program) = _program(old), _program(new)

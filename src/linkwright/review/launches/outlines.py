@@ -29,7 +29,7 @@ class Entry:
     Attributes:
         kind: ``argument``, ``variable``, ``node``, ``process``, ``include``; ``remapping``, ``parameter``,
             ``parameters`` or ``environment`` of all nodes that follow; ``reading`` of an environment variable;
-            ``action`` of a package that is not read.
+            ``handler`` of an event; ``action`` of a package that is not read.
         name: the name of the argument or variable, ``package/executable`` of the node, the command, the path of the
             file, or the function that makes the action.
         settings: the values, by name. The value of an argument is its default.

@@ -25,6 +25,7 @@ _ENVIRONMENT = ("SetEnvironmentVariable", "AppendEnvironmentVariable", "UnsetEnv
 _OTHERS = ("DeclareLaunchArgument", "IncludeLaunchDescription", "SetLaunchConfiguration", "SetRemap", "SetParameter")
 ACTIONS = frozenset({*_NODES, *_PROCESSES, *_ENVIRONMENT, *_OTHERS})
 """The classes whose calls make actions."""
+_HANDLER = "RegisterEventHandler"
 _PUSHES = ("PushRosNamespace", "PushROSNamespace", "PushNamespace")
 _LISTS = ("LaunchDescription", "GroupAction", "TimerAction")
 """The objects whose first argument is a list of actions."""
@@ -81,10 +82,16 @@ class _Reader:
     _seen: set[tuple[int, tuple[int, ...], Scope]] = field(default_factory=set)
 
     def entries(self) -> Iterator[Entry]:
+        unused = _unused_values(self.python.tree)
         for call, scope, texts in list(self.scopes.values()):
             self.texts = texts
             function = called_name(call).rpartition(".")[2]
-            if function in ACTIONS:
+            if id(call) in unused:
+                self.covered.add(id(call))
+            elif function == _HANDLER:
+                self.covered.add(id(call))
+                yield self._handler(call, scope)
+            elif function in ACTIONS:
                 self.covered.add(id(call))
                 yield self._action(call, function, scope)
             elif self._is_helper(call):
@@ -163,10 +170,13 @@ class _Reader:
         if function in _PUSHES:
             self.covered.add(id(call))
             return
-        if function in ACTIONS or self._is_helper(call):
+        if function in ACTIONS or function == _HANDLER or self._is_helper(call):
             self._add(call, scope)
         condition = next((keyword.value for keyword in call.keywords if keyword.arg == CONDITION), None)
         inner = scope.under(self.texts.condition(condition))
+        if function == "TimerAction":
+            period = next((keyword.value for keyword in call.keywords if keyword.arg == "period"), None)
+            inner = inner.under(f"after {self.texts.text(period)} s")
         if function in _LISTS or function in _ADDITIONS:
             for action in self._foreign_actions(call):
                 self._add(action, inner)
@@ -265,6 +275,8 @@ class _Reader:
             kind, name = "argument", text(call.args[0] if call.args else keywords.get("name"))
             names = {"default_value": "default", "choices": "choices"}
             settings = {names[key]: text(value) for key, value in keywords.items() if key in names}
+            if "default" in settings:
+                settings["default"] = self.texts.joined_text(keywords["default_value"])
         elif function == "SetLaunchConfiguration":
             kind, name, settings = "variable", first_text, {"value": second_text}
         elif function == "SetRemap":
@@ -289,6 +301,29 @@ class _Reader:
         if condition:
             settings[CONDITION] = condition
         return Entry(kind, name, scope.settings(kind, settings), self.python.span(call))
+
+    def _handler(self, call: ast.Call, scope: Scope) -> Entry:
+        """Return the handler of an event: its class and the action whose event it handles."""
+        value = call.args[0] if call.args else next((item.value for item in call.keywords), None)
+        event = None if value is None else self.python.resolved(value)
+        if not isinstance(event, ast.Call):
+            return Entry("handler", self.texts.text(value), scope.settings("handler", {}), self.python.span(call))
+        keywords = {keyword.arg: keyword.value for keyword in event.keywords if keyword.arg is not None}
+        target = keywords.pop("target_action", event.args[0] if event.args else None)
+        name = called_name(event).rpartition(".")[2]
+        name = f"{name} of {self._short_name(target)}" if target is not None else name
+        settings = {key: self._short_name(item) for key, item in keywords.items()}
+        return Entry("handler", name, scope.settings("handler", settings), self.python.span(call))
+
+    def _short_name(self, node: ast.expr) -> str:
+        """Return the program of a node, the class of another action, or those in a list."""
+        node = self.python.resolved(node)
+        if isinstance(node, (ast.List, ast.Tuple)):
+            return f"[{', '.join(map(self._short_name, node.elts))}]"
+        if not isinstance(node, ast.Call):
+            return self.texts.text(node)
+        function = called_name(node).rpartition(".")[2]
+        return self._action(node, function, _OUTSIDE).name if function in _NODES else function
 
     def _foreign_action(self, call: ast.Call, scope: Scope) -> Entry:
         keywords = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
@@ -345,6 +380,18 @@ class _Reader:
             else:
                 parameters |= {f"{PARAMETER}{name}": value for name, value in pairs}
         return {**({"parameters": f"[{', '.join(files)}]"} if files else {}), **parameters}
+
+
+def _unused_values(tree: ast.AST) -> frozenset[int]:
+    """Return the identities of the values of names that nothing uses."""
+    nodes = list(ast.walk(tree))
+    used = {node.id for node in nodes if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store)}
+    assignments = (node for node in nodes if isinstance(node, ast.Assign))
+    return frozenset(
+        id(node.value)
+        for node in assignments
+        if all(isinstance(target, ast.Name) and target.id not in used for target in node.targets)
+    )
 
 
 def _second_keyword(call: ast.Call) -> ast.expr | None:

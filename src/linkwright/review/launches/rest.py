@@ -10,7 +10,9 @@ from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.outlines import CodePart
 from linkwright.review.launches.text import shortened_text
 
-_TRANSPARENT = frozenset({"add_action", "add_entity", "GroupAction", "LaunchDescription", "LoadComposableNodes"})
+_TRANSPARENT = frozenset(
+    {"add_action", "add_entity", "GroupAction", "LaunchDescription", "LoadComposableNodes", "TimerAction"}
+)
 """The calls that only put actions together."""
 _ADDITIONS = ("append", "extend")
 """The methods that put actions into lists."""
@@ -106,7 +108,7 @@ class _Rest:
         settings = [
             f"{keyword.arg}={self.text(keyword.value)}"
             for keyword in node.keywords
-            if keyword.arg not in (*_CONTENTS, "condition", "initial_entities")
+            if keyword.arg not in (*_CONTENTS, "condition", "initial_entities", "period")
         ]
         return self._items(arguments) + "".join(settings)
 

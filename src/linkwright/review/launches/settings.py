@@ -10,7 +10,7 @@ from linkwright.review.breaking import name_reason
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import setting_reason, value_reason
-from linkwright.review.launches.outlines import CONDITION, PARAMETER, REMAPPING, Entry, LaunchOutline
+from linkwright.review.launches.outlines import CONDITION, PARAMETER, READING, REMAPPING, Entry, LaunchOutline
 from linkwright.review.launches.titles import joined_titles, title
 from linkwright.review.list_changes import change_text
 
@@ -76,7 +76,8 @@ class SettingChanges:
             old_value, new_value = old.settings.get(name), new.settings.get(name)
             if old_value != new_value and not new.is_same_name(name, old_value, new_value):
                 reason = setting_reason(new, name, old_value, new_value, self._old, self._new)
-                settings.append(_Setting(name, old_value, new_value, reason))
+                if new.kind != READING or reason is not None:
+                    settings.append(_Setting(name, old_value, new_value, reason))
         for text, reason, name in _joined_settings(settings):
             # A group may give a condition to actions that other programs need and to those of a user interface.
             self._add(new, text, reason, is_apart=name != CONDITION)

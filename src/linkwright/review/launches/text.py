@@ -16,6 +16,7 @@ _MAX_LENGTH = 10_000
 make it endless."""
 _Part = Callable[[ast.expr | None], str]
 _COMPARISONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
+_TEXT_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
 _PROGRAM = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
 """The program of a command, which is found without `FindExecutable`, too."""
 _ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
@@ -82,6 +83,10 @@ class ExpressionTexts:
         if known is None:
             known = self._texts[id(node)] = shortened_text(self._text(node, depth))
         return known
+
+    def joined_text(self, node: ast.expr) -> str:
+        """Return an expression as text. A list of substitutions is one text."""
+        return "".join(map(self.text, self._pieces(node)))
 
     def condition(self, node: ast.expr | None) -> str:
         """Return a condition as text, such as ``unless $(var headless)``; empty if there is none."""
@@ -152,7 +157,7 @@ class ExpressionTexts:
             substitution = self._substitution(node, part)
             return _call_text(node, part) if substitution is None else substitution
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-            return f"{part(node.left)} + {part(node.right)}"
+            return f"{part(node.left)}{'' if self._is_string(node) else ' + '}{part(node.right)}"
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
             return f"{part(node.left)}/{part(node.right)}"
         if isinstance(node, ast.JoinedStr):
@@ -194,7 +199,7 @@ class ExpressionTexts:
         if function in ("TextSubstitution", "str", "ParameterValue", "ParameterFile", "Path", "PathSubstitution"):
             return part(first)
         if function == "EnvironmentVariable":
-            return f"$(env {' '.join(map(part, arguments))})"
+            return f"$(env {' '.join(part(argument) or repr('') for argument in arguments)})"
         if function == "PythonExpression":
             return f"$(eval {''.join(map(part, self._pieces(first)))})"
         if function == "Command":
@@ -203,6 +208,22 @@ class ExpressionTexts:
         if function.endswith("LaunchDescriptionSource"):
             return "".join(map(part, self._pieces(first)))
         return None
+
+    def _is_string(self, node: ast.expr) -> bool:
+        """Return whether an expression certainly is a string, such as a sum with one."""
+        for _ in range(_MAX_DEPTH):
+            node = self._python.resolved(node)
+            if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Add):
+                break
+            if self._is_text(self._python.resolved(node.right)):
+                return True
+            node = node.left
+        return self._is_text(node)
+
+    def _is_text(self, node: ast.expr) -> bool:
+        if isinstance(node, ast.Call):
+            return called_name(node).rpartition(".")[2] in _TEXT_FUNCTIONS
+        return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))
 
     def _pieces(self, node: ast.expr) -> list[ast.expr]:
         node = self._python.resolved(node)

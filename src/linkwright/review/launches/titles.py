@@ -42,6 +42,8 @@ def title(entry: Entry) -> Phrase:
         return phrase("parameter '{name}' of all nodes", name=name)
     if entry.kind == "parameters":
         return phrase("parameters of '{file}'", file=name)
+    if entry.kind == "handler":
+        return phrase("event handler {name}", name=name)
     if entry.kind == READING:
         return phrase("use of environment variable '{name}'", name=name)
     if entry.kind == "environment":
