@@ -319,6 +319,10 @@ def drives_by_numbers(work):
     for text, wanted in {
         "forward": (1, 0, None, None),
         "前进": (1, 0, None, None),
+        "turn left": (0, 1, None, None),
+        "左转": (0, 1, None, None),
+        "turn right": (0, -1, None, None),
+        "右转": (0, -1, None, None),
         "go forward half a meter": (1, 0, 0.5, None),
         "前进一米半": (1, 0, 1.5, None),
         "turn left ninety degrees": (0, 1, None, math.pi / 2),

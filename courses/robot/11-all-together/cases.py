@@ -79,7 +79,19 @@ class TestVelocity(unittest.TestCase):
 
 XML_LAUNCH_NODE = "Node(package='my_mission', executable='go_to_ball', parameters=parameters),"
 
+TWO_PARAMETERS = "(forward, left):\n    stop_distance, speed, turn_speed = 0.5, 0.3, 1.0"
+SIGNATURE = "(forward, left, stop_distance=0.5, speed=0.3, turn_speed=1.0):"
+LIMITED = "max(-turn_speed, min(turn_speed, 1.5 * direction))"
+
 CASES = [
+    wrong(
+        "decide",
+        "degrees",
+        Edit(DECISIONS, "1.5 * direction", "1.5 * math.degrees(direction)"),
+        says="the direction, 0.05 rad",
+    ),
+    wrong("decide", "no limit", Edit(DECISIONS, LIMITED, "1.5 * direction"), says="turn_speed, the limit"),
+    wrong("decide", "two parameters", Edit(DECISIONS, SIGNATURE, TWO_PARAMETERS), says="needs five parameters"),
     right("decide", "an array of numpy", {DECISIONS: NUMPY_DECISIONS}),
     right(
         "decide",

@@ -43,6 +43,25 @@ def turns_to_ball(work):
             )
 
 
+@check("decide", en="It turns slowly to a ball that is almost straight ahead.", zh="球几乎在正前方时，它慢慢转。")
+def turns_in_proportion(work):
+    velocity = load_velocity(work)
+    _, turn = velocity(2.0, 0.1, STOP, SPEED, TURN)
+    if turn > 0.5:
+        raise NotYet(
+            en=f"For a ball 2 m ahead and 0.1 m to the left, the turn rate is {turn:g}; it should be in proportion to "
+            "the direction, 0.05 rad.",
+            zh=f"球在前方 2 m、左侧 0.1 m 时，角速度是 {turn:g}；它应当与方向成正比，而方向是 0.05 rad。",
+        )
+    for left in (3.0, -3.0):
+        _, turn = velocity(0.8, left, STOP, SPEED, TURN)
+        if abs(turn) > TURN + 1e-9:
+            raise NotYet(
+                en=f"For a ball far to the side, the turn rate is {turn:g}, but turn_speed, the limit, is 1.",
+                zh=f"球在很偏的一侧时，角速度是 {turn:g}，而上限 turn_speed 是 1。",
+            )
+
+
 @check("decide", en="It stops at the stop distance.", zh="它在停止距离处停下。")
 def stops_at_distance(work):
     velocity = load_velocity(work)

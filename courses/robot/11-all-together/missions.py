@@ -1,6 +1,7 @@
 """What the checks of the lesson share: the learner's programs, with a graph or a world around them."""
 
 import importlib
+import inspect
 import math
 import os
 import shutil
@@ -28,6 +29,14 @@ def load_velocity(work):
     velocity = getattr(importlib.import_module("my_mission.decisions"), "velocity", None)
     if velocity is None:
         raise NotYet(en="decisions.py has no function 'velocity'.", zh="decisions.py 中没有函数“velocity”。")
+
+    try:
+        inspect.signature(velocity).bind(2.0, 0.0, 0.5, 0.3, 1.0)
+    except TypeError:
+        raise NotYet(
+            en="velocity() needs five parameters: forward, left, stop_distance, speed and turn_speed.",
+            zh="velocity() 需要五个参数：forward、left、stop_distance、speed 和 turn_speed。",
+        ) from None
 
     def call(*values):
         result = velocity(*values)
