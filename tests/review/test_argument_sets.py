@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.repositories import ARM
+from tests.repositories import ARM, PACKAGE
 from tests.review.conftest import breaking, sentences, subject
 
 PATH = "arm_description/urdf/arm.urdf.xacro"
@@ -138,3 +138,44 @@ def test_robot_that_breaks_with_every_set_is_one_breaking_change(package, compar
     package.write({PATH: ARM.replace("</robot>", "<<<<<<< ours\n</robot>")})
     (sentence,) = breaking(compare(package))
     assert sentence.startswith(f"cannot be read any more: {PATH}:")
+
+
+ROOT_ROBOT = """<?xml version="1.0"?>
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm">
+  <xacro:arg name="sizes" default="$(find arm_description)/config/sizes.yaml"/>
+  <xacro:property name="sizes" value="${xacro.load_yaml('$(arg sizes)')}"/>
+  <link name="base"><visual><geometry><sphere radius="${sizes['radius']}"/></geometry></visual></link>
+</robot>
+"""
+ROOT_LAUNCH = """from launch import LaunchDescription
+from launch.substitutions import Command, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    share = FindPackageShare("arm_description")
+    model = PathJoinSubstitution([share, "urdf", "arm.urdf.xacro"])
+    sizes = PathJoinSubstitution([share, "config", "sizes.yaml"])
+    return LaunchDescription(
+        [Node(package="robot_state_publisher", executable="robot_state_publisher",
+              parameters=[{"robot_description": Command(["xacro ", model, " sizes:=", sizes])}])]
+    )
+"""
+
+
+def test_package_at_the_root_is_that_of_each_version_and_not_that_of_the_working_tree(repository, compare, monkeypatch):
+    sizes = "config/sizes.yaml"
+    repository.commit(
+        {
+            "package.xml": PACKAGE["arm_description/package.xml"],
+            "urdf/arm.urdf.xacro": ROOT_ROBOT,
+            "launch/arm.launch.py": ROOT_LAUNCH,
+            sizes: "radius: 1.0\n",
+        }
+    )
+    repository.commit({sizes: "radius: 2.0\n"})
+    repository.commit({sizes: "diameter: 4.0\n"})
+    monkeypatch.chdir(repository.root)
+    found = subject(compare(repository, "HEAD~2..HEAD~1"), "urdf/arm.urdf.xacro")
+    assert sentences(found) == ["link 'base': visual geometry sphere radius 1 -> sphere radius 2 m"]

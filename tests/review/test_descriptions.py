@@ -204,7 +204,11 @@ def test_unreadable_version_is_a_change_of_its_file_only(package, compare):
     )
     package.write({PATH: ARM, "other/b.urdf": "<robot name='b'><link name='c'/></robot>"})
     result = compare(package)
-    (sentence,) = sentences(subject(result, PATH))
+    sentence, contents = sentences(subject(result, PATH))
+    assert contents == (
+        "robot 'arm': 4 links (base_link, upper, middle, lower), "
+        "3 moving joints (upper_joint, middle_joint, lower_joint)"
+    )
     assert sentence.startswith("can be read now; in the old version: arm_description/urdf/arm.urdf.xacro:")
     assert "missing" in sentence
     assert breaking(result)
@@ -218,8 +222,14 @@ def test_added_removed_and_renamed_files_are_reported(package, compare):
     package.commit({"arm_description/urdf/fresh.urdf": "<robot name='fresh'><link name='z'/><!-- other --></robot>"})
     result = compare(package, "HEAD~2..HEAD")
     assert sentences(subject(result, "arm_description/urdf/new_arm.urdf.xacro")) == [f"renamed from {PATH}"]
-    assert sentences(subject(result, "arm_description/urdf/old.urdf")) == ["description removed"]
-    assert sentences(subject(result, "arm_description/urdf/fresh.urdf")) == ["description added"]
+    assert sentences(subject(result, "arm_description/urdf/old.urdf")) == [
+        "description removed",
+        "robot 'old': 1 link (a)",
+    ]
+    assert sentences(subject(result, "arm_description/urdf/fresh.urdf")) == [
+        "description added",
+        "robot 'fresh': 1 link (z)",
+    ]
     assert len(breaking(result)) == 2
 
 

@@ -101,3 +101,19 @@ def test_joint_limits_that_exclude_zero_move_link(images_of):
     _, images = images_of({SEGMENT: MACRO.replace('lower="-1.5"', 'lower="0.5"')})
     assert orange(images[2].old) > 50
     assert images[2].old != images[2].new
+
+
+@pytest.mark.parametrize("is_added", [True, False])
+def test_added_and_removed_robots_have_one_image_of_each_view(package, is_added):
+    package.commit({PATH: None})
+    package.commit({PATH: ARM})
+    versions = open_versions(package.root, "HEAD~1..HEAD" if is_added else "HEAD~2..HEAD~1")
+    try:
+        result = review(versions, with_images=True)
+    finally:
+        versions.close()
+    (subject,) = (subject for subject in result.subjects if subject.path == PATH)
+    assert [(bool(view.old), bool(view.new)) for view in subject.images] == [(not is_added, is_added)] * 4
+    page = as_html(result)
+    assert page.count("data:image/png;base64,") == 4
+    assert "type='range'" not in page

@@ -84,6 +84,8 @@ def test_uncalled_macro_is_compared_as_it_is_written(library, compare, old, new,
         ("${width}", "0.05"),
         ("<link name=", "<!-- other --><link  name="),
         ("width", "breadth"),
+        ('upper="0.04"', 'upper="${0.08 / 2}"'),
+        ('size="${width} ', 'size="${radians(degrees(width))} '),
     ],
 )
 def test_other_writing_of_an_uncalled_macro_is_no_change(library, compare, old, new):

@@ -42,7 +42,10 @@ def test_commit_ranges_are_resolved(package, compare):
 
 def test_untracked_files_are_new(package, compare):
     package.write({"arm_description/urdf/b.urdf": "<robot name='b'><link name='b'/></robot>"})
-    assert sentences(subject(compare(package), "arm_description/urdf/b.urdf")) == ["description added"]
+    assert sentences(subject(compare(package), "arm_description/urdf/b.urdf")) == [
+        "description added",
+        "robot 'b': 1 link (b)",
+    ]
 
 
 def test_review_does_not_change_repository(package, compare):

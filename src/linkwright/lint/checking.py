@@ -68,6 +68,7 @@ class Checker:
         ignore: the rules to ignore in addition to those that the settings ignore.
         config: the settings file to use instead of the nearest one.
         folders: the folders to search for packages, in addition to those around each file.
+        shares: the share folders of packages that take precedence, such as those of a commit, by name.
     """
 
     values: Mapping[str, str] = field(default_factory=dict)
@@ -75,6 +76,7 @@ class Checker:
     ignore: tuple[str, ...] = ()
     config: Path | None = None
     folders: tuple[Path, ...] = ()
+    shares: Mapping[str, Path] = field(default_factory=dict)
     _finders: dict[Path, PackageFinder] = field(default_factory=dict)
     _callers: list[ArgumentSets] = field(default_factory=list)
 
@@ -90,7 +92,7 @@ class Checker:
             self._finders[folder] = (
                 first_finder.starting_at(start_folders)
                 if first_finder
-                else PackageFinder(start=start_folders, sources_first=True)
+                else PackageFinder(start=start_folders, extra=self.shares, sources_first=True)
             )
         return self._finders[folder]
 

@@ -221,8 +221,8 @@ class ViewImages:
 
     Attributes:
         name: the name of the view, such as ``front``.
-        old: the old robot as PNG.
-        new: the new robot as PNG.
+        old: the old robot as PNG; empty if there is none.
+        new: the new robot as PNG; empty if there is none.
     """
 
     name: str

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Diagnostic
-from linkwright.lint.checking import Checker
 from linkwright.lint.engine import Checked
 from linkwright.lint.known_findings import count_keys, new_findings
 from linkwright.lint.targets import DESCRIPTIONS, Targets
@@ -37,7 +36,7 @@ def find(version: Version, targets: Targets) -> Findings:
         included = () if checked.subject is None else checked.subject.sources
         files.update(path for file in (checked.path, *included) if (path := version.relative(file)) is not None)
 
-    diagnostics, _ = Checker(folders=(version.root,)).check(targets, [version.root], add_files)
+    diagnostics, _ = version.checker().check(targets, [version.root], add_files)
     return Findings(diagnostics, frozenset(files))
 
 

@@ -14,11 +14,11 @@ from typing import Any
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted, did_you_mean, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.lint.affected import TextFiles
-from linkwright.lint.checking import Checker
 from linkwright.lint.targets import Targets, find_targets, included_robots
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
-from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind, nesting_problem
+from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind, ViewImages, nesting_problem
+from linkwright.review.drawings.images import lone_images
 from linkwright.review.file_pair import Drawings, FilePair
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.mesh_groups import grouped_meshes
@@ -31,6 +31,7 @@ from linkwright.review.launches.helpers import makes_actions
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
 from linkwright.review.parts import compare_parts
 from linkwright.review.references import lost_references
+from linkwright.review.robots.lone_robots import read_lone_robot, robot_text
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -250,13 +251,14 @@ def _compare(
         drawings: what to draw of robots that look different.
     """
     kind, path = rule.kind, new_path or old_path or ""
-    if old_path is None:
-        contents = None if rule.contents is None else rule.contents(versions.new, path)
-        text = rule.added if contents is None else phrase("{change}: {items}", change=rule.added, items=contents)
-        return Subject(kind, path, None, new_path, [Change(text)])
     effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
-    if new_path is None:
-        return Subject(kind, path, old_path, None, [Change(rule.removed, effect, rule.removal_reason)])
+    if old_path is None or new_path is None:
+        if new_path is None:
+            version, change = versions.old, Change(rule.removed, effect, rule.removal_reason)
+        else:
+            version, change = versions.new, Change(_added_text(rule, versions.new, path))
+        changes, images = _lone_contents(version, kind, path, drawings)
+        return Subject(kind, path, old_path, new_path, [change, *changes], images=images)
     pair = FilePair(versions, old_path, new_path, drawings)
     if old_path != new_path:
         text = phrase("renamed from {path}", path=old_path)
@@ -284,6 +286,24 @@ def _compare(
     )
 
 
+def _added_text(rule: KindRule, version: Version, path: str) -> Phrase:
+    """Return the line about an added file, with its contents where they are known."""
+    contents = None if rule.contents is None else rule.contents(version, path)
+    return rule.added if contents is None else phrase("{change}: {items}", change=rule.added, items=contents)
+
+
+def _lone_contents(
+    version: Version, kind: SubjectKind, path: str, drawings: Drawings
+) -> tuple[list[Change], list[ViewImages]]:
+    """Return the line about the robot of a description that only one version has, and images of it."""
+    found = read_lone_robot(version, path) if kind is SubjectKind.DESCRIPTION else None
+    if found is None:
+        return [], []
+    model, robot = found
+    images = lone_images(model, robot, is_old=version.is_old) if drawings.images else []
+    return [Change(robot_text(robot))], images
+
+
 @contextmanager
 def _processes(count: int) -> Iterator[Callable[..., Callable[[], Any]]]:
     """Yield a function that calls a function in one of several processes, and returns a function for the result."""
@@ -302,7 +322,7 @@ def _targets(version: Version) -> set[str]:
 
     A robot that another description includes is complete if a launch file starts it, too.
     """
-    checker = Checker(folders=(version.root,))
+    checker = version.checker()
     started = [file for file in included_robots(version.root) if checker.calls(file, ())]
     files = (version.relative(file) for file in (*find_targets([version.root]).files, *started))
     return {path for path in files if path is not None}

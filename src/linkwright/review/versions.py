@@ -14,6 +14,7 @@ from linkwright.descriptions.pairs import Model
 from linkwright.descriptions.revisions import CommitFiles, leads_outside
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, display_path, phrase
 from linkwright.files.git_repository import SHALLOW_HINT, ChangedFile, GitRepository
+from linkwright.lint.checking import Checker
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import SourceScan
 from linkwright.packages.share_layout import share_of_sources
@@ -51,6 +52,10 @@ class Version:
         if self.commit is not None:
             return self.commit.finder(folder)
         return self._finder.starting_at([folder, self.root, Path.cwd()])
+
+    def checker(self) -> Checker:
+        """Return a checker that finds the packages of this version, also where the working tree has them, too."""
+        return Checker(folders=(self.root,), shares=self.shares)
 
     def model(self, path: str, values: Mapping[str, str]) -> Model:
         """Return a description of this version with values of its arguments."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.descriptions.comparison import Comparison
-from linkwright.descriptions.pairs import Pair
+from linkwright.descriptions.pairs import Model, Pair
 from linkwright.geometry.shapes import Placement
 from linkwright.images.png import png
 from linkwright.picture import OUTLINE_COLOR, VIEWS, SurfaceLibrary, camera_for, render, robot_scene
@@ -57,6 +57,18 @@ def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison, fr
     for name, view in VIEWS.items():
         camera = camera_for(view, _SIZE, *scenes)
         images.append(ViewImages(name, *(png(render(scene, camera=camera)) for scene in scenes)))
+    return images
+
+
+def lone_images(model: Model, robot: Robot, *, is_old: bool) -> list[ViewImages]:
+    """Return images from four sides of a robot that only one version has, or none if it has no visuals."""
+    scene = robot_scene(robot, model.finder, folder=model.path.parent)
+    if not len(scene.mesh.faces):
+        return []
+    images = []
+    for name, view in VIEWS.items():
+        image = png(render(scene, camera=camera_for(view, _SIZE, scene)))
+        images.append(ViewImages(name, image, b"") if is_old else ViewImages(name, b"", image))
     return images
 
 

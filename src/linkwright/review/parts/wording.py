@@ -6,6 +6,7 @@ import re
 from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, field
 
+from linkwright.review.parts.arithmetic import number_of
 from linkwright.review.parts.outline import ARG, MACRO, PROPERTY
 from linkwright.xmltree import Element
 
@@ -34,14 +35,16 @@ class Wording:
         return _EXPRESSION.sub(lambda match: _WORD.sub(lambda word: self.renamed.get(word[0], word[0]), match[0]), text)
 
     def resolved(self, text: str) -> str:
-        """Return a text with the values of literal properties, and with numbers in one form."""
+        """Return a text with the values of literal properties and of expressions, and with numbers in one form."""
         text = _EXPRESSION.sub(self._value, " ".join(text.split()))
         return " ".join(map(_number, text.split()))
 
     def _value(self, match: re.Match[str]) -> str:
         content = match[1].strip()
         value = self.literals.get(content, content)
-        return value if content in self.literals or _is_number(content) else match[0]
+        if content in self.literals or _is_number(content):
+            return value
+        return number_of(content, self.literals) or match[0]
 
     def content(self, element: Element) -> Hashable:
         """Return the comparable content of an element, without white space, comments and nested macros."""
@@ -70,7 +73,7 @@ def properties_of(root: Element) -> Iterator[tuple[str, Element]]:
 
 
 def _number(word: str) -> str:
-    return repr(float(word)) if _is_number(word) else word
+    return f"{float(word):.12g}" if _is_number(word) else word
 
 
 def _is_number(word: str) -> bool:

@@ -138,6 +138,8 @@ def _images(images: Sequence[ViewImages]) -> str:
 
 def _image(view: ViewImages) -> str:
     """Return a view of both versions; the slider moves the border between the old one, at the left, and the new one."""
+    if not view.old or not view.new:
+        return _lone_image(view)
     old, new = (f"data:image/png;base64,{b64encode(image).decode()}" for image in (view.old, view.new))
     label = escape(localized(phrase("old and new version, {view} view", view=view.name)))
     return (
@@ -145,6 +147,17 @@ def _image(view: ViewImages) -> str:
         f"<input type='range' min='0' max='100' value='50' aria-label='{label}'>"
         f"<figcaption><span>{_text(phrase('before'))}</span><span>{escape(view.name)}</span>"
         f"<span>{_text(phrase('after'))}</span></figcaption></figure>"
+    )
+
+
+def _lone_image(view: ViewImages) -> str:
+    """Return a view of a robot that only one version has."""
+    image = b64encode(view.old or view.new).decode()
+    version = phrase("before") if view.old else phrase("after")
+    label = escape(localized(phrase("{view} view", view=view.name)))
+    return (
+        f"<figure><img src='data:image/png;base64,{image}' alt='{label}'>"
+        f"<figcaption><span>{_text(version)}</span><span>{escape(view.name)}</span></figcaption></figure>"
     )
 
 

@@ -60,9 +60,10 @@ def sections_of(review: Review) -> list[Section]:
 def _contents(section: Section) -> Hashable:
     """Return a key that is equal for sections with the same changes and nothing else."""
     subject = section.subject
-    if section.repeated or subject.figures or subject.problems or subject.images or subject.paths or subject.scene:
+    if section.repeated or subject.problems or subject.images or subject.paths or subject.scene:
         return subject.path
-    return subject.kind, *(_text_key(change) for change in section.changes)
+    figures = ((str(figure.name), figure.old, figure.new) for figure in subject.figures)
+    return subject.kind, *(_text_key(change) for change in section.changes), *figures
 
 
 def _text_key(change: Change) -> Hashable:
@@ -139,22 +140,30 @@ def cases_text(change: Change, subject: Subject) -> Phrase | None:
 def _common_cause(cases: Sequence[str], all_cases: Sequence[str]) -> Phrase | None:
     """Return the argument that all argument sets with a change have and no other set, or the other way round.
 
-    None if there is none, or if the arguments of all sets are the same.
+    None if there is none, or if several could be the cause. An argument is preferred that the other sets have with
+    other values.
     """
-    words = [set(_ARGUMENT.split(case)) for case in cases if case]
-    other_words = [set(_ARGUMENT.split(case)) for case in all_cases if case and case not in cases]
-    others = len(set(all_cases) - set(cases))
+    words = [set(_ARGUMENT.split(case)) - {""} for case in cases]
+    others = [set(_ARGUMENT.split(case)) - {""} for case in all_cases if case not in cases]
     if not others:
         return None
-    if len(words) == len(cases):
-        causes = sorted(set.intersection(*words) - set().union(*other_words))
-        if causes:
-            return phrase("with {arguments}", arguments=causes[0])
-    if len(other_words) == others:
-        causes = sorted(set.intersection(*other_words) - set().union(*words))
-        if causes:
-            return phrase("without {arguments}", arguments=causes[0])
-    return None
+    cause = _only_in(words, others)
+    if cause is not None:
+        return phrase("with {arguments}", arguments=cause)
+    cause = _only_in(others, words)
+    return None if cause is None else phrase("without {arguments}", arguments=cause)
+
+
+def _only_in(sets: Sequence[set[str]], others: Sequence[set[str]]) -> str | None:
+    """Return the argument that all sets have and no other set, or None if there is none or if there are several."""
+    causes = sorted(set.intersection(*sets) - set().union(*others))
+    named = [cause for cause in causes if all(_has_argument(other, cause) for other in others)]
+    found = named or causes
+    return found[0] if len(found) == 1 else None
+
+
+def _has_argument(words: set[str], cause: str) -> bool:
+    return any(word.startswith(cause.partition(":=")[0] + ":=") for word in words)
 
 
 def _distinct_values(name: str, cases: Sequence[str]) -> str:

@@ -11,9 +11,10 @@ from linkwright.descriptions.pairs import Model, Pair
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.argument_sets import UNDECLARED, UNUSED
-from linkwright.lint.checking import Checker
+from linkwright.review.changes import Change
 from linkwright.review.file_pair import Fault, FilePair
 from linkwright.review.folders import without_folder
+from linkwright.review.robots.lone_robots import robot_text
 from linkwright.review.robots.partial_robots import PartialPair, missing_in_both, read_partial_robot
 from linkwright.review.versions import Version
 
@@ -217,7 +218,7 @@ def _argument_sets(pair: FilePair) -> dict[str, _Values]:
 
 def _called_sets(version: Version, path: str) -> list[ArgumentSet]:
     """Return the sets with which a description is called, or its defaults if it is not."""
-    return Checker(folders=(version.root,)).argument_sets(version.file(path), ()) or [ArgumentSet({})]
+    return version.checker().argument_sets(version.file(path), ()) or [ArgumentSet({})]
 
 
 def _doubt(called: ArgumentSet) -> int:
@@ -269,7 +270,15 @@ def _report(pair: FilePair, failures: list[_Failure]) -> None:
             pair.add_unreadable(pair.versions.old, old)
     for (old, new), cases_of_fault in names.items():
         pair.add_faults(old, new, tuple(cases_of_fault) if pair.cases or len(names) > 1 else ())
+        if new is None:
+            _add_contents(pair, next(failure.new for failure in failures if failure.name == cases_of_fault[0]))
     pair.cases += (name for cases_of_fault in names.values() for name in cases_of_fault)
+
+
+def _add_contents(pair: FilePair, description: Description | LinkwrightError) -> None:
+    """Add the parts of the robot of a description that only the new version can read."""
+    if isinstance(description, Description) and description.robot is not None:
+        pair.changes.append(Change(robot_text(description.robot)))
 
 
 def _fault(result: Description | LinkwrightError, version: Version) -> Fault | None:

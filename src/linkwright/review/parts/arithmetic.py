@@ -1,0 +1,66 @@
+"""The values of expressions of numbers, such as ``radians(90)``, in descriptions that are not expanded."""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+from collections.abc import Callable, Mapping
+
+_MAX_LENGTH = 200
+_CONSTANTS = {"pi": math.pi}
+_FUNCTIONS: dict[str, Callable[[float], float]] = {
+    "radians": math.radians,
+    "degrees": math.degrees,
+    "sin": math.sin,
+    "cos": math.cos,
+    "tan": math.tan,
+    "sqrt": math.sqrt,
+    "abs": abs,
+    "float": float,
+}
+_OPERATORS: dict[type[ast.operator], Callable[[float, float], float]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
+
+
+def number_of(expression: str, values: Mapping[str, str]) -> str | None:
+    """Return the value of an expression of numbers with 12 digits, or None for any other expression.
+
+    Args:
+        expression: the expression, without ``${`` and ``}``.
+        values: the values of properties, by name.
+    """
+    if len(expression) > _MAX_LENGTH:
+        return None
+    try:
+        number = _number_of(ast.parse(expression.strip(), mode="eval").body, values)
+    except (ArithmeticError, SyntaxError, ValueError):
+        return None
+    return f"{number:.12g}" if math.isfinite(number) else None
+
+
+def _number_of(node: ast.expr, values: Mapping[str, str]) -> float:
+    """Return the value of a node.
+
+    Raises:
+        ValueError: the node is none of numbers.
+        ArithmeticError: the value is not defined or too large.
+    """
+    match node:
+        case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
+            return float(value)
+        case ast.Name(id=name) if name in values:
+            return float(values[name])
+        case ast.Name(id=name) if name in _CONSTANTS:
+            return _CONSTANTS[name]
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return -_number_of(operand, values)
+        case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
+            return _OPERATORS[type(op)](_number_of(left, values), _number_of(right, values))
+        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in _FUNCTIONS:
+            return _FUNCTIONS[name](_number_of(argument, values))
+    raise ValueError
