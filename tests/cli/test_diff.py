@@ -192,11 +192,11 @@ def test_renamed_file_is_found_in_commit(committed, capsys, staged):
 def test_file_missing_from_commit_is_explained(committed, capsys):
     (committed / "urdf/new.urdf").write_text("<robot name='r'><link name='a'/></robot>")
     assert main(["diff", "urdf/new.urdf", "--against", "HEAD"]) == 2
-    assert "no commit has it yet" in capsys.readouterr().err
+    assert "no commit contains the file yet" in capsys.readouterr().err
     git(committed, "add", "--all")
     git(committed, "commit", "--all", "--message", "new")
     assert main(["diff", "urdf/new.urdf", "--against", "HEAD~1"]) == 2
-    assert "run `git log -- urdf/new.urdf` to list the commits that have it" in capsys.readouterr().err
+    assert "run `git log -- urdf/new.urdf` to list the commits that contain the file" in capsys.readouterr().err
 
 
 @needs_git

@@ -341,7 +341,7 @@ def test_nested_sdf_model_and_world_state_are_renamed(make: Make):
 
 
 def test_sdf_rename_to_existing_name_is_rejected(make: Make):
-    with pytest.raises(LinkwrightError, match="exists already"):
+    with pytest.raises(LinkwrightError, match="already exists"):
         make(SDF_FILES).rename("p/models/cart/model.sdf", '  <link name="bo', "wheel")
 
 

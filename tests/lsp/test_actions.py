@@ -125,7 +125,7 @@ async def test_edit_is_rejected_after_text_change(resolving_editor):
     (action,) = await actions(editor, FILE, MAIN, "0.4", ["refactor"])
     editor.change(FILE, "<!-- typed -->\n" + MAIN)
     await asyncio.sleep(0)
-    with pytest.raises(JsonRpcException, match="changed meanwhile"):
+    with pytest.raises(JsonRpcException, match="changed in the meantime"):
         await editor.client.code_action_resolve_async(action)
 
 

@@ -186,5 +186,5 @@ async def test_request_for_changing_text_is_rejected(editor):
     task = asyncio.ensure_future(parameters)
     await asyncio.sleep(0)  # the request is sent, then the change; the expansion takes much longer
     editor.change(FILE, MAIN)
-    with pytest.raises(JsonRpcException, match="changed meanwhile"):
+    with pytest.raises(JsonRpcException, match="changed in the meantime"):
         await task

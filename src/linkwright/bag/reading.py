@@ -357,8 +357,8 @@ def _ignore_profiles_of_files(storage: Any) -> None:
     listed_connections = {(connection.topic, connection.msgtype): connection for connection in storage.connections}
     for file in storage.storages:
         for index, each in enumerate(file.connections):
-            known = listed_connections.get((each.topic, each.msgtype), each)
-            file.connections[index] = each._replace(ext=known.ext, digest=known.digest)
+            listed_connection = listed_connections.get((each.topic, each.msgtype), each)
+            file.connections[index] = each._replace(ext=listed_connection.ext, digest=listed_connection.digest)
 
 
 def _storage_targets(path: Path, display_name: str) -> list[Path]:

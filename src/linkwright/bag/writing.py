@@ -59,7 +59,7 @@ class BagWriter:
         custom_data: additional entries of the metadata.
 
     Raises:
-        LinkwrightError: BAG105, the folder exists already or cannot be created; BAG107, `rosbags` is not installed;
+        LinkwrightError: BAG105, the folder already exists or cannot be created; BAG107, `rosbags` is not installed;
             BAG116, the requested file size is too small.
 
     Attributes:

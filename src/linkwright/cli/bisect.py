@@ -68,22 +68,22 @@ def _search(history: History, check: PartCheck | CommandCheck, unchanged: Phrase
         progress.show(counted("{count} commit left", "{count} commits left", count))
 
     try:
-        found = history.search(check, show)
+        change = history.search(check, show)
     finally:
         progress.end()
-    if found is None:
+    if change is None:
         print(localized(unchanged))
         return FINDINGS
-    _print(check, found)
+    _print(check, change)
     return FINE
 
 
-def _print(check: PartCheck | CommandCheck, found: Found) -> None:
+def _print(check: PartCheck | CommandCheck, change: Found) -> None:
     from linkwright.review.bisecting import PartCheck, difference_text, undecided_text
 
-    print(found.title)
+    print(change.title)
     if isinstance(check, PartCheck):
-        for difference in check.differences(found.before):
+        for difference in check.differences(change.before):
             print(f"  {localized(difference_text(difference))}")
-    if found.undecided:
-        print(localized(undecided_text(found.undecided)))
+    if change.undecided:
+        print(localized(undecided_text(change.undecided)))

@@ -228,8 +228,8 @@ def _check_changed(
     if not targets.files and not targets.packages:
         return []
     findings = checker.check(targets, paths)[0]
-    known = changed.known_findings(lambda targets, paths: checker.for_folders(paths).check(targets, paths)[0])
-    return new_findings(findings, changed.root, known)
+    known_counts = changed.known_findings(lambda targets, paths: checker.for_folders(paths).check(targets, paths)[0])
+    return new_findings(findings, changed.root, known_counts)
 
 
 def _without_baseline(file: str, diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:

@@ -96,7 +96,10 @@ def run_get(arguments: argparse.Namespace) -> int:
     line = ProgressLine()
     try:
         path = install(
-            entry, arguments.source, arguments.to, lambda done, total: line.show(_progress_text(entry, done, total))
+            entry,
+            arguments.source,
+            arguments.to,
+            lambda received_bytes, total: line.show(_progress_text(entry, received_bytes, total)),
         )
     finally:
         line.end()

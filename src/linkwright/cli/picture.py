@@ -173,8 +173,8 @@ def _animation(arguments: argparse.Namespace, scene: Scene, style: Style, ending
     count = _frame_count(arguments)
     progress = ProgressLine()
 
-    def report(done: int) -> None:
-        progress.show(phrase("drawing image {done} of {count}", done=done, count=count))
+    def report(finished_count: int) -> None:
+        progress.show(phrase("drawing image {done} of {count}", done=finished_count, count=count))
 
     try:
         images = turntable(scene, arguments.view, arguments.size, style, count, report)

@@ -293,10 +293,10 @@ def joined(texts: Iterable[str], separator: str = ", ", last: str | None = None)
 def joined_first(texts: Iterable[str], limit: int) -> Phrase:
     """Join the first `limit` texts, and add the number of the others: ``a, b and 3 more``."""
     all_texts = list(texts)
-    shown = joined(all_texts[:limit])
+    shown_texts = joined(all_texts[:limit])
     if len(all_texts) <= limit:
-        return shown
-    return phrase("{names} and {count} more", names=shown, count=len(all_texts) - limit)
+        return shown_texts
+    return phrase("{names} and {count} more", names=shown_texts, count=len(all_texts) - limit)
 
 
 def quoted_names(names: Iterable[object], last: str | None = None) -> Phrase:

@@ -129,7 +129,7 @@ class _File(Generic[MeshT, MatrixT]):
         instance = self._only(self._only(self._root, "scene"), "instance_visual_scene")
         scene = self._by_id("library_visual_scenes", "visual_scene")[_reference(instance)]
         root = self._numbers.identity()
-        placed_meshes = [item for node in self._all(scene, "node") for item in self._placed_meshes(node, root)]
+        placed_meshes = [item for node in self._all_elements(scene, "node") for item in self._placed_meshes(node, root)]
         if not placed_meshes:
             raise UnsupportedContent
         instances = [instance for _, _, instance in placed_meshes]
@@ -137,19 +137,19 @@ class _File(Generic[MeshT, MatrixT]):
 
     # --- tree -------------------------------------------------------------------------------------------------
 
-    def _all(self, node: _Node, tag: str) -> list[_Node]:
+    def _all_elements(self, node: _Node, tag: str) -> list[_Node]:
         return node.findall(self._space + tag)
 
     def _only(self, node: _Node, tag: str) -> _Node:
-        children = self._all(node, tag)
+        children = self._all_elements(node, tag)
         if len(children) != 1:
             raise UnsupportedContent
         return children[0]
 
     def _by_id(self, library: str, tag: str) -> dict[str, _Node]:
         nodes: dict[str, _Node] = {}
-        for element in self._all(self._root, library):
-            for node in self._all(element, tag):
+        for element in self._all_elements(self._root, library):
+            for node in self._all_elements(element, tag):
                 name = node.get("id", "")
                 if not name or name in nodes:
                     raise UnsupportedContent
@@ -162,8 +162,8 @@ class _File(Generic[MeshT, MatrixT]):
         return node.tag[len(self._space) :]
 
     def _unit(self) -> float:
-        for asset in self._all(self._root, "asset")[:1]:
-            for unit in self._all(asset, "unit")[:1]:
+        for asset in self._all_elements(self._root, "asset")[:1]:
+            for unit in self._all_elements(asset, "unit")[:1]:
                 meters = float(unit.get("meter", "1"))
                 return 1.0 if math.isclose(meters, 1.0, rel_tol=1e-5) else meters
         return 1.0
@@ -201,10 +201,11 @@ class _File(Generic[MeshT, MatrixT]):
 
     def _read_mesh(self, mesh: _Node) -> tuple[MeshT, bool]:
         """Return the mesh of a ``<mesh>`` element, and whether it has triangles."""
-        sources = {f"#{element.get('id', '')}": self._source(element) for element in self._all(mesh, "source")}
+        sources = {f"#{element.get('id', '')}": self._source(element) for element in self._all_elements(mesh, "source")}
         vertices = self._only(mesh, "vertices")
         inputs = {
-            element.get("semantic"): sources[element.get("source", "")] for element in self._all(vertices, "input")
+            element.get("semantic"): sources[element.get("source", "")]
+            for element in self._all_elements(vertices, "input")
         }
         corners = inputs["POSITION"]
         if corners.width != 3:
@@ -218,7 +219,7 @@ class _File(Generic[MeshT, MatrixT]):
     def _source(self, source: _Node) -> _Source:
         float_array = self._only(source, "float_array")
         accessor = self._only(self._only(source, "technique_common"), "accessor")
-        width = len(self._all(accessor, "param"))
+        width = len(self._all_elements(accessor, "param"))
         text = float_array.text or ""
         count = len(text.split())
         stride, offset = int(accessor.get("stride", "1")), int(accessor.get("offset", "0"))
@@ -230,11 +231,11 @@ class _File(Generic[MeshT, MatrixT]):
         """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element."""
         inputs = [
             (element.get("semantic"), element.get("source", ""), int(element.get("offset", "")))
-            for element in self._all(primitive, "input")
+            for element in self._all_elements(primitive, "input")
         ]
         width = max(offset for _, _, offset in inputs) + 1
-        texts = [element.text or "" for element in self._all(primitive, "p")]
-        is_polygons = tag == "polygons" and texts and not self._all(primitive, "ph")
+        texts = [element.text or "" for element in self._all_elements(primitive, "p")]
+        is_polygons = tag == "polygons" and texts and not self._all_elements(primitive, "ph")
         if not is_polygons and (tag not in ("triangles", "polylist") or len(texts) != 1):
             raise UnsupportedContent
         counted = (self._only(primitive, "vcount").text or "") if tag == "polylist" else ""

@@ -84,9 +84,9 @@ def _surface_of_revolution(profile: Array, sides: int) -> Triangles:
     cosines, sines = np.array(circle(sides)).T
     rows, columns = len(profile), sides + 1
     radius, height, normal_r, normal_z = (column[:, np.newaxis] for column in profile.T)
-    ones = np.ones_like(cosines)
-    positions = np.stack([radius * cosines, radius * sines, height * ones], axis=2).reshape(-1, 3)
-    normals = np.stack([normal_r * cosines, normal_r * sines, normal_z * ones], axis=2).reshape(-1, 3)
+    unit_cosines = np.ones_like(cosines)
+    positions = np.stack([radius * cosines, radius * sines, height * unit_cosines], axis=2).reshape(-1, 3)
+    normals = np.stack([normal_r * cosines, normal_r * sines, normal_z * unit_cosines], axis=2).reshape(-1, 3)
     lengths = np.sqrt(normals[:, :1] ** 2 + normals[:, 1:2] ** 2 + normals[:, 2:] ** 2)
     u = np.broadcast_to(np.arange(columns) / sides, (rows, columns))
     v = np.broadcast_to(np.linspace(0.0, 1.0, rows)[:, np.newaxis], (rows, columns))

@@ -304,8 +304,8 @@ def _planar_converter(layout: str) -> Callable[[Any], Pixels]:
         step = message.step or (width if has_full_chroma else 2 * pairs)
         chroma_step, chroma_rows = (2 * step, height) if has_full_chroma else (step, (height + 1) // 2)
         data = np.frombuffer(message.data, np.uint8)
-        needed = step * height + chroma_step * chroma_rows
-        if step < width or chroma_step < 2 * pairs or data.size < needed or width == 0 or height == 0:
+        required_size = step * height + chroma_step * chroma_rows
+        if step < width or chroma_step < 2 * pairs or data.size < required_size or width == 0 or height == 0:
             raise BadImageError(
                 phrase(
                     "The image has {size} bytes, too few for {width} x {height} pixels of '{layout}'",
@@ -316,7 +316,7 @@ def _planar_converter(layout: str) -> Callable[[Any], Pixels]:
                 )
             )
         luma = data[: step * height].reshape(height, step)[:, :width]
-        chroma = data[step * height : needed].reshape(chroma_rows, chroma_step)[:, : 2 * pairs]
+        chroma = data[step * height : required_size].reshape(chroma_rows, chroma_step)[:, : 2 * pairs]
         return planar_to_rgb(luma, chroma, layout)
 
     return convert

@@ -94,31 +94,31 @@ class _Writer:
 
     def _link_edits(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
         link = self._links[id(owner)]
-        written = written_link(link)
-        source = _source_text(written)
+        source_link = written_link(link)
+        source = _source_text(source_link)
         changes: list[Replacement] = []
         added: list[Element] = []
         for finding in findings:
-            if finding.inertial is not None and written.children:
+            if finding.inertial is not None and source_link.children:
                 changes += edits_for(link, finding.inertial)[1]
             else:
                 added += finding.added
-        return source, [*changes, *_insertion(written, added)]
+        return source, [*changes, *_insertion(source_link, added)]
 
     def _joint_edits(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
-        written = written_element(owner, "joint")
-        source = _source_text(written)
+        source_element = written_element(owner, "joint")
+        source = _source_text(source_element)
         (axis,) = (element for finding in findings for element in finding.added)
-        old_axis = written.first("axis")
+        old_axis = source_element.first("axis")
         if old_axis is None:
-            return source, list(_insertion(written, [axis]))
+            return source, list(_insertion(source_element, [axis]))
         edit = value_edit(old_axis, "xyz", axis.attributes["xyz"]) if is_literal(old_axis, "xyz") else None
         if edit is None:
             raise NotWritableError(phrase("its <axis> is written with expressions"))
         return source, [Replacement(edit.start, edit.end, edit.replacement)]
 
     def _root_edits(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
-        written = written_element(owner, owner.tag)
+        source_element = written_element(owner, owner.tag)
         added = [element for finding in findings for element in finding.added]
         for name in sorted(_possible_names(added)):
             joint_or_link: Joint | Link | None = self._robot.joints.get(name) or self._robot.links.get(name)
@@ -126,7 +126,7 @@ class _Writer:
                 joint_or_link.element is None or not is_literal(joint_or_link.element, "name")
             ):
                 raise NotWritableError(phrase("the referenced name '{name}' comes from an expression", name=name))
-        return _source_text(written), list(_insertion(written, added))
+        return _source_text(source_element), list(_insertion(source_element, added))
 
 
 def _possible_names(elements: Iterable[Element]) -> set[str]:

@@ -90,22 +90,22 @@ class _CMakeCursor:
         start = self.before.rfind("(")
         if start < 0 or ")" in self.before[start:]:
             return None
-        opening = next((found for found in _OPENING.finditer(self.before) if found.end() == start + 1), None)
+        opening = next((match for match in _OPENING.finditer(self.before) if match.end() == start + 1), None)
         words = self.before[start + 1 : len(self.before) - len(self.typed)].split()
         return None if opening is None else (opening[1].lower(), [word.strip('"') for word in words])
 
     @cached_property
     def typed(self) -> str:
         """The word that ends at the cursor."""
-        found = _WORD_BEFORE_CURSOR.search(self.before)
-        return "" if found is None else found[0]
+        match = _WORD_BEFORE_CURSOR.search(self.before)
+        return "" if match is None else match[0]
 
     @cached_property
     def word(self) -> tuple[int, int]:
         """The start and end offset of the whole word around the cursor."""
         start = self.offset - len(self.typed)
-        found = _WHOLE_WORD.match(self.document.text, start)
-        return (start, start) if found is None else found.span()
+        match = _WHOLE_WORD.match(self.document.text, start)
+        return (start, start) if match is None else match.span()
 
     @property
     def folder(self) -> Path:
@@ -122,18 +122,18 @@ class _CMakeCursor:
 
     def packages(self, start: int) -> Iterator[Completion]:
         """Yield completions of packages that the file does not find yet, declared dependencies first."""
-        found = set(_FIND_PACKAGE.findall(self.document.text[:start] + self.document.text[self.offset :]))
+        found_packages = set(_FIND_PACKAGE.findall(self.document.text[:start] + self.document.text[self.offset :]))
         declared = BUILD_DEPENDENCY.findall(text_of(self.folder / "package.xml"))
-        for name in dict.fromkeys(dependency for dependency in declared if dependency not in found):
+        for name in dict.fromkeys(dependency for dependency in declared if dependency not in found_packages):
             yield Completion(name, ItemKind.PACKAGE, start, "package.xml")
-        yield from (item for item in offer_packages(self.document, start) if item.label not in found)
+        yield from (item for item in offer_packages(self.document, start) if item.label not in found_packages)
 
 
 def _complete(document: Document, offset: int) -> Iterator[Completion]:
-    found: dict[str, Completion] = {}
+    completions: dict[str, Completion] = {}
     for item in _completions(_CMakeCursor(document, offset)):
-        found.setdefault(item.label, item)
-    yield from found.values()
+        completions.setdefault(item.label, item)
+    yield from completions.values()
 
 
 def _completions(build: _CMakeCursor) -> Iterator[Completion]:
@@ -229,9 +229,9 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
         return
     if build.call[0] in _PACKAGE_COMMANDS:
         yield from target_of_package(document, word)
-    for found in _TARGET.finditer(document.text):
-        if found[1] == word:
-            yield Target(document.file, *found.span(1))
+    for match in _TARGET.finditer(document.text):
+        if match[1] == word:
+            yield Target(document.file, *match.span(1))
             return
     path = _path(document, word)
     if path is not None and path.is_file():
@@ -248,8 +248,8 @@ def _links(document: Document) -> Iterator[FileReference]:
 
 
 def _symbols(document: Document) -> Iterator[Symbol]:
-    for found in _TARGET.finditer(document.text):
-        yield Symbol(found[1], SymbolKind.FUNCTION, *found.span(1))
+    for match in _TARGET.finditer(document.text):
+        yield Symbol(match[1], SymbolKind.FUNCTION, *match.span(1))
 
 
 CMAKE_FILES = Format(lambda file: file.name == _NAME, _complete, _explain, _define, _links, _symbols)

@@ -48,11 +48,11 @@ class Completion:
 
 def definitions_of_kind(names: Sequence[NameDefinition], kind: NameKind) -> list[NameDefinition]:
     """Return the first definition of each name of a kind."""
-    found: dict[str, NameDefinition] = {}
+    first_definitions: dict[str, NameDefinition] = {}
     for name in names:
         if name.kind is kind:
-            found.setdefault(name.name, name)
-    return list(found.values())
+            first_definitions.setdefault(name.name, name)
+    return list(first_definitions.values())
 
 
 def sorted_by_use(names: Iterable[NameDefinition], text: str) -> list[NameDefinition]:

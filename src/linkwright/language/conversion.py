@@ -59,7 +59,7 @@ def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, 
     insertion_offset = root.tag.name_start + len(root.name)
     name = next((attribute for attribute in root.tag.attributes() if attribute.name == "name"), None)
     insertion_offset = insertion_offset if name is None else name.end
-    xacro_text = f'{_escaped(text[:insertion_offset])} xmlns:xacro="{ADDRESS}"{_escaped(text[insertion_offset:])}'
+    xacro_text = f'{_escape(text[:insertion_offset])} xmlns:xacro="{ADDRESS}"{_escape(text[insertion_offset:])}'
     try:
         overlay = Overlay({str(new): xacro_text})
         expansion = str(expand(new, {}, packages=project.finder(file), overlay=overlay))
@@ -71,7 +71,7 @@ def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, 
     return NewFile(new, xacro_text)
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
     """Escape the dollar signs before brackets for xacro, except in comments."""
     return "".join(
         token.text if token.kind is Kind.COMMENT else _BEFORE_BRACKET.sub(lambda dollars: f"${dollars[0]}", token.text)

@@ -54,8 +54,8 @@ class Cursor:
     @property
     def substitution(self) -> tuple[str, str] | None:
         """The command and typed argument of the ``$(...)`` around the cursor, or None."""
-        found = _SUBSTITUTION.search(self.typed)
-        return None if found is None else (found[1], found[2] if found[2] is not None else "")
+        match = _SUBSTITUTION.search(self.typed)
+        return None if match is None else (match[1], match[2] if match[2] is not None else "")
 
     @property
     def macro(self) -> Token | None:
@@ -65,8 +65,8 @@ class Cursor:
     @property
     def word(self) -> str:
         """The part of a name in an expression before the cursor, or empty."""
-        found = re.search(r"[A-Za-z_][\w.]*$", self.typed)
-        return found[0] if found else ""
+        match = re.search(r"[A-Za-z_][\w.]*$", self.typed)
+        return match[0] if match else ""
 
 
 def cursor_at(text: str, offset: int) -> Cursor:
@@ -115,7 +115,7 @@ def name_at(text: str, offset: int) -> tuple[str, int] | None:
     line_start = text.rfind("\n", 0, offset) + 1
     line_end = text.find("\n", offset)
     line = text[line_start : line_end if line_end >= 0 else len(text)]
-    for found in _NAME.finditer(line):
-        if found.start() <= offset - line_start <= found.end():
-            return found[0], line_start + found.start()
+    for match in _NAME.finditer(line):
+        if match.start() <= offset - line_start <= match.end():
+            return match[0], line_start + match.start()
     return None

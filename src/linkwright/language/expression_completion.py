@@ -116,11 +116,11 @@ def _parameters(cursor: Cursor) -> tuple[Parameter, ...]:
 
 def _word_counts(text: str) -> Mapping[str, int]:
     """Return the number of occurrences of each word in the expressions of a text."""
-    found: dict[str, int] = {}
+    use_counts: dict[str, int] = {}
     for expression in _EXPRESSION.finditer(text):
         for word in _WORDS.findall(expression[1]):
-            found[word] = found.get(word, 0) + 1
-    return found
+            use_counts[word] = use_counts.get(word, 0) + 1
+    return use_counts
 
 
 def _key_completions(
@@ -163,14 +163,14 @@ def complete_substitution(document: Document, cursor: Cursor, names: Sequence[Na
 
 def package_completions(document: Document, start: int) -> Iterator[Completion]:
     """Yield completions of packages: the file's own first, then by the number of mentions."""
-    found = document.finder.packages()
+    packages = document.finder.packages()
     folder = document.file.parent
 
     def rank(name: str) -> tuple[bool, int, str]:
-        return not folder.is_relative_to(found[name]), -document.text.count(name), name
+        return not folder.is_relative_to(packages[name]), -document.text.count(name), name
 
-    for name in sorted(found, key=rank):
-        yield Completion(name, ItemKind.PACKAGE, start, str(found[name]))
+    for name in sorted(packages, key=rank):
+        yield Completion(name, ItemKind.PACKAGE, start, str(packages[name]))
 
 
 def _short(text: str) -> str:
@@ -180,5 +180,5 @@ def _short(text: str) -> str:
 
 def function_purpose(function: str) -> str:
     """Return the first docstring line of a function of expressions, or the value of a constant."""
-    found = getattr(math, function, None) or getattr(builtins, function, None)
-    return (getattr(found, "__doc__", None) or "").partition("\n")[0] if callable(found) else str(found)
+    value = getattr(math, function, None) or getattr(builtins, function, None)
+    return (getattr(value, "__doc__", None) or "").partition("\n")[0] if callable(value) else str(value)

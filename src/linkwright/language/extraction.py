@@ -193,7 +193,7 @@ def extract_property(
     is_number = _NUMBER.fullmatch(value.lstrip("+-")) is not None
     content = f"${{{value}}}" if selection.in_expression and not is_number else value
     quote = "'" if '"' in content and "'" not in content else '"'
-    definition = f"<xacro:property name={quote}{name}{quote} value={quote}{_quoted(content, quote)}{quote}/>"
+    definition = f"<xacro:property name={quote}{name}{quote} value={quote}{_quote(content, quote)}{quote}/>"
     use = Edit(file, selection.start, selection.end, name if selection.in_expression else f"${{{name}}}")
     names = occurrences_in(text, file)
     is_local = any(
@@ -213,7 +213,7 @@ def extract_property(
     raise error or UnprovedError(phrase("there is no position for the definition of '{name}'", name=name))
 
 
-def _quoted(content: str, quote: str) -> str:
+def _quote(content: str, quote: str) -> str:
     return content.replace(quote, "&quot;" if quote == '"' else "&apos;")
 
 

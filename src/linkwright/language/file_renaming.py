@@ -96,15 +96,15 @@ def _format_references(project: Workspace, texts: Mapping[Path, str], file: Path
 
 def _path_references(project: Workspace, file: Path, text: str) -> Iterator[FileReference]:
     """Yield the references into share folders, and the paths in build files."""
-    for found in _SHARE_PATH.finditer(text):
-        share = project.finder(file).find(found["package"])
+    for match in _SHARE_PATH.finditer(text):
+        share = project.finder(file).find(match["package"])
         if share is not None:
-            yield FileReference(found.start("path"), found.end("path"), Path(source_of(str(share / found["path"]))))
+            yield FileReference(match.start("path"), match.end("path"), Path(source_of(str(share / match["path"]))))
     if file.name in _BUILD_FILES:
-        for found in _WORD.finditer(text):
-            path = file.parent / found[0]
-            if "/" in found[0] or path.is_file():
-                yield FileReference(*found.span(), path)
+        for match in _WORD.finditer(text):
+            path = file.parent / match[0]
+            if "/" in match[0] or path.is_file():
+                yield FileReference(*match.span(), path)
 
 
 def _reference_edit(file: Path, text: str, start: int, end: int, old: Path, new: Path) -> Edit | None:
@@ -113,16 +113,16 @@ def _reference_edit(file: Path, text: str, start: int, end: int, old: Path, new:
     The edit replaces the last components, which the reference shares with the old path. The new path must be below the
     folder that contains them.
     """
-    written = PurePosixPath(text[start:end])
+    reference = PurePosixPath(text[start:end])
     count = 0
-    for name, part in zip(reversed(written.parts), reversed(old.parts), strict=False):
+    for name, part in zip(reversed(reference.parts), reversed(old.parts), strict=False):
         if name != part:
             break
         count += 1
     folder = Path(*old.parts[: len(old.parts) - count])
     if not count or not new.is_relative_to(folder):
         return None
-    tail = "/".join(written.parts[-count:])
+    tail = "/".join(reference.parts[-count:])
     if not text[start:end].endswith(tail):
         return None
     return Edit(file, end - len(tail), end, new.relative_to(folder).as_posix())

@@ -36,4 +36,4 @@ FORMATS: tuple[Format, ...] = (
 
 def format_of(file: Path) -> Format | None:
     """Return the first format that covers a path, or None if no format does."""
-    return next((known for known in FORMATS if known.covers(file)), None)
+    return next((file_format for file_format in FORMATS if file_format.covers(file)), None)

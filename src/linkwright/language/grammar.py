@@ -156,12 +156,12 @@ def _rule_in_macro(root: ElementRule, tags: Sequence[str], tag: str) -> ElementR
 
 def _find_rule(root: ElementRule, tag: str) -> ElementRule | None:
     """Return the rule with a tag that is nearest to the root, or None."""
-    pending, seen = [root], {id(root)}
+    pending, seen_ids = [root], {id(root)}
     for rule in pending:
         if rule.tag == tag:
             return rule
         for child in rule.child_rules.values():
-            if id(child) not in seen:
-                seen.add(id(child))
+            if id(child) not in seen_ids:
+                seen_ids.add(id(child))
                 pending.append(child)
     return None

@@ -65,9 +65,9 @@ class HardwareParameter:
 
 def hardware_plugins(document: Document) -> dict[str, str]:
     """Return the purposes of hardware plugins by type, the plugins that packages export first."""
-    found = {plugin.name: plugin.description for plugin in plugin_classes(document, BASE)}
-    found |= {name: purpose for name, (purpose, _) in _KNOWN.items() if name not in found}
-    return found | {name: "" for name in sorted(extensions("linkwright.hardware")) if name not in found}
+    purposes = {plugin.name: plugin.description for plugin in plugin_classes(document, BASE)}
+    purposes |= {name: purpose for name, (purpose, _) in _KNOWN.items() if name not in purposes}
+    return purposes | {name: "" for name in sorted(extensions("linkwright.hardware")) if name not in purposes}
 
 
 def hardware_class(document: Document, name: str) -> PluginClass | None:
@@ -86,14 +86,14 @@ def hardware_parameters(document: Document, name: str, excluded_offset: int = -1
         name: the type of the plugin, as ``package/Class``.
         excluded_offset: the offset of a parameter in the text that is ignored.
     """
-    known = _KNOWN.get(name, ("", {}))[1]
-    found = {parameter: HardwareParameter(parameter, meaning) for parameter, meaning in known.items()}
+    known_parameters = _KNOWN.get(name, ("", {}))[1]
+    parameters = {parameter: HardwareParameter(parameter, meaning) for parameter, meaning in known_parameters.items()}
     plugin = hardware_class(document, name)
     for parameter in () if plugin is None else _parameters_in_sources(plugin.package, document):
-        found.setdefault(parameter.name, parameter)
+        parameters.setdefault(parameter.name, parameter)
     for parameter_name in _parameters_in_text(document.text, name, excluded_offset):
-        found.setdefault(parameter_name, HardwareParameter(parameter_name))
-    return found
+        parameters.setdefault(parameter_name, HardwareParameter(parameter_name))
+    return parameters
 
 
 def _parameters_in_sources(folder: Path, document: Document) -> Iterator[HardwareParameter]:

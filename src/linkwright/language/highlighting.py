@@ -65,15 +65,15 @@ class Highlight(NamedTuple):
 
 def highlights_in(text: str, file: Path) -> list[Highlight]:
     """Return the highlights of a text, in text order and without overlaps."""
-    found: dict[int, Highlight] = {}
+    highlights: dict[int, Highlight] = {}
     for name in occurrences_in(text, file):
         if "$" not in name.name:
-            found.setdefault(name.start, Highlight(name.start, name.end, _KINDS[name.kind], name.is_definition))
+            highlights.setdefault(name.start, Highlight(name.start, name.end, _KINDS[name.kind], name.is_definition))
     for start, value in _values(text):
         for highlight in _in_value(value, start):
-            found.setdefault(highlight.start, highlight)
+            highlights.setdefault(highlight.start, highlight)
     result: list[Highlight] = []
-    for highlight in sorted(found.values(), key=lambda highlight: highlight.start):
+    for highlight in sorted(highlights.values(), key=lambda highlight: highlight.start):
         if not result or result[-1].end <= highlight.start:
             result.append(highlight)
     return result
@@ -109,13 +109,13 @@ def _in_value(value: str, start: int) -> Iterator[Highlight]:
 
 
 def _in_expression(source: str, start: int) -> Iterator[Highlight]:
-    for found in _WORDS.finditer(source):
-        begin, end = start + found.start(), start + found.end()
-        if found["string"]:
+    for match in _WORDS.finditer(source):
+        begin, end = start + match.start(), start + match.end()
+        if match["string"]:
             yield Highlight(begin, end, HighlightKind.STRING)
-        elif found["number"]:
+        elif match["number"]:
             yield Highlight(begin, end, HighlightKind.NUMBER)
-        elif found["name"] in _KEYWORDS:
+        elif match["name"] in _KEYWORDS:
             yield Highlight(begin, end, HighlightKind.KEYWORD)
-        elif found["name"] in FUNCTIONS:
+        elif match["name"] in FUNCTIONS:
             yield Highlight(begin, end, HighlightKind.FUNCTION)

@@ -32,16 +32,16 @@ def definitions_at(text: str, offset: int, names: Sequence[NameDefinition]) -> l
     if cursor.syntax in (CursorSyntax.TAG, CursorSyntax.CLOSING_TAG) and cursor.token is not None:
         tag = cursor.token.name
         if tag.startswith(PREFIX) and tag not in XACRO:
-            wanted = tag.removeprefix(PREFIX).rpartition(".")[2]
-            return [name for name in names if name.kind is NameKind.MACRO and name.name == wanted]
+            macro_name = tag.removeprefix(PREFIX).rpartition(".")[2]
+            return [name for name in names if name.kind is NameKind.MACRO and name.name == macro_name]
         return []
     if cursor.syntax is not CursorSyntax.VALUE or cursor.token is None or cursor.attribute is None:
         return []
     if cursor.is_in_expression or cursor.substitution is not None:
         word = name_at(text, offset)
         kind = NameKind.PROPERTY if cursor.is_in_expression else NameKind.ARGUMENT
-        wanted = "" if word is None else word[0]
-        return [name for name in names if name.kind is kind and name.name in (wanted, wanted.partition(".")[0])]
+        macro_name = "" if word is None else word[0]
+        return [name for name in names if name.kind is kind and name.name in (macro_name, macro_name.partition(".")[0])]
     value = cursor.attribute.value
     tag = cursor.tags[-1]
     if cursor.attribute.name in ("link", "reference", "joint") or (tag == "material" and cursor.token.is_empty_element):

@@ -51,9 +51,9 @@ def facts_at(
     """
     finder = project.finder(file)
     line_start, line_end = text.rfind("\n", 0, offset) + 1, text.find("\n", offset)
-    for found in _PACKAGE.finditer(text, line_start, len(text) if line_end < 0 else line_end):
-        if found.start(1) <= offset <= found.end(1):
-            package = package_facts(finder, found[1])
+    for match in _PACKAGE.finditer(text, line_start, len(text) if line_end < 0 else line_end):
+        if match.start(1) <= offset <= match.end(1):
+            package = package_facts(finder, match[1])
             return [] if package is None else [package]
     for link in file_references(text, file, finder, values):
         if link.start <= offset <= link.end:

@@ -35,8 +35,8 @@ class IncludeIndex:
         files: dict[Path, None] = {}
         packages: dict[Path, None] = {}
         for folder in self._folders:
-            found, below = walk(folder, DESCRIPTIONS)
-            files.update(dict.fromkeys(real_path(file) for file in found))
+            descriptions, below = walk(folder, DESCRIPTIONS)
+            files.update(dict.fromkeys(real_path(file) for file in descriptions))
             packages.update(dict.fromkeys(below))
         self.files, self.packages = tuple(files), tuple(packages)
         self._package_folders = folders_by_package(map(real_path, packages))
@@ -50,18 +50,18 @@ class IncludeIndex:
             computed: whether an include with a computed path counts for each file that it can mean.
         """
         includers = self._includers(texts)
-        found: dict[Path, None] = {}
-        seen, pending = {file}, [file]
+        entries: dict[Path, None] = {}
+        seen_files, pending = {file}, [file]
         while pending:
             current = pending.pop()
             direct_includers = self._includers_of(current, includers, computed=computed)
             if not direct_includers:
-                found[current] = None
+                entries[current] = None
             for other in direct_includers:
-                if other not in seen:
-                    seen.add(other)
+                if other not in seen_files:
+                    seen_files.add(other)
                     pending.append(other)
-        return list(found) or [file]
+        return list(entries) or [file]
 
     def roots(self, texts: Mapping[Path, str]) -> list[Path]:
         """Return the files that no other file includes.
@@ -86,42 +86,42 @@ class IncludeIndex:
         by_name: dict[str, list[Path]] = {}
         for other in dict.fromkeys((*self.files, *texts)):
             by_name.setdefault(other.name, []).append(other)
-        found: dict[Path, None] = {}
+        related_files: dict[Path, None] = {}
         pending = [*self.entries(file, texts, computed=computed), file]
         while pending:
             current = pending.pop()
-            if current in found:
+            if current in related_files:
                 continue
-            found[current] = None
+            related_files[current] = None
             for inclusion in self._included(current, texts):
-                named = by_name.get(inclusion.name, ())
-                pending += [other for other in named if inclusion.may_lead(current, other, self._package_folders)]
+                candidates = by_name.get(inclusion.name, ())
+                pending += [other for other in candidates if inclusion.may_lead(current, other, self._package_folders)]
                 if computed:
                     pending += filter(inclusion.may_compute, self.files)
-        return list(found)
+        return list(related_files)
 
     def _includers(self, texts: Mapping[Path, str]) -> dict[str, list[tuple[Path, Inclusion]]]:
         """Return the includes of all files, by the names of the included files."""
-        found: dict[str, list[tuple[Path, Inclusion]]] = {}
+        includers: dict[str, list[tuple[Path, Inclusion]]] = {}
         for file in dict.fromkeys((*self.files, *texts)):
             for inclusion in self._included(file, texts):
-                found.setdefault(inclusion.name, []).append((file, inclusion))
-        return found
+                includers.setdefault(inclusion.name, []).append((file, inclusion))
+        return includers
 
     def _includers_of(
         self, file: Path, includers: Mapping[str, list[tuple[Path, Inclusion]]], *, computed: bool = False
     ) -> list[Path]:
         """Return the other files that include a file."""
-        found = {
+        including_files = {
             other: None
             for other, inclusion in includers.get(file.name, ())
             if inclusion.may_lead(other, file, self._package_folders)
         }
         if computed:
             every = (pair for pairs in includers.values() for pair in pairs)
-            found |= {other: None for other, inclusion in every if inclusion.may_compute(file)}
-        found.pop(file, None)
-        return [*found]
+            including_files |= {other: None for other, inclusion in every if inclusion.may_compute(file)}
+        including_files.pop(file, None)
+        return [*including_files]
 
     def _included(self, file: Path, texts: Mapping[Path, str]) -> tuple[Inclusion, ...]:
         text = texts.get(file)
@@ -129,13 +129,13 @@ class IncludeIndex:
             return tuple(dict.fromkeys(inclusions_in(text)))
         try:
             changed_ns = file.stat().st_mtime_ns
-            known = self._inclusions.get(file)
-            if known is None or known[0] != changed_ns:
+            cached = self._inclusions.get(file)
+            if cached is None or cached[0] != changed_ns:
                 inclusions = tuple(dict.fromkeys(inclusions_in(file.read_text(encoding="utf-8", errors="replace"))))
-                known = self._inclusions[file] = (changed_ns, inclusions)
+                cached = self._inclusions[file] = (changed_ns, inclusions)
         except OSError:
             return ()
-        return known[1]
+        return cached[1]
 
 
 def real_path(path: str | os.PathLike[str]) -> Path:

@@ -113,7 +113,7 @@ def _replacements(
         text = project.text(file, texts) or ""
         places = [use for use in uses if use.file == file and not use.is_definition]
         pieces = [*_pieces(text)] if places else []
-        done: set[tuple[int, int]] = set()
+        replaced_ranges: set[tuple[int, int]] = set()
         for use in places:
             piece = next(
                 (
@@ -134,10 +134,10 @@ def _replacements(
                 )
                 raise UnprovedError(used)
             span = piece.start + around.start, piece.start + around.end
-            if span not in done:
-                done.add(span)
+            if span not in replaced_ranges:
+                replaced_ranges.add(span)
                 names = [candidate for candidate in places if span[0] <= candidate.start < span[1]]
-                yield Edit(file, *span, _replaced(around, piece, names, value, is_raw=is_raw))
+                yield Edit(file, *span, _replacement(around, piece, names, value, is_raw=is_raw))
 
 
 def _pieces(text: str) -> Iterator[_Piece]:
@@ -158,7 +158,9 @@ def _expression_around(piece: _Piece, use: Occurrence) -> SourceExpression | Non
     )
 
 
-def _replaced(around: SourceExpression, piece: _Piece, names: Sequence[Occurrence], value: str, *, is_raw: bool) -> str:
+def _replacement(
+    around: SourceExpression, piece: _Piece, names: Sequence[Occurrence], value: str, *, is_raw: bool
+) -> str:
     """Return the text that replaces an expression with the property."""
     quotes = {"'": "&apos;", '"': "&quot;"}
     source, low = around.source, piece.start + around.inner_range[0]

@@ -53,13 +53,13 @@ class _Message:
 def _line_at(text: str, offset: int) -> re.Match[str] | None:
     """Return the line around an offset, or None if the offset is in a comment."""
     start = text.rfind("\n", 0, offset) + 1
-    found = _FIELD.match(text, start)
-    return None if found is None or "#" in text[start:offset] else found
+    match = _FIELD.match(text, start)
+    return None if match is None or "#" in text[start:offset] else match
 
 
 def _own_package(document: Document) -> str:
-    found = enclosing_package(document.file.parent)
-    return "" if found is None else found[0]
+    package = enclosing_package(document.file.parent)
+    return "" if package is None else package[0]
 
 
 def _find_message(document: Document, type_name: str) -> _Message | None:
@@ -76,9 +76,9 @@ def _find_message(document: Document, type_name: str) -> _Message | None:
     text = catalog.texts(package).get(f"msg/{name}")
     if text is None:
         return None
-    known = catalog.file_of(package)
-    start = known.read_text(encoding="utf-8").find(f"=== msg/{name}\n")
-    return _Message(text, Target(known, start + 4, start + 8 + len(name)))
+    source = catalog.file_of(package)
+    start = source.read_text(encoding="utf-8").find(f"=== msg/{name}\n")
+    return _Message(text, Target(source, start + 4, start + 8 + len(name)))
 
 
 # --- completion -----------------------------------------------------------------------------------------------
@@ -127,22 +127,22 @@ def _used_types(document: Document, excluded_offset: int) -> list[str]:
         document: the text.
         excluded_offset: the offset of a type in the text that is not counted.
     """
-    found: Counter[str] = Counter()
+    use_counts: Counter[str] = Counter()
     files = sorted(document.file.parent.glob(f"*{document.file.suffix}"))[:_MAX_NEIGHBORS]
     for file in dict.fromkeys((document.file, *files)):
         text = document.text if file == document.file else document.other(file)
         lines = (
             line for line in _FIELD.finditer(text) if file != document.file or line.start("type") != excluded_offset
         )
-        found.update(line["type"] for line in lines if line["type"] and line["name"] and "/" in line["type"])
-    return [name for name, _ in found.most_common()]
+        use_counts.update(line["type"] for line in lines if line["type"] and line["name"] and "/" in line["type"])
+    return [name for name, _ in use_counts.most_common()]
 
 
 def _names_in(document: Document, package: str) -> list[str]:
     share = document.finder.find(package) if package else None
     own = {} if share is None else interface_files(share, "msg")
-    known = [name.removeprefix("msg/") for name in catalog.texts(package) if name.startswith("msg/")]
-    return sorted({*own, *known})
+    known_messages = [name.removeprefix("msg/") for name in catalog.texts(package) if name.startswith("msg/")]
+    return sorted({*own, *known_messages})
 
 
 # --- hover, definition and symbols ----------------------------------------------------------------------------
@@ -184,7 +184,7 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
 
 def _symbols(document: Document) -> Iterator[Symbol]:
     text = document.text
-    separators = [(found.start(), found.end()) for found in _SEPARATOR.finditer(text)]
+    separators = [(match.start(), match.end()) for match in _SEPARATOR.finditer(text)]
     bounds = [0, *(end for _, end in separators)], [*(start for start, _ in separators), len(text)]
     names = SECTIONS.get(document.file.suffix[1:], ("",))
     for number, (start, end) in enumerate(zip(*bounds, strict=True)):

@@ -91,13 +91,13 @@ def arguments_in(text: str, file: Path) -> list[LaunchArgument]:
     if len(text) > _MAX_TEXT:
         return []
     if file.name.endswith(".py"):
-        found = _in_python(text, file)
+        arguments = _in_python(text, file)
     elif file.name.endswith((".yaml", ".yml")):
-        found = _in_yaml(text, file)
+        arguments = _in_yaml(text, file)
     else:
-        found = _in_xml(text, file)
+        arguments = _in_xml(text, file)
     by_name: dict[str, LaunchArgument] = {}
-    for argument in found:
+    for argument in arguments:
         by_name.setdefault(argument.name, argument)
     return list(by_name.values())
 
@@ -145,7 +145,7 @@ def _in_python(text: str, file: Path) -> Iterator[LaunchArgument]:
         name = call.argument("name", 0)
         literal = _literal(name)
         default, description = call.argument("default_value"), call.argument("description")
-        default_text = None if default is None else _source_of(_resolved(python, default), text)
+        default_text = None if default is None else _source_of(_resolve(python, default), text)
         description_text = (
             "".join(part.value for part in description.parts if isinstance(part, Text)) if description else ""
         )
@@ -195,8 +195,8 @@ def _entries(python: PythonText, values: Part) -> Iterator[tuple[Text, list[str]
         if entry is not None:
             texts = [part for part in item.after_colon if part is not entry]
             inner = [_literal(inner_item) for group in texts if isinstance(group, Group) for inner_item in group.items]
-            found = [part for part in texts if isinstance(part, Text)] or [part for part in inner if part is not None]
-            yield entry, [part.value for part in found]
+            strings = [part for part in texts if isinstance(part, Text)] or [part for part in inner if part is not None]
+            yield entry, [part.value for part in strings]
 
 
 def _literal(item: Item | None) -> Text | None:
@@ -211,7 +211,7 @@ def _literals(item: Item | None) -> tuple[str, ...]:
     return tuple(text.value for inner in part.items if (text := _literal(inner)) is not None)
 
 
-def _resolved(python: PythonText, item: Item) -> Item:
+def _resolve(python: PythonText, item: Item) -> Item:
     """Resolve a variable to its string, or to the default of its ``LaunchConfiguration``."""
     for _ in range(2):
         part = item.parts[0] if len(item.parts) == 1 else None

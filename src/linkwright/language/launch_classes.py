@@ -30,12 +30,12 @@ _HIDDEN = frozenset({"self", "kwargs", "unknown", "args"})
 
 @cache
 def _classes() -> Mapping[str, Any]:
-    found: dict[str, Any] = {}
+    meanings: dict[str, Any] = {}
     for module in map(import_module, _MODULES):
         for name, value in vars(module).items():
             if inspect.isclass(value) and value.__module__.startswith("linkwright.launch") and name[0] != "_":
-                found.setdefault(name, value)
-    return found
+                meanings.setdefault(name, value)
+    return meanings
 
 
 def load_classes() -> None:
@@ -60,14 +60,14 @@ def class_arguments(name: str) -> Mapping[str, str]:
 
     A meaning that is not documented is empty. The mapping is empty if launch has no such class.
     """
-    found: dict[str, str] = {}
+    meanings: dict[str, str] = {}
     for cls in inspect.getmro(_classes().get(name, object)):
-        written = {match[1]: match[2] for match in _ARGUMENT.finditer(inspect.getdoc(cls) or "")}
+        documented_arguments = {match[1]: match[2] for match in _ARGUMENT.finditer(inspect.getdoc(cls) or "")}
         for argument in _parameters(cls):
-            meaning = written.get(argument, "")
-            if not found.get(argument):
-                found[argument] = "" if meaning.startswith("see `") else _markdown(" ".join(meaning.split()))
-    return dict(sorted(found.items(), key=lambda entry: _rank(entry[0])))
+            meaning = documented_arguments.get(argument, "")
+            if not meanings.get(argument):
+                meanings[argument] = "" if meaning.startswith("see `") else _markdown(" ".join(meaning.split()))
+    return dict(sorted(meanings.items(), key=lambda entry: _rank(entry[0])))
 
 
 def first_argument(name: str) -> str | None:

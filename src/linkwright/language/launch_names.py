@@ -101,16 +101,16 @@ def _target(path: Path | None) -> Path | None:
 
 
 def _uses(text: str, start: int, file: Path) -> Iterator[LaunchName]:
-    for found in _USE.finditer(text):
-        group = 2 if found[2] else 4
-        yield LaunchName(file, start + found.start(group), found[group])
+    for match in _USE.finditer(text):
+        group = 2 if match[2] else 4
+        yield LaunchName(file, start + match.start(group), match[group])
 
 
 # --- XML --------------------------------------------------------------------------------------------------------------
 
 
 def _in_xml(document: Document) -> LaunchNames:
-    found, launch, file = LaunchNames(), LaunchText(document), document.file
+    names, launch, file = LaunchNames(), LaunchText(document), document.file
     includes: list[LaunchInclude | None] = []
     for token in tokens(document.text):
         if token.kind is Kind.END and includes:
@@ -119,42 +119,42 @@ def _in_xml(document: Document) -> LaunchNames:
             continue
         attributes = {attribute.name: attribute for attribute in token.attributes() if attribute.value}
         for attribute in attributes.values():
-            found.names += _uses(attribute.value or "", attribute.value_start, file)
+            names.names += _uses(attribute.value or "", attribute.value_start, file)
         outer_include = next((include for include in reversed(includes) if include is not None), None)
         name = attributes.get("name")
         if token.name in ("arg", "bool_arg", "let") and name is not None and name.value:
             name_use = LaunchName(file, name.value_start, name.value, is_declared=True)
             if "$" not in name.value:
-                (found.names if outer_include is None else outer_include.passed).append(name_use)
+                (names.names if outer_include is None else outer_include.passed).append(name_use)
         include = None
         if token.name == "include" and "file" in attributes:
-            written = attributes["file"].value or ""
-            include = LaunchInclude(_target(launch.path_of(written)), written)
-            found.includes.append(include)
+            path_text = attributes["file"].value or ""
+            include = LaunchInclude(_target(launch.path_of(path_text)), path_text)
+            names.includes.append(include)
         if not token.is_empty_element:
             includes.append(include)
-    return found
+    return names
 
 
 # --- YAML -------------------------------------------------------------------------------------------------------------
 
 
 def _in_yaml(document: Document) -> LaunchNames:
-    found, launch, file = LaunchNames(), LaunchText(document), document.file
+    names, launch, file = LaunchNames(), LaunchText(document), document.file
     for entry in YamlOutline(document.text).root.all():
         if entry.value:
-            found.names += _uses(entry.value, entry.value_start, file)
+            names.names += _uses(entry.value, entry.value_start, file)
         if entry.key == "include" and entry.child("file") is not None:
-            written = entry.child("file")
-            path = "" if written is None else written.scalar
+            path_entry = entry.child("file")
+            path = "" if path_entry is None else path_entry.scalar
             passed = [*_passed_in_yaml(entry, file)]
-            found.includes.append(LaunchInclude(_target(launch.path_of(path)), path, passed))
+            names.includes.append(LaunchInclude(_target(launch.path_of(path)), path, passed))
         elif entry.key in ("arg", "let") and "include" not in entry.path[:-1]:
-            found.names += _named(entry, file)
-    return found
+            names.names += _names_in_list(entry, file)
+    return names
 
 
-def _named(entry: YamlEntry, file: Path) -> Iterator[LaunchName]:
+def _names_in_list(entry: YamlEntry, file: Path) -> Iterator[LaunchName]:
     name = entry.child("name")
     if name is not None and name.scalar and "$" not in name.scalar:
         start = name.value_start + (1 if name.value[:1] in ("'", '"') else 0)
@@ -164,14 +164,14 @@ def _named(entry: YamlEntry, file: Path) -> Iterator[LaunchName]:
 def _passed_in_yaml(include: YamlEntry, file: Path) -> Iterator[LaunchName]:
     for entry in include.all():
         if entry.is_item and entry.parent is not None and entry.parent.key in ("arg", "let"):
-            yield from _named(entry, file)
+            yield from _names_in_list(entry, file)
 
 
 # --- Python -----------------------------------------------------------------------------------------------------------
 
 
 def _in_python(document: Document) -> LaunchNames:
-    found, file = LaunchNames(), document.file
+    names, file = LaunchNames(), document.file
     launch = PythonLaunchText(document)
     python = launch.python
     names_by_offset: dict[int, LaunchName] = {}
@@ -196,16 +196,16 @@ def _in_python(document: Document) -> LaunchNames:
     for call in python.calls_of("IncludeLaunchDescription"):
         include = _included(launch, call, file)
         passed.update(name.start for name in include.passed)
-        found.includes.append(include)
+        names.includes.append(include)
     for text, item in python.strings:
         if text.start in names_by_offset or text.start in passed or not text.value.isidentifier():
             continue
         if _is_subscript(item):
             add(text)
         else:
-            found.texts.append(LaunchName(file, text.start, text.value))
-    found.names = [*names_by_offset.values()]
-    return found
+            names.texts.append(LaunchName(file, text.start, text.value))
+    names.names = [*names_by_offset.values()]
+    return names
 
 
 def _first_text(item: Item | None) -> Text | None:

@@ -111,8 +111,8 @@ class PythonLaunchText:
 
     def meaning_at(self, offset: int) -> _StringMeaning | None:
         """Return the meaning of the string at an offset, or None outside of strings."""
-        found = self.python.string_at(offset)
-        return None if found is None else self._meaning_of(*found)
+        string = self.python.string_at(offset)
+        return None if string is None else self._meaning_of(*string)
 
     def _meaning_of(self, text: Text, item: Item) -> _StringMeaning:
         group, keyword = item.group, item.keyword
@@ -122,9 +122,9 @@ class PythonLaunchText:
         if group.function == "MoveItConfigsBuilder" and keyword == "package_name":
             return _StringMeaning("package", text)
         if keyword in _PROGRAM_KEYWORDS or keyword in ("plugin", "node_plugin"):
-            given = next((other for other in group.items if other.keyword in _PACKAGE_KEYWORDS), None)
+            package_item = next((other for other in group.items if other.keyword in _PACKAGE_KEYWORDS), None)
             kind = "program" if keyword in _PROGRAM_KEYWORDS else "component"
-            return _StringMeaning(kind, text, package=self.paths.text_of(given))
+            return _StringMeaning(kind, text, package=self.paths.text_of(package_item))
         if group.function in CONFIGURATIONS and (index == 0 or keyword == "variable_name"):
             return _StringMeaning("configuration", text, arguments=self.arguments)
         if keyword == "output":
@@ -152,17 +152,17 @@ class PythonLaunchText:
         if group.opening == "(" and _is_in_list_named(outer, _REMAPPINGS) and len(group.items) <= _PAIR:
             pairs = [sibling.parts[0] for sibling in outer.group.items if sibling is not outer and sibling.parts]
             first_parts = (pair.items[0].parts[:1] for pair in pairs if isinstance(pair, Group) and pair.items)
-            given = frozenset(part.value for parts in first_parts for part in parts if isinstance(part, Text))
+            remapped_names = frozenset(part.value for parts in first_parts for part in parts if isinstance(part, Text))
             programs = self._programs(outer, "remappings")
             first = group.items[0].parts[0] if group.items[0].parts else None
             if item is not group.items[0]:  # This string is the new name.
                 old = first.value if isinstance(first, Text) else ""
                 return _StringMeaning("topic", text, choices=_new_names(old), programs=programs)
-            return _StringMeaning("topic", text, programs=programs, given=given)
+            return _StringMeaning("topic", text, programs=programs, given=remapped_names)
         if group.opening == "{" and _is_in_list_named(outer, _PARAMETERS):
             names = (sibling.parts[0] for sibling in group.items if sibling is not item and sibling.parts)
-            given = frozenset(part.value for part in names if isinstance(part, Text))
-            return _StringMeaning("parameter", text, programs=self._programs(outer, "parameters"), given=given)
+            remapped_names = frozenset(part.value for part in names if isinstance(part, Text))
+            return _StringMeaning("parameter", text, programs=self._programs(outer, "parameters"), given=remapped_names)
         return None
 
     def _programs(self, item: Item, keyword: str) -> tuple[NodeProgram, ...]:
@@ -187,14 +187,16 @@ class PythonLaunchText:
 
     def parameters(self, meaning: _StringMeaning) -> list[ParameterInfo]:
         """Return the parameters that the nodes to which a string belongs may have."""
-        found: dict[str, ParameterInfo] = {}
+        parameters: dict[str, ParameterInfo] = {}
         for program in meaning.programs:
             names = (node_name(*program), program.executable)
-            known = next((found_parameters for name in names if (found_parameters := node_parameters(name))), ())
-            for parameter in known or parameters_in_sources(self.document, program):
-                found.setdefault(parameter.name, parameter)
-        found.setdefault("use_sim_time", ParameterInfo("use_sim_time", "bool", False))
-        return list(found.values())
+            node_parameters_ = next(
+                (found_parameters for name in names if (found_parameters := node_parameters(name))), ()
+            )
+            for parameter in node_parameters_ or parameters_in_sources(self.document, program):
+                parameters.setdefault(parameter.name, parameter)
+        parameters.setdefault("use_sim_time", ParameterInfo("use_sim_time", "bool", False))
+        return list(parameters.values())
 
     def undeclared_names(self, excluded: Text) -> list[str]:
         """Return the names of configurations that the file uses but does not declare."""
@@ -205,8 +207,8 @@ class PythonLaunchText:
         return [name for name in names if name and name not in declared]
 
     def _choices(self, call: Group) -> tuple[str, ...]:
-        listed = call.argument("choices")
-        part = listed.parts[0] if listed is not None and listed.parts else None
+        choices = call.argument("choices")
+        part = choices.parts[0] if choices is not None and choices.parts else None
         inner = part.items if isinstance(part, Group) else []
         return tuple(text_part.value for item in inner for text_part in item.parts[:1] if isinstance(text_part, Text))
 
@@ -227,11 +229,11 @@ class PythonLaunchText:
             return None
         argument = next((candidate for candidate in declared if candidate.name == name), None)
         choices = () if argument is None else likely_values(argument, name, self.document.text)
-        known = () if argument is None else (argument,)
-        return _StringMeaning("choice", text, None, known, self.paths.before(text, item), choices)
+        known_arguments = () if argument is None else (argument,)
+        return _StringMeaning("choice", text, None, known_arguments, self.paths.before(text, item), choices)
 
     def included_file(self, include: Group) -> Path | None:
-        """Return the file that an ``IncludeLaunchDescription`` includes, if it is known and exists."""
+        """Return the file that an ``IncludeLaunchDescription`` includes, or None if it is unknown or missing."""
         value = self.paths.value_of(include.argument("launch_description_source", 0))
         return None if value is None else self.file_of(value.text)
 
@@ -253,18 +255,18 @@ class PythonLaunchText:
         """Return the path of a string up to the first slash at or after an offset."""
         base = "" if meaning.base is None else meaning.base.text
         rest = meaning.text.value[end - meaning.text.start :].partition("/")[0]
-        written = meaning.text.value[: end - meaning.text.start] + rest
-        return base.rstrip("/") + "/" + written.lstrip("/") if base.endswith("/") else base + written
+        path_text = meaning.text.value[: end - meaning.text.start] + rest
+        return base.rstrip("/") + "/" + path_text.lstrip("/") if base.endswith("/") else base + path_text
 
 
-def _is_in_list_named(item: Item, wanted: re.Pattern[str]) -> bool:
+def _is_in_list_named(item: Item, name_pattern: re.Pattern[str]) -> bool:
     """Return whether an item is in a list for an argument or variable with a matching name."""
     around: Item | None = item
     for _ in range(_DEEPEST_LIST):
         if around is None:
             return False
         words = [around.keyword] + [part.value for part in around.parts[:1] if isinstance(part, Name)]
-        if any(wanted.search(word) for word in words):
+        if any(name_pattern.search(word) for word in words):
             return True
         around = around.group.parent if not around.group.callee else None
     return False
@@ -380,14 +382,14 @@ def _explanation(launch: PythonLaunchText, meaning: _StringMeaning, offset: int)
 
 
 def _explain_argument(launch: PythonLaunchText, string_meaning: _StringMeaning) -> str | None:
-    """Explain the argument of an included file or launch class that has a string as its value."""
+    """Explain the argument whose value is a string, or return None if there is no explanation."""
     if string_meaning.kind == "choice" and string_meaning.arguments:
         return string_meaning.arguments[0].describe()
-    found = launch.python.string_at(string_meaning.text.start)
-    if found is None or not found[1].keyword:
+    string = launch.python.string_at(string_meaning.text.start)
+    if string is None or not string[1].keyword:
         return None
-    meaning = class_arguments(found[1].group.function).get(found[1].keyword)
-    return f"`{found[1].keyword}`: {meaning}" if meaning else None
+    meaning = class_arguments(string[1].group.function).get(string[1].keyword)
+    return f"`{string[1].keyword}`: {meaning}" if meaning else None
 
 
 def _argument_completions(launch: PythonLaunchText, offset: int) -> Iterator[Completion]:
@@ -400,11 +402,11 @@ def _argument_completions(launch: PythonLaunchText, offset: int) -> Iterator[Com
         return
     if any(item.start <= start and item.parts for item in call.items if _group_around(item, start) is not None):
         return
-    given = {item.keyword for item in call.items}
+    keywords = {item.keyword for item in call.items}
     if call.items[0].parts and not call.items[0].keyword and text[:start].rstrip().endswith(","):
-        given.add(first_argument(call.function) or "")
+        keywords.add(first_argument(call.function) or "")
     for name, meaning in class_arguments(call.function).items():
-        if name not in given:
+        if name not in keywords:
             yield Completion(f"{name}=", ItemKind.ATTRIBUTE, start, call.function, meaning)
 
 
@@ -415,11 +417,11 @@ def _group_around(item: Item, offset: int) -> Group | None:
 
 
 def _explain_name(launch: PythonLaunchText, offset: int) -> Explanation | None:
-    """Explain the class or argument at an offset, or the variable that contains a path."""
-    found = name_at(launch.document.text, offset)
-    if found is None:
+    """Explain the class, argument or path variable at an offset, or return None."""
+    name_and_start = name_at(launch.document.text, offset)
+    if name_and_start is None:
         return None
-    name, start = found
+    name, start = name_and_start
     call = launch.python.call_at(offset)
     text = describe_class(name.rpartition(".")[2])
     if text is None and call is not None and any(item.keyword == name for item in call.items):

@@ -40,11 +40,11 @@ class LaunchRenaming:
 
 def launch_name_at(document: Document, offset: int) -> tuple[LaunchName, Path] | None:
     """Return the launch argument at an offset and the file that it belongs to, or None."""
-    found = launch_names(document)
-    for name in found.names:
+    names = launch_names(document)
+    for name in names.names:
         if name.start <= offset <= name.end:
             return name, document.file
-    for include in found.includes:
+    for include in names.includes:
         for name in include.passed:
             if name.start <= offset <= name.end:
                 return (name, include.target) if include.target is not None else None
@@ -143,25 +143,25 @@ class _Search:
     def _mentions(self, file: Path) -> bool:
         return any(name.name == self._old for name in self._names(file).names)
 
-    def _mentions_below(self, file: Path, seen: set[Path]) -> bool:
+    def _mentions_below(self, file: Path, seen_files: set[Path]) -> bool:
         """Return whether a file, or a file that shares its arguments, mentions the argument."""
-        if file in seen:
+        if file in seen_files:
             return False
-        seen.add(file)
+        seen_files.add(file)
         return self._mentions(file) or any(
             include.target is not None
             and self._passed_name(include) is None
-            and self._mentions_below(include.target, seen)
+            and self._mentions_below(include.target, seen_files)
             for include in self._names(file).includes
         )
 
     def _mentions_above(
-        self, file: Path, includers: Mapping[Path, list[tuple[Path, LaunchInclude]]], seen: set[Path]
+        self, file: Path, includers: Mapping[Path, list[tuple[Path, LaunchInclude]]], seen_files: set[Path]
     ) -> bool:
         """Return whether a file, one of its includes or one of its includers has the argument."""
-        if file in seen:
+        if file in seen_files:
             return False
-        seen.add(file)
+        seen_files.add(file)
         if self._mentions(file):
             return True
         beside = (
@@ -169,8 +169,10 @@ class _Search:
             for include in self._names(file).includes
             if include.target is not None and self._passed_name(include) is None
         )
-        return any(self._mentions_below(target, {*seen}) for target in beside if target not in seen) or any(
-            self._passed_name(include) is None and include.is_known and self._mentions_above(other, includers, seen)
+        return any(self._mentions_below(target, {*seen_files}) for target in beside if target not in seen_files) or any(
+            self._passed_name(include) is None
+            and include.is_known
+            and self._mentions_above(other, includers, seen_files)
             for other, include in includers.get(file, ())
         )
 
@@ -189,13 +191,13 @@ class _Search:
 
     def _includers(self) -> dict[Path, list[tuple[Path, LaunchInclude]]]:
         """Return the launch files of the workspace that include a file, by the file."""
-        found: dict[Path, list[tuple[Path, LaunchInclude]]] = {}
+        includers: dict[Path, list[tuple[Path, LaunchInclude]]] = {}
         files = (file for file in self._project.files(_ENDINGS) if is_launch_file(file))
         for file in islice(files, _MAX_FILES):
             for include in self._names(file).includes:
                 if include.target is not None:
-                    found.setdefault(include.target, []).append((file, include))
-        return found
+                    includers.setdefault(include.target, []).append((file, include))
+        return includers
 
     def _names(self, file: Path) -> LaunchNames:
         if file not in self._names_by_file:

@@ -58,7 +58,7 @@ def substitution_around(text: str, offset: int) -> re.Match[str] | None:
 
     Its groups are the command and the arguments.
     """
-    return next((found for found in _WHOLE.finditer(text) if found.start() <= offset <= found.end()), None)
+    return next((match for match in _WHOLE.finditer(text) if match.start() <= offset <= match.end()), None)
 
 
 def evaluate(text: str, file: Path, finder: PackageFinder, configurations: Mapping[str, str | None]) -> str | None:
@@ -71,17 +71,17 @@ def evaluate(text: str, file: Path, finder: PackageFinder, configurations: Mappi
         configurations: the values of ``$(var NAME)`` by name, which may contain substitutions.
     """
 
-    def value(found: re.Match[str]) -> str:
-        command, argument = found[1], (found[2] or "").strip("'\" ")
+    def value(match: re.Match[str]) -> str:
+        command, argument = match[1], (match[2] or "").strip("'\" ")
         if command in ("find-pkg-share", "find"):
             share = finder.find(argument)
-            return found[0] if share is None else str(share)
+            return match[0] if share is None else str(share)
         if command == "dirname":
             return str(file.parent)
         if command in ("var", "arg"):
-            known = configurations.get(argument.partition(" ")[0])
-            return found[0] if known is None else known
-        return found[0]
+            default = configurations.get(argument.partition(" ")[0])
+            return match[0] if default is None else default
+        return match[0]
 
     for _ in range(_DEEPEST):
         replaced = _WHOLE.sub(value, text)
@@ -93,8 +93,8 @@ def evaluate(text: str, file: Path, finder: PackageFinder, configurations: Mappi
 
 def path_words(text: str) -> Iterator[tuple[int, int]]:
     """Yield the start and end of each word of a text. A ``$(...)`` is never split."""
-    for found in _WORD.finditer(text):
-        yield found.span()
+    for match in _WORD.finditer(text):
+        yield match.span()
 
 
 def typed_word(typed: str) -> str:

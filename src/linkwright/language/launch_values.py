@@ -115,34 +115,40 @@ class LaunchText:
 
     def undeclared_names(self, excluded_offset: int) -> list[str]:
         """Return the names in ``$(var NAME)`` that are not declared, except at an offset."""
-        found = (use for use in _USE.finditer(self.document.text) if use.start(1) != excluded_offset)
-        return [name for name in dict.fromkeys(use[1] for use in found) if name not in self.configurations]
+        uses = (use for use in _USE.finditer(self.document.text) if use.start(1) != excluded_offset)
+        return [name for name in dict.fromkeys(use[1] for use in uses) if name not in self.configurations]
 
-    def path_of(self, written: str) -> Path | None:
+    def path_of(self, path_text: str) -> Path | None:
         """Resolve a path in the launch file, or return None if it is empty or unknown."""
-        text = evaluate(written, self.document.file, self.document.finder, self.configurations)
+        text = evaluate(path_text, self.document.file, self.document.finder, self.configurations)
         return None if not text or "\0" in text else self.document.file.parent / text
 
     def included_arguments(self, value: LaunchValue) -> list[LaunchArgument]:
         """Return the arguments of the launch file that is included around a value."""
-        written = value.parent_attributes.get("file", "")
-        path = self.path_of(written) if written else None
+        path_text = value.parent_attributes.get("file", "")
+        path = self.path_of(path_text) if path_text else None
         if path is None or not path.is_file():
             return []
         path = Path(source_of(str(path)))
-        found = arguments_in(self.document.other(path), path)
-        return [argument for argument in found if argument.is_argument]
+        arguments = arguments_in(self.document.other(path), path)
+        return [argument for argument in arguments if argument.is_argument]
 
     def package_of(self, value: LaunchValue) -> str | None:
-        """Return the package of the element that has a value."""
-        written = value.attributes.get("pkg", "")
-        return evaluate(written, self.document.file, self.document.finder, self.configurations) if written else None
+        """Return the package in the element of a value, or None if it has none or it is unknown."""
+        package_text = value.attributes.get("pkg", "")
+        return (
+            evaluate(package_text, self.document.file, self.document.finder, self.configurations)
+            if package_text
+            else None
+        )
 
     def program_of(self, value: LaunchValue) -> NodeProgram:
         """Return the program of the node around a value."""
         package = value.parent_attributes.get("pkg", "")
-        known = evaluate(package, self.document.file, self.document.finder, self.configurations) if package else ""
-        return NodeProgram(known or "", value.parent_attributes.get("exec", ""))
+        package_name = (
+            evaluate(package, self.document.file, self.document.finder, self.configurations) if package else ""
+        )
+        return NodeProgram(package_name or "", value.parent_attributes.get("exec", ""))
 
 
 # --- completion -----------------------------------------------------------------------------------------------
@@ -174,8 +180,8 @@ def complete_value(launch: LaunchText, value: LaunchValue) -> Iterator[Completio
 
 def _offer_command(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
     """Yield the paths in a command, and the arguments of a description in it."""
-    written = value.typed.rpartition("$(command")[2].strip()
-    words = [written[start:end] for start, end in path_words(written)]
+    command = value.typed.rpartition("$(command")[2].strip()
+    words = [command[start:end] for start, end in path_words(command)]
     word = typed_word(value.typed)
     for name in (other_word for other_word in words if other_word != word and other_word.endswith(_DESCRIPTIONS)):
         path = launch.path_of(name)
@@ -210,8 +216,10 @@ def _plain_completions(launch: LaunchText, value: LaunchValue) -> Iterator[Compl
     elif name == "plugin":
         yield from offer_components(document, launch.package_of(value), start)
     elif value.is_included and name == "name":
-        found = launch.included_arguments(value) or launch.arguments
-        yield from _offer_arguments((argument for argument in found if argument.name not in value.sibling_names), start)
+        arguments = launch.included_arguments(value) or launch.arguments
+        yield from _offer_arguments(
+            (argument for argument in arguments if argument.name not in value.sibling_names), start
+        )
     elif name in ("if", "unless"):
         yield from _offer_variables(launch, start, [argument for argument in launch.arguments if argument.is_condition])
         yield from offer_values(("true", "false"), start)
@@ -263,18 +271,18 @@ def _known_parameters(launch: LaunchText, value: LaunchValue) -> tuple[Parameter
     """Return the known parameters of the node around a value."""
     program = launch.program_of(value)
     names = (node_name(*program), program.executable, value.parent_attributes.get("name", ""))
-    known = next((found for name in names if (found := node_parameters(name))), ())
-    return known or parameters_in_sources(launch.document, program)
+    program_parameters = next((parameters for name in names if (parameters := node_parameters(name))), ())
+    return program_parameters or parameters_in_sources(launch.document, program)
 
 
 def _offer_parameters(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
     """Yield completions of the parameters of the node around a value."""
-    known = _known_parameters(launch, value)
-    for parameter in known:
+    known_parameters = _known_parameters(launch, value)
+    for parameter in known_parameters:
         if parameter.name not in value.sibling_names and "*" not in parameter.name:
             detail = f"{parameter.type} {parameter.written_default}".strip()
             yield Completion(parameter.name, ItemKind.NAME, value.start, detail, parameter.description)
-    if not any(parameter.name == "use_sim_time" for parameter in known):
+    if not any(parameter.name == "use_sim_time" for parameter in known_parameters):
         yield Completion("use_sim_time", ItemKind.NAME, value.start, "bool false")
 
 
@@ -363,8 +371,8 @@ def _meaning_of_attribute(launch: LaunchText, value: LaunchValue) -> _ValueMeani
     if name in kinds:
         return _ValueMeaning(kinds[name], value.text, *whole, package=launch.package_of(value))
     if name == "name" and value.tags[-1] in _INTO_ARGUMENTS:
-        found = launch.included_arguments(value) if value.is_included else launch.arguments
-        return _ValueMeaning("argument", value.text, *whole, arguments=_arguments_named(found, value.text))
+        arguments = launch.included_arguments(value) if value.is_included else launch.arguments
+        return _ValueMeaning("argument", value.text, *whole, arguments=_arguments_named(arguments, value.text))
     for start, end in path_words(value.text):
         word = value.text[start:end]
         if begin + start <= value.offset <= begin + end and ("/" in word or name in _PATHS):
@@ -382,9 +390,9 @@ def explain_value(launch: LaunchText, value: LaunchValue) -> Explanation | None:
         return Explanation(text, meaning.start, meaning.end)
     end = value.start + len(value.text)
     if value.tags[-1] in ("param", "set_parameter") and value.name in ("name", "value"):
-        known = _known_parameters(launch, value)
+        known_parameters = _known_parameters(launch, value)
         parameter = next(
-            (candidate for candidate in known if candidate.matches(value.attributes.get("name", ""))), None
+            (candidate for candidate in known_parameters if candidate.matches(value.attributes.get("name", ""))), None
         )
         if parameter is not None:
             default = f" = `{parameter.written_default}`" if parameter.written_default else ""

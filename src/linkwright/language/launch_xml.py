@@ -67,8 +67,8 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 def _explain(document: Document, offset: int) -> Explanation | None:
     value = _value_at(document.text, offset)
-    found = None if value is None else explain_value(LaunchText(document), value)
-    return found or explain_at(document, offset)
+    explanation = None if value is None else explain_value(LaunchText(document), value)
+    return explanation or explain_at(document, offset)
 
 
 def _define(document: Document, offset: int) -> Iterator[Target]:

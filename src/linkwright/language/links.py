@@ -44,7 +44,7 @@ def file_references(
         finder: finds packages.
         values: the values of the expressions in the text. A reference with expressions needs a single value.
     """
-    known = {(value.start, value.end): value.values() for value in values}
+    values_by_range = {(value.start, value.end): value.values() for value in values}
     tag = ""
     for token in tokens(text):
         if token.kind is Kind.START:
@@ -52,11 +52,11 @@ def file_references(
             for attribute in token.attributes():
                 is_path = attribute.name in _PATH_ATTRIBUTES
                 value = attribute.value or ""
-                yield from _reference_in(value, attribute.value_start, file, finder, known, is_path=is_path)
+                yield from _reference_in(value, attribute.value_start, file, finder, values_by_range, is_path=is_path)
         elif token.kind is Kind.TEXT and token.text.strip():
             value = token.text.strip()
             start = token.start + token.text.index(value)
-            yield from _reference_in(value, start, file, finder, known, is_path=tag in _PATH_TAGS)
+            yield from _reference_in(value, start, file, finder, values_by_range, is_path=tag in _PATH_TAGS)
 
 
 def _reference_in(
@@ -64,7 +64,7 @@ def _reference_in(
     start: int,
     file: Path,
     finder: PackageFinder,
-    known: dict[tuple[int, int], list[str]],
+    values_by_range: dict[tuple[int, int], list[str]],
     *,
     is_path: bool,
 ) -> Iterator[FileReference]:
@@ -73,8 +73,8 @@ def _reference_in(
     path_text = value[begin:end]
     if not (is_path or loaded or _SCHEME.match(path_text) or _FIND.match(path_text)):
         return
-    values = known.get((start, start + len(value)), ())
-    address = _FIND.sub(lambda found: str(finder.find(found[1]) or found[0]), path_text)
+    values = values_by_range.get((start, start + len(value)), ())
+    address = _FIND.sub(lambda match: str(finder.find(match[1]) or match[0]), path_text)
     if "$" in address and not loaded and len(values) == 1:
         address = values[0].strip("'\"")
     target = None if "$" in address else _target(address, file, finder)

@@ -32,8 +32,11 @@ def selected_elements(text: str, start: int, end: int) -> list[SourceElement]:
         start: the character offset of the selection.
         end: the offset after the selection.
     """
-    chosen = text[start:end]
-    start, end = start + len(chosen) - len(chosen.lstrip()), end - len(chosen) + len(chosen.rstrip())
+    selected_text = text[start:end]
+    start, end = (
+        start + len(selected_text) - len(selected_text.lstrip()),
+        end - len(selected_text) + len(selected_text.rstrip()),
+    )
     if start >= end:
         return []
     inside = [candidate for candidate in source_elements(text) if start <= candidate.start < end]
@@ -90,11 +93,11 @@ def extract_macro(
         if begin < insertion_offset:
             continue
         call = "".join(f' {parameter}="${{{parameter}}}"' for parameter in parameters)
-        body = _indented(text, begin, end, blanks + _STEP)
+        body = _reindent(text, begin, end, blanks + _STEP)
         params = f' params="{" ".join(parameters)}"'
         lines = (f'<xacro:macro name="{name}"{params}>', f"{blanks}{_STEP}{body}", f"{blanks}</xacro:macro>")
         definition = insertion_before(file, text, insertion_offset, newline.join(lines))
-        edits = _joined(definition, Edit(file, begin, end, f"<xacro:{name}{call}/>"))
+        edits = _merge(definition, Edit(file, begin, end, f"<xacro:{name}{call}/>"))
         try:
             proof.check_equal(edits)
         except UnprovedError as reason:
@@ -104,7 +107,7 @@ def extract_macro(
     raise error or UnprovedError(phrase("there is no position for the definition of '{name}'", name=name))
 
 
-def _joined(first: Edit, second: Edit) -> tuple[Edit, ...]:
+def _merge(first: Edit, second: Edit) -> tuple[Edit, ...]:
     """Merge two edits into one if they are adjacent, and return the edits."""
     if first.end == second.start:
         return (Edit(first.file, first.start, second.end, first.text + second.text),)
@@ -135,7 +138,7 @@ def _parameter_lists(
     own = {candidate.name for candidate in inside if candidate.kind is NameKind.PROPERTY and candidate.is_definition}
     blocks = {candidate.name for candidate in inside if _is_block_use(text, candidate)}
     names = [candidate for candidate in inside if candidate.name not in own | blocks and not candidate.is_definition]
-    used = [
+    used_names = [
         candidate.name
         for candidate in names
         if (candidate.kind is NameKind.PARAMETER and _is_value(text, candidate))
@@ -144,7 +147,7 @@ def _parameter_lists(
     local = [
         candidate.name for candidate in names if candidate.kind is NameKind.PARAMETER and _is_value(text, candidate)
     ]
-    lists = [[*dict.fromkeys(used)], [*dict.fromkeys(local)], []]
+    lists = [[*dict.fromkeys(used_names)], [*dict.fromkeys(local)], []]
     for index, parameters in enumerate(lists):
         if parameters not in lists[:index]:
             yield parameters
@@ -160,7 +163,7 @@ def _is_value(text: str, name: Occurrence) -> bool:
     return re.match(r"\s*=\s*[\"']", text[name.end :]) is None
 
 
-def _indented(text: str, start: int, end: int, blanks: str) -> str:
+def _reindent(text: str, start: int, end: int, blanks: str) -> str:
     """Return a range of a text with new indentation, except inside values and comments."""
     old = indentation(text, start)
     body = text[start:end]

@@ -55,9 +55,9 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
     cursor = cursor_at(document.text, offset)
     typed = cursor.typed.lstrip()
     if cursor.syntax is CursorSyntax.TEXT and cursor.tags and "\n" not in typed:
-        found = [*_text_completions(document, cursor.tags[-1], offset - len(typed))]
-        if found:
-            yield from found
+        completions = [*_text_completions(document, cursor.tags[-1], offset - len(typed))]
+        if completions:
+            yield from completions
             return
     if cursor.syntax is CursorSyntax.VALUE and cursor.attribute is not None:
         yield from offer_values(_ATTRIBUTES.get(cursor.attribute.name, ()), offset - len(cursor.typed))
@@ -99,15 +99,15 @@ def _dependency_completions(document: Document, tag: str, start: int) -> Iterato
     Packages that the manifest declares are left out.
     """
     others = document.text[:start] + document.text[start:].partition("<")[2]
-    seen = {name for other, name in _DECLARED.findall(others) if other in (tag, "depend", "name")}
-    used = used_packages(document.file.parent) if tag in ("depend", "exec_depend") else []
-    usual: Iterable[str] = (*used, *_COMMON_DEPENDENCIES.get(tag, ()))
+    declared_names = {name for other, name in _DECLARED.findall(others) if other in (tag, "depend", "name")}
+    used_names = used_packages(document.file.parent) if tag in ("depend", "exec_depend") else []
+    usual: Iterable[str] = (*used_names, *_COMMON_DEPENDENCIES.get(tag, ()))
     for name in usual:
-        if name not in seen:
-            seen.add(name)
+        if name not in declared_names:
+            declared_names.add(name)
             yield Completion(name, ItemKind.PACKAGE, start)
     for item in offer_packages(document, start):
-        if item.label not in seen:
+        if item.label not in declared_names:
             yield item
 
 
@@ -123,17 +123,17 @@ def _dependency_at(document: Document, offset: int) -> tuple[str, int] | None:
 
 
 def _explain(document: Document, offset: int) -> Explanation | None:
-    found = _dependency_at(document, offset)
-    if found is None:
+    dependency = _dependency_at(document, offset)
+    if dependency is None:
         return explain_at(document, offset)
-    text = explain_package(document, found[0])
-    return Explanation(text, found[1], found[1] + len(found[0])) if text else None
+    text = explain_package(document, dependency[0])
+    return Explanation(text, dependency[1], dependency[1] + len(dependency[0])) if text else None
 
 
 def _define(document: Document, offset: int) -> Iterator[Target]:
-    found = _dependency_at(document, offset)
-    if found is not None:
-        yield from target_of_package(document, found[0])
+    dependency = _dependency_at(document, offset)
+    if dependency is not None:
+        yield from target_of_package(document, dependency[0])
 
 
 def _links(document: Document) -> Iterator[FileReference]:

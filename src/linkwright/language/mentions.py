@@ -190,8 +190,8 @@ def _in_sdf(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
     A model has its own names, but the frames of its sensors are often frames of a robot.
     """
     words = "|".join(map(re.escape, sorted(names, key=len, reverse=True)))
-    for found in re.finditer(rf"(?<=[>\"'])({words})(?=[<\"'])", text):
-        yield Mention(found[1], file, found.start(1))
+    for match in re.finditer(rf"(?<=[>\"'])({words})(?=[<\"'])", text):
+        yield Mention(match[1], file, match.start(1))
 
 
 def _in_launch_xml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
@@ -204,11 +204,11 @@ def _in_launch_xml(text: str, file: Path, names: frozenset[str]) -> Iterator[Men
         program = next((attributes[name].value for name in ("exec", "type") if name in attributes), "")
         for attribute in attributes.values():
             value = attribute.value or ""
-            for found in words.finditer(value):
-                is_whole = found[0] == value and attribute.name in ("value", "default")
-                before = value[: found.start()].split() if attribute.name == "args" else []
+            for match in words.finditer(value):
+                is_whole = match[0] == value and attribute.name in ("value", "default")
+                before = value[: match.start()].split() if attribute.name == "args" else []
                 kinds = kinds_of_key(key or "") if is_whole else ()
                 is_frame = before[-1:] and before[-1] in _FRAME_OPTIONS
                 if is_frame or (program == _TRANSFORM and len(before) >= _POSE and before[0][:1] != "-"):
                     kinds = (NameKind.LINK,)
-                yield Mention(found[0], file, attribute.value_start + found.start(), kinds)
+                yield Mention(match[0], file, attribute.value_start + match.start(), kinds)

@@ -76,9 +76,9 @@ def _text_range(element: Element) -> tuple[int, int] | None:
             if source is None:
                 return None
             end = source.text.find("<", child.offset)
-            written = source.text[child.offset : end if end >= 0 else len(source.text)]
-            start = child.offset + len(written) - len(written.lstrip())
-            return start, start + len(written.strip())
+            source_text = source.text[child.offset : end if end >= 0 else len(source.text)]
+            start = child.offset + len(source_text) - len(source_text.lstrip())
+            return start, start + len(source_text.strip())
     return None
 
 
@@ -95,10 +95,10 @@ def renamed_template(old: str, new: str, value: str) -> str | None:
     if [part.text for part in after if part.kind is not TokenKind.TEXT] != expressions:
         return None
     pattern = "".join(re.escape(part.text) if part.kind is TokenKind.TEXT else "(.*?)" for part in before)
-    found = re.fullmatch(pattern, value, re.DOTALL)
-    if found is None:
+    match = re.fullmatch(pattern, value, re.DOTALL)
+    if match is None:
         return None
-    values = iter(found.groups())
+    values = iter(match.groups())
     return "".join(part.text if part.kind is TokenKind.TEXT else next(values) for part in after)
 
 
@@ -115,42 +115,42 @@ class NameSources:
         self._project, self._texts = project, texts
         self._tags = {file: [*_start_tags(project.text(file, texts) or "")] for file in files}
 
-    def edits(self, written: SourceValue, value: str, new: str) -> Iterator[tuple[Edit, ...]]:
+    def edits(self, source: SourceValue, value: str, new: str) -> Iterator[tuple[Edit, ...]]:
         """Yield proposals of edits that give a text a new value, the likeliest first.
 
         Args:
-            written: the text.
+            source: the text.
             value: its present value.
             new: its new value.
         """
-        yield from self._edits(written, value, new, 0)
+        yield from self._edits(source, value, new, 0)
 
-    def _edits(self, written: SourceValue, value: str, new: str, depth: int) -> Iterator[tuple[Edit, ...]]:
+    def _edits(self, source: SourceValue, value: str, new: str, depth: int) -> Iterator[tuple[Edit, ...]]:
         if value == new or depth > _DEEPEST:
             return
-        if written.is_literal:
-            if written.text == value:
-                yield (Edit(written.file, written.start, written.start + len(value), new),)
+        if source.is_literal:
+            if source.text == value:
+                yield (Edit(source.file, source.start, source.start + len(value), new),)
             return
-        parts = _parts(written.text)
+        parts = _parts(source.text)
         expressions = [part for part in parts if part.kind is not TokenKind.TEXT]
         if not parts or len(expressions) > _MAX_EXPRESSIONS:
             return
-        yield from self._literal_edits(written, parts, value, new)
-        yield from self._expression_edits(written, parts, value, new, depth)
+        yield from self._literal_edits(source, parts, value, new)
+        yield from self._expression_edits(source, parts, value, new, depth)
 
     def _literal_edits(
-        self, written: SourceValue, parts: Sequence[Token], value: str, new: str
+        self, source: SourceValue, parts: Sequence[Token], value: str, new: str
     ) -> Iterator[tuple[Edit, ...]]:
         """Yield the edits of the literal parts that give the new value, with equal expressions."""
-        values = self._values(written, parts, value)
+        values = self._values(source, parts, value)
         if values is None:
             return
-        kept = "".join(
+        new_template = "".join(
             "(.*?)" if part.kind is TokenKind.TEXT else re.escape(text)
             for part, text in zip(parts, values, strict=True)
         )
-        changed = re.fullmatch(kept, new, re.DOTALL)
+        changed = re.fullmatch(new_template, new, re.DOTALL)
         if changed is None:
             return
         new_literals = iter(changed.groups())
@@ -159,15 +159,15 @@ class NameSources:
             if part.kind is TokenKind.TEXT:
                 text = next(new_literals)
                 if text != part.text:
-                    edits.append(Edit(written.file, written.start + part.start, written.start + part.end, text))
+                    edits.append(Edit(source.file, source.start + part.start, source.start + part.end, text))
         if edits and all(edit.text for edit in edits):
             yield tuple(edits)
 
     def _expression_edits(
-        self, written: SourceValue, parts: Sequence[Token], value: str, new: str, depth: int
+        self, source: SourceValue, parts: Sequence[Token], value: str, new: str, depth: int
     ) -> Iterator[tuple[Edit, ...]]:
         """Yield the edits that change the value of one expression, which may occur repeatedly."""
-        values = self._values(written, parts, value)
+        values = self._values(source, parts, value)
         if values is None:
             return
         expressions = [
@@ -185,18 +185,20 @@ class NameSources:
             matched = re.fullmatch("".join(pieces), new, re.DOTALL)
             part, text = next(pair for pair in expressions if pair[0].text == changed)
             if matched is not None:
-                for source in self._sources(part, written.frame):
-                    yield from self._edits(source, text, matched["new"], depth + 1)
+                for origin in self._sources(part, source.frame):
+                    yield from self._edits(origin, text, matched["new"], depth + 1)
 
-    def _values(self, written: SourceValue, parts: Sequence[Token], value: str) -> list[str] | None:
+    def _values(self, source: SourceValue, parts: Sequence[Token], value: str) -> list[str] | None:
         """Return the values of the parts of a text, or None if they do not fit its value."""
-        known = [part.text if part.kind is TokenKind.TEXT else self._value(part, written.frame, 0) for part in parts]
-        pattern = "".join("(.*?)" if text is None else f"({re.escape(text)})" for text in known)
-        found = re.fullmatch(pattern, value, re.DOTALL)
-        if found is None:
+        known_values = [
+            part.text if part.kind is TokenKind.TEXT else self._value(part, source.frame, 0) for part in parts
+        ]
+        pattern = "".join("(.*?)" if text is None else f"({re.escape(text)})" for text in known_values)
+        match = re.fullmatch(pattern, value, re.DOTALL)
+        if match is None:
             loose = "".join(f"({re.escape(part.text)})" if part.kind is TokenKind.TEXT else "(.*?)" for part in parts)
-            found = re.fullmatch(loose, value, re.DOTALL)
-        return None if found is None else [*found.groups()]
+            match = re.fullmatch(loose, value, re.DOTALL)
+        return None if match is None else [*match.groups()]
 
     def _value(self, part: Token, frame: Frame | None, depth: int) -> str | None:
         """Return the value of a name in an expression if literal texts define it, or None."""
@@ -244,9 +246,9 @@ class NameSources:
         """Return the default of a parameter of a macro, or None."""
         called = macro.rpartition(".")[2].removeprefix("xacro:")
         for file, tags in self._tags.items():
-            for tag, given in tags:
-                if tag == "xacro:macro" and given.get("name", ("", 0))[0].removeprefix("xacro:") == called:
-                    params, start = given.get("params", ("", 0))
+            for tag, attributes in tags:
+                if tag == "xacro:macro" and attributes.get("name", ("", 0))[0].removeprefix("xacro:") == called:
+                    params, start = attributes.get("params", ("", 0))
                     try:
                         parameters = parse_parameters(params)
                     except Fault:
@@ -263,9 +265,9 @@ class NameSources:
     def _attributes(self, tag: str, name: str, key: str) -> Iterator[SourceValue]:
         """Yield the values of an attribute of the elements with a tag and a name."""
         for file, tags in self._tags.items():
-            for other, given in tags:
-                if other == tag and given.get("name", ("", 0))[0] == name and key in given:
-                    text, start = given[key]
+            for other, attributes in tags:
+                if other == tag and attributes.get("name", ("", 0))[0] == name and key in attributes:
+                    text, start = attributes[key]
                     default = _OPTIONAL.fullmatch(text)  # An environment variable seldom provides the value.
                     if default is not None:
                         text, start = default[1], start + default.start(1)

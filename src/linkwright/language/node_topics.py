@@ -84,14 +84,14 @@ def topics_of(document: Document, programs: Iterable[NodeProgram]) -> list[NodeT
     Raises:
         NotYetKnownError: the sources of the workspace were never read, and the document does not wait.
     """
-    found: dict[tuple[str, str], NodeTopic] = {}
+    topics: dict[tuple[str, str], NodeTopic] = {}
     for program in programs:
-        for topic in (*_recorded(program), *_in_sources(document, program)):
-            found.setdefault((topic.key, topic.role), topic)
-    return list(found.values())
+        for topic in (*_recorded_topics(program), *_in_sources(document, program)):
+            topics.setdefault((topic.key, topic.role), topic)
+    return list(topics.values())
 
 
-def _recorded(program: NodeProgram) -> Iterator[NodeTopic]:
+def _recorded_topics(program: NodeProgram) -> Iterator[NodeTopic]:
     for name, entry in _table().items():
         package, _, executable = name.partition("/")
         if program.package in ("", package) and program.executable in ("", executable):
@@ -143,8 +143,8 @@ def describe_topic(topic: NodeTopic) -> str:
 
 def explain_topic(document: Document, programs: Sequence[NodeProgram], name: str) -> str:
     """Return the uses of a topic, service or action by some nodes in Markdown, or empty."""
-    found = [topic for topic in topics_of(document, programs) if topic.key == plain_name(name)]
-    return "\n\n".join(map(describe_topic, found))
+    topics = [topic for topic in topics_of(document, programs) if topic.key == plain_name(name)]
+    return "\n\n".join(map(describe_topic, topics))
 
 
 def targets_of_topic(document: Document, programs: Sequence[NodeProgram], name: str) -> Iterator[Target]:

@@ -140,7 +140,7 @@ class _Scan:
         elif tag in ("xacro:property", "xacro:insert_block"):
             yield from self._property(attributes.get("name"), is_definition=tag == "xacro:property")
         elif tag == "xacro:arg":
-            yield from self._named(NameKind.ARGUMENT, attributes.get("name"), is_definition=True)
+            yield from self._named_occurrences(NameKind.ARGUMENT, attributes.get("name"), is_definition=True)
         elif tag.startswith(PREFIX) and tag not in XACRO:
             owner = tag.removeprefix(PREFIX).rpartition(".")[2]
             for attribute in attributes.values():
@@ -154,14 +154,14 @@ class _Scan:
         if name is not None and owner:
             start = name.value_end - len(owner)
             yield Occurrence(NameKind.MACRO, owner, self._file, start, is_definition=True)
-        found: set[str] = set()
+        names: set[str] = set()
         for parameter in _parameters((params.value or "") if params else ""):
             bare = parameter.name.lstrip("*")
             start = (params.value_start if params else 0) + parameter.start + len(parameter.name) - len(bare)
             yield Occurrence(NameKind.PARAMETER, bare, self._file, start, is_definition=True, owner=owner)
-            found.add(bare)
+            names.add(bare)
         if not is_empty:
-            self._macros.append((owner, frozenset(found)))
+            self._macros.append((owner, frozenset(names)))
 
     def _macro_use(self, token: Token) -> Iterator[Occurrence]:
         tag = token.name
@@ -181,7 +181,7 @@ class _Scan:
                 return Occurrence(NameKind.PARAMETER, name, self._file, start, owner=owner)
         return Occurrence(NameKind.PROPERTY, name, self._file, start, is_definition, self._macro)
 
-    def _named(
+    def _named_occurrences(
         self, kind: NameKind, attribute: TokenAttribute | None, *, is_definition: bool = False
     ) -> Iterator[Occurrence]:
         if attribute is not None and attribute.value:
@@ -192,13 +192,13 @@ class _Scan:
         if tag in ("link", "joint"):
             kind = NameKind.LINK if tag == "link" else NameKind.JOINT
             uses = self._is_srdf or not _JOINT_USERS.isdisjoint(self._tags)
-            yield from self._named(kind, name, is_definition=not uses)
+            yield from self._named_occurrences(kind, name, is_definition=not uses)
         elif tag == "material" and not token.is_empty_element:
-            yield from self._named(NameKind.MATERIAL, name, is_definition=True)
+            yield from self._named_occurrences(NameKind.MATERIAL, name, is_definition=True)
             return
         for attribute in attributes.values():
             for kind in kinds_of_reference(tag, attribute.name):
-                yield from self._named(kind, attribute)
+                yield from self._named_occurrences(kind, attribute)
 
     def _character_data(self, token: Token) -> Iterator[Occurrence]:
         yield from self.in_text(token.text, token.start)
@@ -245,7 +245,7 @@ class _Scan:
         if "$" in source:
             yield from self.in_text(source, start)
             while _INNERMOST.search(source):
-                source = _INNERMOST.sub(lambda found: "_" * len(found[0]), source)
+                source = _INNERMOST.sub(lambda match: "_" * len(match[0]), source)
         body = source.replace("\n", " ").replace("\t", " ").rstrip()
         lead = len(body) - len(body.lstrip())
         try:

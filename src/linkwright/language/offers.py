@@ -64,11 +64,11 @@ def offer_files(base: Path, typed: str, offset: int, *, launch_files: bool = Fal
     below, _, name = typed.rpartition("/")
     try:
         entries = [entry for entry in (base / below.lstrip("/")).iterdir() if not entry.name.startswith(".")]
-        found = [(entry.is_file(), entry.name) for entry in entries]
+        names = [(entry.is_file(), entry.name) for entry in entries]
     except (OSError, ValueError):
         return
-    found.sort(key=lambda entry: (launch_files and not entry[1].endswith(_LAUNCH_FILES), *entry))
-    for is_file, entry_name in found[:_SHOWN_FILES]:
+    names.sort(key=lambda entry: (launch_files and not entry[1].endswith(_LAUNCH_FILES), *entry))
+    for is_file, entry_name in names[:_SHOWN_FILES]:
         yield Completion(entry_name, ItemKind.FILE if is_file else ItemKind.FOLDER, offset - len(name))
 
 

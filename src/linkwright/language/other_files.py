@@ -55,11 +55,11 @@ class OtherFiles:
         Args:
             names: the names that change, each with its new name.
         """
-        found: set[Edit] = set()
+        edits: set[Edit] = set()
         unchanged: list[Mention] = []
         for use in self._literal_uses(names):
             if not use.is_definition:
-                found.add(Edit(use.file, use.start, use.end, names[use.kind, use.name]))
+                edits.add(Edit(use.file, use.start, use.end, names[use.kind, use.name]))
         old_names = frozenset(old for _, old in names)
         for files in self._files.values():
             for file in files:
@@ -80,8 +80,8 @@ class OtherFiles:
                     ):
                         unchanged.append(mention)
                     else:
-                        found.add(Edit(file, mention.start, mention.end, names[kind, mention.name]))
-        return found, tuple(unchanged)
+                        edits.add(Edit(file, mention.start, mention.end, names[kind, mention.name]))
+        return edits, tuple(unchanged)
 
     def add_srdfs(self) -> None:
         """Add the SRDF xacro files of packages that refer only to these robots to the proof."""
@@ -110,12 +110,12 @@ class OtherFiles:
     def _files(self) -> dict[Path, list[Path]]:
         """The files of each package that may mention names, the file's own package first."""
         files: dict[Path, list[Path]] = {}
-        seen: set[Path] = set()
+        seen_files: set[Path] = set()
         own = enclosing_package(self._file.parent)
         folders = [] if own is None else [real_path(own[1])]
         for folder in dict.fromkeys((*folders, *map(real_path, self._project.index.packages))):
-            files[folder] = [file for file in self._project.configurations_below(folder) if file not in seen]
-            seen.update(files[folder])
+            files[folder] = [file for file in self._project.configurations_below(folder) if file not in seen_files]
+            seen_files.update(files[folder])
         return files
 
     def _depends(self, file: Path, names: Names, mention: Mention) -> bool:
@@ -192,17 +192,17 @@ def _named_together(project: Workspace, texts: Mapping[Path, str], file: Path, r
         same = [robot for robot, other in titles.items() if title is not None and other and other[1] == title[1]]
         if same:
             return same
-    found = {robot for robot in robots if _named_in(robot, text)}
+    mentioned_robots = {robot for robot in robots if _named_in(robot, text)}
     for robot in robots:
         if any(
             name.search(project.text(related_file, texts) or "") for related_file in project.index.related(robot, texts)
         ):
-            found.add(robot)
+            mentioned_robots.add(robot)
     for launch in project.files(_LAUNCH):
-        written = project.text(launch, texts) or ""
-        if launch != file and name.search(written):
-            found |= {robot for robot in robots if _named_in(robot, written)}
-    return [robot for robot in robots if robot in found]
+        launch_text = project.text(launch, texts) or ""
+        if launch != file and name.search(launch_text):
+            mentioned_robots |= {robot for robot in robots if _named_in(robot, launch_text)}
+    return [robot for robot in robots if robot in mentioned_robots]
 
 
 def _named_in(robot: Path, text: str) -> bool:
@@ -229,19 +229,19 @@ def names_of_robot(project: Workspace, texts: Mapping[Path, str], robot: Path) -
         robot: the description.
     """
     versions = versions_of(texts)
-    known = project.cached_results.get(("names", robot))
-    if known is None or known[0] != versions:
-        found, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
-        roots = [trial.expansion.document.root for trial in found]
+    cached = project.cached_results.get(("names", robot))
+    if cached is None or cached[0] != versions:
+        expansions, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
+        roots = [trial.expansion.document.root for trial in expansions]
         names = frozenset(
             (kind, element.attributes.get("name", ""))
             for root in roots
             for kind in _PART_KINDS
             for element in root.elements(kind.value)
         )
-        known = project.cached_results["names", robot] = (versions, names)
-    assert isinstance(known[1], frozenset)
-    return known[1]
+        cached = project.cached_results["names", robot] = (versions, names)
+    assert isinstance(cached[1], frozenset)
+    return cached[1]
 
 
 def _dependencies(project: Workspace, texts: Mapping[Path, str], folder: Path) -> list[Path]:
@@ -253,16 +253,16 @@ def _dependencies(project: Workspace, texts: Mapping[Path, str], folder: Path) -
     by_name = {
         manifest.name: manifest_folder for manifest_folder, manifest in manifests.items() if manifest is not None
     }
-    found: dict[Path, None] = {}
+    folders: dict[Path, None] = {}
     pending = [folder]
     while pending:
         manifest = manifests.get(pending.pop(0))
         for dependency in manifest.dependencies if manifest is not None else ():
             other = by_name.get(dependency.name)
-            if other is not None and other not in found:
-                found[other] = None
+            if other is not None and other not in folders:
+                folders[other] = None
                 pending.append(other)
-    return [*found]
+    return [*folders]
 
 
 def _manifest(project: Workspace, texts: Mapping[Path, str], folder: Path) -> Manifest | None:

@@ -92,11 +92,11 @@ class Outline:
 
     def elements_around(self, offset: int) -> list[OutlineElement]:
         """Return the elements that contain an offset, the outermost first."""
-        found: list[OutlineElement] = []
+        elements: list[OutlineElement] = []
         siblings = self.elements
         while element := next(
             (candidate for candidate in siblings if candidate.tag.start <= offset <= candidate.end), None
         ):
-            found.append(element)
+            elements.append(element)
             siblings = element.children
-        return found
+        return elements

@@ -123,8 +123,8 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
     yield from dotted if uses_dots else ()
     for name, inside in groups.items():
         if name not in present:
-            shown = ", ".join(f"`{part}`" for part in dict.fromkeys(inside))
-            yield Completion(name, ItemKind.NAME, cursor.start, "", shown, colon and f"{snippet_text(name)}:\n  $0")
+            names = ", ".join(f"`{part}`" for part in dict.fromkeys(inside))
+            yield Completion(name, ItemKind.NAME, cursor.start, "", names, colon and f"{snippet_text(name)}:\n  $0")
     yield from dotted
 
 

@@ -101,11 +101,11 @@ def _explain_key(document: Document, outline: YamlOutline, entry: YamlEntry) -> 
     inside = {
         parameter.removeprefix(f"{name}."): None for parameter in declared_names if parameter.startswith(f"{name}.")
     }
-    inside |= {shown: None for parameter in section.parameters() if (shown := parameter.rest_below(name))}
+    inside |= {rest: None for parameter in section.parameters() if (rest := parameter.rest_below(name))}
     facts = part_explanation(document, entry.key, (NameKind.JOINT, NameKind.LINK))
     if facts:
         return facts
-    return f"**{name}**: " + ", ".join(f"`{shown}`" for shown in inside) if inside else ""
+    return f"**{name}**: " + ", ".join(f"`{rest}`" for rest in inside) if inside else ""
 
 
 def _explain_node(outline: YamlOutline, entry: YamlEntry) -> str:
@@ -119,17 +119,17 @@ def _explain_node(outline: YamlOutline, entry: YamlEntry) -> str:
     parameters = node_parameters(name)
     if not parameters:
         return ""
-    shown = ", ".join(f"`{parameter.name}`" for parameter in parameters[:30])
-    return f"**{name}**: {shown}" + (", ..." if len(parameters) > 30 else "")
+    names = ", ".join(f"`{parameter.name}`" for parameter in parameters[:30])
+    return f"**{name}**: {names}" + (", ..." if len(parameters) > 30 else "")
 
 
 def _explain_plugin(kind: str) -> str:
     plugin = plugins().get(kind.replace("::", "/"))
     if plugin is None:
         return f"`{kind}`" if kind else ""
-    shown = ", ".join(f"`{parameter.name}`" for parameter in plugin.parameters)
+    names = ", ".join(f"`{parameter.name}`" for parameter in plugin.parameters)
     text = localized(phrase("plugin of {node}", node=plugin.node))
-    return f"`{kind}`, {text}: {plugin.purpose}" + (f"\n\n{shown}" if shown else "")
+    return f"`{kind}`, {text}: {plugin.purpose}" + (f"\n\n{names}" if names else "")
 
 
 def _explain_value(document: Document, outline: YamlOutline, cursor: YamlCursor, word: str) -> str:

@@ -61,21 +61,21 @@ def plugin_classes(document: Document, base: str) -> list[PluginClass]:
 
 
 def _all_classes(document: Document) -> list[PluginClass]:
-    known = _classes.get(document.project)
-    if known is not None and time.monotonic() - known[0] <= _SECONDS:
-        return known[1]
+    cached = _classes.get(document.project)
+    if cached is not None and time.monotonic() - cached[0] <= _SECONDS:
+        return cached[1]
     if document.waits:
         folders = dict.fromkeys((*document.project.index.packages, *document.finder.packages().values()))
-        found = {plugin.name: plugin for folder in folders for plugin in _exported(folder)}
-        known = _classes[document.project] = time.monotonic(), list(found.values())
-    elif known is None:
+        classes = {plugin.name: plugin for folder in folders for plugin in _exported_classes(folder)}
+        cached = _classes[document.project] = time.monotonic(), list(classes.values())
+    elif cached is None:
         raise NotYetKnownError
     else:
         document.refreshes.append(partial(_all_classes, replace(document, waits=True)))
-    return known[1]
+    return cached[1]
 
 
-def _exported(folder: Path) -> Iterator[PluginClass]:
+def _exported_classes(folder: Path) -> Iterator[PluginClass]:
     """Yield the classes that a package exports."""
     for base, file in _files(folder):
         yield from _classes_in(text_of(file), base, folder, file)
@@ -91,8 +91,8 @@ def _files(folder: Path) -> Iterator[tuple[str, Path]]:
     text = text_of(folder / "CMakeLists.txt")
     package = enclosing_package(folder)
     name = folder.name if package is None else package[0]
-    for found in _EXPORT.finditer(text):
-        yield found[1], folder / found[2].replace("${PROJECT_NAME}", name)
+    for match in _EXPORT.finditer(text):
+        yield match[1], folder / match[2].replace("${PROJECT_NAME}", name)
 
 
 def _classes_in(text: str, base: str, folder: Path, file: Path) -> Iterator[PluginClass]:

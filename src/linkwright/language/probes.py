@@ -82,12 +82,12 @@ def _calls(macro: SourceElement) -> Iterator[str]:
         return
     blocks = "".join(map(_block, parameters))
     for value in _VALUES:
-        given = "".join(
+        arguments = "".join(
             f" {parameter.name}={quoteattr(value)}"
             for parameter in parameters
             if not parameter.is_block and (parameter.default is None or value != _VALUES[0])
         )
-        yield f"  <xacro:{called}{given}>{blocks}</xacro:{called}>"
+        yield f"  <xacro:{called}{arguments}>{blocks}</xacro:{called}>"
 
 
 def _block(parameter: Parameter) -> str:

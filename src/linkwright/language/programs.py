@@ -66,22 +66,22 @@ class Program:
 def used_packages(folder: Path) -> list[str]:
     """Return the packages that the files of a package use, the most used first."""
     files, _ = walk(folder, _FILES_WITH_PACKAGES)
-    found: Counter[str] = Counter()
+    use_counts: Counter[str] = Counter()
     for file in files[:_MAX_FILES]:
         try:
             text = file.read_text(encoding="utf-8", errors="replace") if file.stat().st_size < _MAX_BYTES else ""
         except OSError:
             continue
-        found.update({name for use in _PACKAGE_USE.finditer(text) for name in use.groups() if name})
-    return [name for name, _ in found.most_common()]
+        use_counts.update({name for use in _PACKAGE_USE.finditer(text) for name in use.groups() if name})
+    return [name for name, _ in use_counts.most_common()]
 
 
 def package_names(finder: PackageFinder, file: Path) -> list[str]:
     """Return all package names: the file's own first, then its dependencies, then the others."""
     own = enclosing_package(file.parent)
     first = [] if own is None else [own[0], *DEPENDENCY.findall(text_of(own[1] / "package.xml"))]
-    known = {*finder.packages(), *replaced_packages()}
-    return [*dict.fromkeys(first), *sorted(known - {*first})]
+    known_packages = {*finder.packages(), *replaced_packages()}
+    return [*dict.fromkeys(first), *sorted(known_packages - {*first})]
 
 
 def replaced_packages() -> set[str]:
@@ -91,18 +91,18 @@ def replaced_packages() -> set[str]:
 
 def programs_of(finder: PackageFinder, package: str) -> dict[str, Program]:
     """Return the executables of a package by name, or an empty dictionary if there are none."""
-    found: dict[str, Program] = {}
+    programs: dict[str, Program] = {}
     share = finder.find(package)
     if share is not None and share.is_dir():
         if not is_installed(share):
-            found = {program.name: program for program in _in_sources(share, package)}
+            programs = {program.name: program for program in _in_sources(share, package)}
         for path in sorted((install_prefix(share) / "lib" / package).glob("*")):
             if path.is_file() and path.suffix not in (".so", ".dylib") and os.access(path, os.X_OK):
-                found[path.name] = Program(path.name, str(path), Target(path))
+                programs[path.name] = Program(path.name, str(path), Target(path))
     ours = {name for owner, name in hosted_executables() if owner == package}
     for name in sorted(ours | substituted_executables().get(package, frozenset())):
-        found.setdefault(name, Program(name, "Linkwright"))
-    return found
+        programs.setdefault(name, Program(name, "Linkwright"))
+    return programs
 
 
 def _in_sources(share: Path, package: str) -> Iterator[Program]:
@@ -130,17 +130,17 @@ def _entry_target(root: Path, entry: EntryPoint) -> Target | None:
 
 def components_of(finder: PackageFinder, package: str) -> dict[str, Target | None]:
     """Return the components of a package by class, with the location of the registration."""
-    found: dict[str, Target | None] = {}
+    components: dict[str, Target | None] = {}
     share = finder.find(package)
     if share is not None:
         build = Path(source_of(str(share / "CMakeLists.txt")))
         for command in _REGISTERED.finditer(text_of(build)):
             for name in _CLASS.finditer(command[1]):
                 start = command.start(1) + name.start()
-                found[name[0]] = Target(build, start, start + len(name[0]))
+                components[name[0]] = Target(build, start, start + len(name[0]))
         index = install_prefix(share) / "share/ament_index/resource_index/rclcpp_components" / package
         for line in text_of(index).splitlines():
-            found.setdefault(line.partition(";")[0].strip(), None)
-    found.update((name, None) for owner, name in COMPONENTS if owner == package and name not in found)
-    found.pop("", None)
-    return found
+            components.setdefault(line.partition(";")[0].strip(), None)
+    components.update((name, None) for owner, name in COMPONENTS if owner == package and name not in components)
+    components.pop("", None)
+    return components

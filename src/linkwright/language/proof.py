@@ -149,7 +149,7 @@ class ExpansionProof:
         for former in self.trials:
             arguments = {names.get(key, key): value for key, value in former.arguments.items()}
             try:
-                after = self._edited(former, arguments, edits)
+                after = self._edited_expansion(former, arguments, edits)
             except LinkwrightError as error:
                 first = error.diagnostics[0]
                 raise UnprovedError(
@@ -184,14 +184,14 @@ class ExpansionProof:
         if entry in self.entries:
             return
         self.entries.add(entry)
-        found, error = trials(self._project, self._texts, entry, is_partial=self._is_partial)
+        expansions, error = trials(self._project, self._texts, entry, is_partial=self._is_partial)
         self._error = error or self._error
-        self.trials += found
-        for path in (path for trial in found for path in trial.expansion.dependencies):
+        self.trials += expansions
+        for path in (path for trial in expansions for path in trial.expansion.dependencies):
             self.data.add(real_path(path))
             self._names.setdefault(real_path(path), set()).add(str(path))
 
-    def _edited(self, former: Trial, arguments: Mapping[str, str], edits: Collection[Edit]) -> Expansion:
+    def _edited_expansion(self, former: Trial, arguments: Mapping[str, str], edits: Collection[Edit]) -> Expansion:
         """Return the expansion of a trial with edits, except edits in its omitted elements."""
         texts = dict(self._texts)
         for file in {edit.file for edit in edits} | {*former.gaps}:

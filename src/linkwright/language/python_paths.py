@@ -141,10 +141,10 @@ class PythonPaths:
         if isinstance(part, Text):
             return None if part.is_format and "{" in part.value else Value(part.value)
         if isinstance(part, Name):
-            return self._named(part.value, depth)
+            return self._variable_value(part.value, depth)
         return self._group(part, depth) if isinstance(part, Group) else None
 
-    def _named(self, name: str, depth: int) -> Value | None:
+    def _variable_value(self, name: str, depth: int) -> Value | None:
         if name == "__file__":
             return Value(str(self._file), is_path=True)
         bound = self._python.bindings.get(name)

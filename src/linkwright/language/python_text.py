@@ -171,17 +171,17 @@ class PythonText:
 
     def string_at(self, offset: int) -> tuple[Text, Item] | None:
         """Return the string around an offset with its item, or None if there is none."""
-        return next((found for found in self.strings if found[0].start <= offset <= found[0].end), None)
+        return next((string for string in self.strings if string[0].start <= offset <= string[0].end), None)
 
     def call_at(self, offset: int) -> Group | None:
         """Return the innermost call whose brackets contain an offset, or None if there is none."""
-        found = None
+        innermost = None
         for call in self.calls:
             if call.start >= offset:
                 break
             if offset < call.end or (offset == call.end and not call.is_closed):
-                found = call
-        return found
+                innermost = call
+        return innermost
 
     def _read(self, text: str) -> None:
         line_begins = True

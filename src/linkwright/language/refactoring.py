@@ -81,9 +81,9 @@ def offers_at(text: str, file: Path, start: int, end: int, names: Iterable[NameD
     if "xmlns:xacro" in text:
         value = selected_value(text, start, end)
         if value is not None:
-            shown = text[value.start : value.end]
-            shown = shown if len(shown) <= _MAX_SHOWN else f"{shown[:_MAX_SHOWN]}..."
-            yield Offer(Action.EXTRACT_PROPERTY, phrase("extract '{value}' to a property", value=shown))
+            selected_text = text[value.start : value.end]
+            selected_text = selected_text if len(selected_text) <= _MAX_SHOWN else f"{selected_text[:_MAX_SHOWN]}..."
+            yield Offer(Action.EXTRACT_PROPERTY, phrase("extract '{value}' to a property", value=selected_text))
         siblings = selected_elements(text, start, end)
         if siblings:
             title = (

@@ -88,14 +88,14 @@ def renamable_name_at(project: Workspace, texts: Mapping[Path, str], file: Path,
 
 
 def _mention_at(text: str, file: Path, offset: int) -> Mention | None:
-    """Return the mention of a link or joint at an offset of a file that is not a description."""
+    """Return the mention of a link or joint at an offset of a file other than a description, or None."""
     begin = text.rfind("\n", 0, offset) + 1
     end = text.find("\n", offset)
     line = text[begin : end if end >= 0 else len(text)]
     for word in _WORD.finditer(line):
         if word.start() <= offset - begin <= word.end():
-            written = word[0].removeprefix("/")
-            names = frozenset({written, written.rstrip(":")})
+            mentioned_name = word[0].removeprefix("/")
+            names = frozenset({mentioned_name, mentioned_name.rstrip(":")})
             for mention in mentions_in(text, file, names):
                 if mention.start <= offset <= mention.end and mention.kinds:
                     return mention
@@ -105,14 +105,14 @@ def _mention_at(text: str, file: Path, offset: int) -> Mention | None:
 def _robots_with(project: Workspace, texts: Mapping[Path, str], mention: Mention) -> Iterator[tuple[Path, NameKind]]:
     """Yield the descriptions that may contain the mentioned link or joint, each with the kind."""
     for robot in robots_of_file(project, texts, mention.file):
-        known = names_of_robot(project, texts, robot)
+        robot_names = names_of_robot(project, texts, robot)
         for kind in mention.kinds:
-            if (kind, mention.name) in known:
+            if (kind, mention.name) in robot_names:
                 yield robot, kind
 
 
-def _fits(written: str, name: str) -> bool:
-    parts = re.split(r"\$\{[^{}]*\}|\$\([^()]*\)", written)
+def _fits(source_name: str, name: str) -> bool:
+    parts = re.split(r"\$\{[^{}]*\}|\$\([^()]*\)", source_name)
     return any(parts) and re.fullmatch(".*".join(map(re.escape, parts)), name) is not None
 
 
@@ -139,10 +139,10 @@ def rename_name(project: Workspace, texts: Mapping[Path, str], renamable: Renama
             return Renaming(tuple(sorted(edits)), {meaning.name: new}, tuple(unchanged))
         if not _LAUNCH_NAME.fullmatch(new):
             raise _invalid_name_error(new, phrase("launch argument"))
-        found = rename_launch_argument(project, texts, meaning[1], meaning[0].name, new)
+        renaming = rename_launch_argument(project, texts, meaning[1], meaning[0].name, new)
     except UnprovedError as error:
         raise _refusal_error(renamable.name, error.reason, error.span) from None
-    return Renaming(tuple(sorted(found.edits)), {}, tuple(found.unchanged), tuple(dict.fromkeys(found.notes)))
+    return Renaming(tuple(sorted(renaming.edits)), {}, tuple(renaming.unchanged), tuple(dict.fromkeys(renaming.notes)))
 
 
 def _rename_occurrence(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
@@ -184,8 +184,8 @@ def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurre
         return _rename_mention(project, texts, Mention(name.name, name.file, name.start, (name.kind,)), new)
     error: LinkwrightError | None = None
     for robot in robots_of_file(project, texts, name.file)[:_MAX_ROBOTS]:
-        known = sorted(value for kind, value in names_of_robot(project, texts, robot) if kind is name.kind)
-        for value in (value for value in known if _fits(name.name, value)):
+        names_of_kind = sorted(value for kind, value in names_of_robot(project, texts, robot) if kind is name.kind)
+        for value in (value for value in names_of_kind if _fits(name.name, value)):
             changed = renamed_template(name.name, new, value)
             if changed is None or changed == value:
                 continue
@@ -211,12 +211,12 @@ def _definition(
 
     The source of a name may contain expressions, such as ``${prefix}wheel``.
     """
-    found, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
-    for trial in found:
+    expansions, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
+    for trial in expansions:
         for element in trial.expansion.document.root.elements(name.kind.value):
-            written = source_value(element, "name") if element.attributes.get("name") == value else None
-            if written is not None and written.text == name.name:
-                return occurrence_at(project.text(written.file, texts) or "", written.file, written.start)
+            source = source_value(element, "name") if element.attributes.get("name") == value else None
+            if source is not None and source.text == name.name:
+                return occurrence_at(project.text(source.file, texts) or "", source.file, source.start)
     return None
 
 

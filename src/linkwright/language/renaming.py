@@ -63,8 +63,8 @@ def xacro_name_at(text: str, file: Path, offset: int) -> Occurrence | None:
 
 
 def _innermost(names: Iterable[Occurrence], offset: int) -> Occurrence | None:
-    found = [name for name in names if name.start <= offset <= name.end]
-    return min(found, key=lambda name: (name.end - name.start, not name.is_definition), default=None)
+    occurrences = [name for name in names if name.start <= offset <= name.end]
+    return min(occurrences, key=lambda name: (name.end - name.start, not name.is_definition), default=None)
 
 
 def references(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> list[Occurrence]:
@@ -75,17 +75,17 @@ def references(project: Workspace, texts: Mapping[Path, str], name: Occurrence) 
         texts: the texts of the open files.
         name: the name.
     """
-    found: dict[Path, list[Occurrence]] = {}
+    occurrences: dict[Path, list[Occurrence]] = {}
     pending = [name.file]
     is_shared = name.kind not in ROBOT_NAME_KINDS  # A link with the same name in another robot is a different link.
     for start in pending:
         for file in project.index.related(start, texts, computed=True):
-            if file not in found:
+            if file not in occurrences:
                 uses = occurrences_in(project.text(file, texts) or "", file)
-                found[file] = [use for use in uses if _is_same(use, name)]
-                if found[file] and is_shared:
+                occurrences[file] = [use for use in uses if _is_same(use, name)]
+                if occurrences[file] and is_shared:
                     pending.append(file)
-    return [use for uses in found.values() for use in uses]
+    return [use for uses in occurrences.values() for use in uses]
 
 
 def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
@@ -103,18 +103,18 @@ def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new:
     _check_new_name(name, new)
     seeds = references(project, texts, name)
     if not any(seed.is_definition for seed in seeds) and name.kind not in ROBOT_NAME_KINDS:
-        raise _unproved(phrase("'{name}' is not defined in the files of the workspace", name=name.name), name)
-    taken = next((other for other in references(project, texts, _named(name, new)) if other.is_definition), None)
-    if taken is not None:
+        raise _unproved_error(phrase("'{name}' is not defined in the files of the workspace", name=name.name), name)
+    existing = next((other for other in references(project, texts, _with_name(name, new)) if other.is_definition), None)
+    if existing is not None:
         message = phrase("{kind} '{name}' already exists", kind=term(name.kind.value), name=new)
-        raise LinkwrightError(Diagnostic("LANG103", message, _span(project, texts, taken)))
+        raise LinkwrightError(Diagnostic("LANG103", message, _span(project, texts, existing)))
     try:
-        return _proved(project, texts, name, new)
+        return _proved_edits(project, texts, name, new)
     except UnprovedError as error:
-        raise _unproved(error.reason, name, error.span) from None
+        raise _unproved_error(error.reason, name, error.span) from None
 
 
-def _proved(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
+def _proved_edits(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
     """Return the edits of the occurrences of a name, and the edits that follow from them."""
     proof = ExpansionProof(project, texts, name.file, is_partial=True)
     notes: list[Phrase] = []
@@ -184,17 +184,17 @@ def _visible_elsewhere(project: Workspace, texts: Mapping[Path, str], name: Occu
     """Return the edits of properties with the name of a parameter, and of forwarding parameters."""
     if name.kind not in (NameKind.PARAMETER, NameKind.PROPERTY):
         return set()
-    found: set[Edit] = set()
+    edits: set[Edit] = set()
     for file in project.index.related(name.file, texts, computed=True):
         text = project.text(file, texts) or ""
         uses = [use for use in occurrences_in(text, file) if use.name == name.name]
         forwarding = {use.owner for use in uses if use.is_definition and _FORWARD.match(text, use.end)}
-        found |= {
+        edits |= {
             Edit(file, use.start, use.end, new)
             for use in uses
             if use.kind is NameKind.PROPERTY or (use.kind is NameKind.PARAMETER and use.owner in forwarding)
         }
-    return found
+    return edits
 
 
 def _passed_arguments(
@@ -214,12 +214,12 @@ def _passed_arguments(
                 continue
             file = real_path(span.file)
             text = project.text(file, texts) or ""
-            found = {Edit(file, *match.span(), new) for match in passed.finditer(text, *_call_range(text, span))}
-            if not found:
+            call_edits = {Edit(file, *match.span(), new) for match in passed.finditer(text, *_call_range(text, span))}
+            if not call_edits:
                 raise UnprovedError(
                     phrase("a caller passes the argument, but its name is not written in the call"), span
                 )
-            edits |= found
+            edits |= call_edits
     return edits
 
 
@@ -232,7 +232,7 @@ def _is_same(other: Occurrence, name: Occurrence) -> bool:
     return not is_template or (other.file, other.owner) == (name.file, name.owner)
 
 
-def _named(name: Occurrence, new: str) -> Occurrence:
+def _with_name(name: Occurrence, new: str) -> Occurrence:
     return Occurrence(name.kind, new, name.file, name.start, name.is_definition, name.owner)
 
 
@@ -247,7 +247,7 @@ def _check_new_name(name: Occurrence, new: str) -> None:
         raise LinkwrightError(Diagnostic("LANG102", message, hint=hint))
 
 
-def _unproved(message: Phrase, name: Occurrence, span: Span | None = None) -> LinkwrightError:
+def _unproved_error(message: Phrase, name: Occurrence, span: Span | None = None) -> LinkwrightError:
     return LinkwrightError(
         Diagnostic("LANG104", phrase("'{name}' is not renamed: {reason}", name=name.name, reason=message), span)
     )

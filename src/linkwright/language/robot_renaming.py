@@ -92,8 +92,8 @@ class RobotRenaming:
         if "$" in name.name or not any(seed.is_definition for seed in seeds):
             raise UnprovedError(self._no_name_reason())
         self._proof.check_equal(edits)
-        found, self.unchanged = self._others.edits(required)
-        self.edits = edits | found
+        other_edits, self.unchanged = self._others.edits(required)
+        self.edits = edits | other_edits
 
     def _no_name_reason(self) -> Phrase:
         reason = self._proof.gap_reason
@@ -154,11 +154,11 @@ class RobotRenaming:
                 for element in _definitions(trial.expansion.document.root, kind):
                     if element.attributes.get("name") != value:
                         continue
-                    written = source_value(element, "name")
-                    if written is not None and not any(
-                        (edit.file, edit.start) == (written.file, written.start) for edit in literal
+                    source = source_value(element, "name")
+                    if source is not None and not any(
+                        (edit.file, edit.start) == (source.file, source.start) for edit in literal
                     ):
-                        computed.append((written, value, required[kind, value]))
+                        computed.append((source, value, required[kind, value]))
         if not computed:
             if literal:
                 yield literal
@@ -176,12 +176,12 @@ class RobotRenaming:
             names = dict(_changed_names(pairs))
             if not names and not required:
                 raise UnprovedError(self._no_name_reason())
-            wanted = {**names, **required}
+            new_names = {**names, **required}
             new_edits: set[Edit] = set()
             for pair in pairs:
-                new_edits |= {*self._edits_of_old_names(pair, wanted, edits)}
-            found, unchanged = self._others.edits(wanted)
-            new_edits |= found
+                new_edits |= {*self._edits_of_old_names(pair, new_names, edits)}
+            other_edits, unchanged = self._others.edits(new_names)
+            new_edits |= other_edits
             if new_edits <= edits:
                 self._check(pairs, names, required)
                 self.edits, self.names = edits, names
@@ -201,11 +201,11 @@ class RobotRenaming:
                 if not token.name.startswith("xacro:") or token.kind is not Kind.START:
                     continue
                 for attribute in token.attributes():
-                    written = f'{attribute.value or ""}"' if attribute.name != "name" else ""
-                    for found in pattern.finditer(written):
-                        start = attribute.value_start + found.start(1)
+                    value_text = f'{attribute.value or ""}"' if attribute.name != "name" else ""
+                    for match in pattern.finditer(value_text):
+                        start = attribute.value_start + match.start(1)
                         if (file, start) not in edited:
-                            yield Mention(found[1], file, start)
+                            yield Mention(match[1], file, start)
 
     def _edits_of_old_names(self, pair: ExpansionPair, names: Names, edits: Collection[Edit]) -> Iterator[Edit]:
         """Yield edits of the definitions and references in an expansion that still have an old name."""
@@ -215,17 +215,17 @@ class RobotRenaming:
             for kinds, key in _names_in(old, is_top=_is_definition(pair.before, old)):
                 before = old.attributes.get(key, "") if key else old.text().strip()
                 after = new.attributes.get(key, "") if key else new.text().strip()
-                wanted = next((names[kind, before] for kind in kinds if (kind, before) in names), None)
-                if wanted is None or after != before or wanted == before:
+                new_name = next((names[kind, before] for kind in kinds if (kind, before) in names), None)
+                if new_name is None or after != before or new_name == before:
                     continue
-                written = source_value(old, key)
-                if written is None:
+                source = source_value(old, key)
+                if source is None:
                     continue
-                proposal = next(self._sources.edits(written, before, wanted), None)
+                proposal = next(self._sources.edits(source, before, new_name), None)
                 if proposal is None:
-                    raise _computed_name_error(written, before, old.attribute_span(key) if key else old.span())
+                    raise _computed_name_error(source, before, old.attribute_span(key) if key else old.span())
                 if {*proposal} <= {*edits}:  # The edits did not change the value.
-                    raise _computed_name_error(written, before, old.attribute_span(key) if key else old.span())
+                    raise _computed_name_error(source, before, old.attribute_span(key) if key else old.span())
                 yield from proposal
 
     def _check(self, pairs: Sequence[ExpansionPair], names: Names, required: Names) -> None:
@@ -269,10 +269,8 @@ class RobotRenaming:
                 raise UnprovedError(message)
 
 
-def _computed_name_error(written: SourceValue, value: str, span: Span | None = None) -> UnprovedError:
-    return UnprovedError(
-        phrase("'{value}' is computed from '{expression}'", value=value, expression=written.text), span
-    )
+def _computed_name_error(source: SourceValue, value: str, span: Span | None = None) -> UnprovedError:
+    return UnprovedError(phrase("'{value}' is computed from '{expression}'", value=value, expression=source.text), span)
 
 
 def _check_overlap(edits: Iterable[Edit]) -> None:

@@ -89,8 +89,8 @@ class ConfigOwner:
     @property
     def class_name(self) -> str:
         """The class name in RViz 2, or empty if it is missing."""
-        written = self.entry.child("Class")
-        return "" if written is None else modern_class(written.scalar)
+        class_entry = self.entry.child("Class")
+        return "" if class_entry is None else modern_class(class_entry.scalar)
 
     @property
     def schema(self) -> Schema:

@@ -62,8 +62,8 @@ def sdf_names(text: str, file: Path) -> Iterator[SdfName]:
                 if attribute.name == "name" and attribute.value and _defines(element):
                     yield SdfName(attribute.value, file, attribute.value_start, element.start)
         for value, start, scope in _references(element, text):
-            for part, offset, found in _referred_elements(scope, value):
-                yield SdfName(part, file, start + offset, found.start)
+            for part, offset, owner in _referred_elements(scope, value):
+                yield SdfName(part, file, start + offset, owner.start)
 
 
 def sdf_name_at(text: str, file: Path, offset: int) -> SdfName | None:
@@ -113,12 +113,12 @@ def rename_in_sdf(
         if file == name.file:
             continue
         other = project.text(file, texts) or ""
-        found: set[Edit] = set()
+        file_edits: set[Edit] = set()
         if path is not None and file.name.endswith(_ENDINGS):
-            found = {*_edits_of_includer(other, file, name.file, path, new)}
-        edits |= found
-        if file in configurations or found:
-            edited_starts = {edit.start for edit in found}
+            file_edits = {*_edits_of_includer(other, file, name.file, path, new)}
+        edits |= file_edits
+        if file in configurations or file_edits:
+            edited_starts = {edit.start for edit in file_edits}
             mentions = mentions_in(other, file, frozenset({name.name}))
             unchanged += [mention for mention in mentions if mention.start not in edited_starts]
     return edits, unchanged
@@ -190,17 +190,20 @@ def _state_reference(element: SourceElement) -> Iterator[tuple[str, int, SourceE
     if state is None or scope is None or name is None:
         return
     for outer in reversed(around[1:state]):
-        found = next(
+        child = next(
             (candidate for candidate in _named_children(scope) if candidate.value("name") == outer.value("name")), None
         )
-        if found is None:
+        if child is None:
             return
-        scope = found
+        scope = child
     yield name.value or "", name.value_start, scope
 
 
 def _attribute_scope(element: SourceElement) -> SourceElement | None:
-    """Return the scope of an element's attributes, which is outside the model for its pose."""
+    """Return the scope of an element's attributes, or None if there is none.
+
+    The scope of a model's pose is outside the model.
+    """
     parent = element.parent
     if element.name == "pose" and parent is not None and parent.name == "model":
         return _scope(parent.parent)
@@ -212,16 +215,16 @@ def _referred_elements(scope: SourceElement, value: str) -> Iterator[tuple[str, 
     offset = 0
     current: SourceElement | None = scope
     for part in value.split(_SEPARATOR):
-        found = (
+        element = (
             None
             if current is None
             else next((candidate for candidate in _named_children(current) if candidate.value("name") == part), None)
         )
-        if found is None:
+        if element is None:
             return
-        yield part, offset, found
+        yield part, offset, element
         offset += len(part) + len(_SEPARATOR)
-        current = found if found.name == "model" else None
+        current = element if element.name == "model" else None
 
 
 def _path_from_top(element: SourceElement) -> tuple[str, ...] | None:
@@ -252,11 +255,11 @@ def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...]
     for include in elements:
         if include.name != "include" or not _includes(include, text, model):
             continue
-        given = _child_text(include, "name", text)
+        include_name = _child_text(include, "name", text)
         scope = _scope(include.parent)
-        if given and len(path) == 1:  # The include assigns another name to the model.
+        if include_name and len(path) == 1:  # The include assigns another name to the model.
             continue
-        names = [given or path[0], *path[1:]]
+        names = [include_name or path[0], *path[1:]]
         for element in elements if scope is not None else ():
             for value, start, own in _references(element, text):
                 if own is scope and value.split(_SEPARATOR)[: len(names)] == names:

@@ -38,10 +38,10 @@ _MAX_MODULES = 300
 
 def _entry_at(document: Document, offset: int) -> tuple[Text, re.Match[str] | None] | None:
     """Return the program declaration at an offset with its parts, or None."""
-    found = python_text(document.text).string_at(offset)
-    if found is None:
+    string = python_text(document.text).string_at(offset)
+    if string is None:
         return None
-    text, item = found
+    text, item = string
     outer = item.group.parent
     first = outer.parts[0] if outer is not None and outer.parts else None
     is_script = isinstance(first, Text) and first.value.endswith("_scripts") and item.group.opening in ("[", "(")
@@ -62,11 +62,11 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
     if entry is not None:
         yield from _program(entry[0], offset, folder)
         return
-    found = python_text(document.text).string_at(offset)
-    if found is None:
+    string = python_text(document.text).string_at(offset)
+    if string is None:
         yield from _arguments(document, offset)
         return
-    text, item = found
+    text, item = string
     if _is_installed(item):
         yield from offer_files(folder, text.value[: offset - text.start], offset)
     elif item.keyword == "name":
@@ -123,9 +123,9 @@ def _explain(document: Document, offset: int) -> Explanation | None:
         module, function = parts["module"], parts["function"] or ""
         file_line = "" if target is None else f"\n\n`{target.file}`"
         return Explanation(f"**{parts['name']}**: `{module}:{function}`{file_line}", text.start, text.end)
-    found = python_text(document.text).string_at(offset)
-    if found is not None and target is not None:
-        return Explanation(explain_file(target.file), found[0].start, found[0].end)
+    string = python_text(document.text).string_at(offset)
+    if string is not None and target is not None:
+        return Explanation(explain_file(target.file), string[0].start, string[0].end)
     return None
 
 
@@ -137,12 +137,12 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
         file = module_file(folder, parts["module"]) if parts is not None else None
         if parts is not None and file is not None:
             names = _FUNCTION.finditer(text_of(file))
-            name_range = next((found.span(1) for found in names if found[1] == parts["function"]), (0, 0))
+            name_range = next((match.span(1) for match in names if match[1] == parts["function"]), (0, 0))
             yield Target(file, *name_range)
         return
-    found = python_text(document.text).string_at(offset)
-    if found is not None and _is_installed(found[1]):
-        path = _file(folder, found[0].value)
+    string = python_text(document.text).string_at(offset)
+    if string is not None and _is_installed(string[1]):
+        path = _file(folder, string[0].value)
         if path is not None:
             yield Target(path)
 

@@ -105,8 +105,8 @@ def plugin_of(filename: str, name: str = "") -> SimulatorPlugin | None:
         filename: the file name, in any spelling.
         name: the name in the element, which must be the class in gz.
     """
-    found = simulator_plugins().get(library_name(filename)) if filename else None
-    return found or (_by_class().get(_modern(name)) if "::" in name else None)
+    plugin = simulator_plugins().get(library_name(filename)) if filename else None
+    return plugin or (_by_class().get(_modern(name)) if "::" in name else None)
 
 
 def _modern(name: str) -> str:

@@ -98,7 +98,7 @@ class _Source(NamedTuple):
 
 @dataclass(slots=True)
 class _Sources:
-    found: dict[Path, _Source]
+    sources: dict[Path, _Source]
     time: float
     cache: dict[Path, tuple[object, _Source]]
 
@@ -120,7 +120,7 @@ def declared_parameters(document: Document, node: str) -> list[DeclaredParameter
     """
     of_node: list[DeclaredParameter] = []
     others: list[DeclaredParameter] = []
-    for text, parameters, _ in _known(document).values():
+    for text, parameters, _ in _known_sources(document).values():
         (of_node if f'"{node}"' in text or f"'{node}'" in text else others).extend(parameters)
     return of_node or others
 
@@ -136,29 +136,32 @@ def declared_topics(document: Document, folder: Path) -> list[DeclaredTopic]:
         NotYetKnownError: the sources were never read, and the document does not wait.
     """
     return [
-        topic for file, source in _known(document).items() if file.is_relative_to(folder) for topic in source.topics
+        topic
+        for file, source in _known_sources(document).items()
+        if file.is_relative_to(folder)
+        for topic in source.topics
     ]
 
 
-def _known(document: Document) -> dict[Path, _Source]:
+def _known_sources(document: Document) -> dict[Path, _Source]:
     """Return the source files that declare parameters or topics, by path."""
     sources = _sources.get(document.project)
     if sources is not None and time.monotonic() - sources.time <= _SECONDS:
-        return sources.found
+        return sources.sources
     if document.waits:
         sources = _sources[document.project] = _read(document.project, document.texts, sources)
     elif sources is None:
         raise NotYetKnownError
     else:
-        document.refreshes.append(partial(_known, replace(document, waits=True)))
-    return sources.found
+        document.refreshes.append(partial(_known_sources, replace(document, waits=True)))
+    return sources.sources
 
 
 def _read(project: Workspace, texts: Mapping[Path, str], before: _Sources | None) -> _Sources:
     """Read the sources that have changed since they were read before."""
     files = [real_path(file) for folder in project.index.packages for file in walk(folder, _SOURCES)[0]][:_MAX_FILES]
     cache = {} if before is None else before.cache
-    found: dict[Path, _Source] = {}
+    sources: dict[Path, _Source] = {}
     for file in files:
         try:
             state: object = texts.get(file) or file.stat().st_mtime_ns
@@ -168,8 +171,8 @@ def _read(project: Workspace, texts: Mapping[Path, str], before: _Sources | None
         if entry is None or entry[0] != state:
             entry = cache[file] = state, _source(project.text(file, texts) or "", file)
         if entry[1].text:
-            found[file] = entry[1]
-    return _Sources(found, time.monotonic(), cache)
+            sources[file] = entry[1]
+    return _Sources(sources, time.monotonic(), cache)
 
 
 def _source(text: str, file: Path) -> _Source:
@@ -193,9 +196,9 @@ def _declarations(text: str, file: Path) -> Iterator[DeclaredParameter]:
         yield DeclaredParameter(match[2], _type_of(match[1] or "", default), default, file, match.start(2))
 
 
-def _type_of(written: str, default: str) -> str:
+def _type_of(declared_type: str, default: str) -> str:
     """Derive the type of a parameter from its C++ type, or from the text of its default."""
-    cpp_type = _TYPES.get(written.replace(" ", ""))
+    cpp_type = _TYPES.get(declared_type.replace(" ", ""))
     if cpp_type is not None:
         return cpp_type
     if default.lower() in ("true", "false"):

@@ -59,28 +59,28 @@ class _Semantics:
         """The descriptions of the robot, found by MoveIt's Setup Assistant or the robot's name."""
         project, file = self.document.project, self.document.file
         package = enclosing_package(file.parent)
-        found = [*self._setup_assistant_descriptions(package[1])] if package is not None else []
-        named = _ROBOT.search(self.document.text)
-        name = named[1] if named is not None else ""
+        descriptions = [*self._setup_assistant_descriptions(package[1])] if package is not None else []
+        robot_name = _ROBOT.search(self.document.text)
+        name = robot_name[1] if robot_name is not None else ""
         beside = project.package_neighbors(file, ())
         for other in dict.fromkeys((*beside, *project.index.files)):
             head = _ROBOT.search(self.document.other(other)[:_LONGEST_HEAD]) if name else None
             if head is not None and head[1] == name and not is_srdf(other):
-                found.append(other)
+                descriptions.append(other)
         whole = [other for other in beside if ".urdf" in other.name and not is_srdf(other)]
         words = {attribute.value or "" for token in tokens(self.document.text) for attribute in token.attributes()}
-        return [*islice(dict.fromkeys(found or mentioned_robots(self.document, words) or whole), _MAX_ROBOTS)]
+        return [*islice(dict.fromkeys(descriptions or mentioned_robots(self.document, words) or whole), _MAX_ROBOTS)]
 
     def _setup_assistant_descriptions(self, folder: Path) -> Iterator[Path]:
-        for found in _ASSISTANT.finditer(text_of(folder / ".setup_assistant")):
-            share = self.document.finder.find(found[1])
-            if share is not None and (share / found[2]).is_file():
-                yield real_path(source_of(str(share / found[2])))
+        for match in _ASSISTANT.finditer(text_of(folder / ".setup_assistant")):
+            share = self.document.finder.find(match[1])
+            if share is not None and (share / match[2]).is_file():
+                yield real_path(source_of(str(share / match[2])))
 
     @cached_property
     def robots(self) -> list[Robot]:
-        found = (self.document.project.robot(file, self.document.texts) for file in self.descriptions)
-        return [robot for robot in found if robot is not None]
+        robots = (self.document.project.robot(file, self.document.texts) for file in self.descriptions)
+        return [robot for robot in robots if robot is not None]
 
     def parts(self, kind: NameKind) -> list[str]:
         """Return the names of the links or joints, in the order of the descriptions."""
@@ -89,13 +89,13 @@ class _Semantics:
 
     def groups(self) -> dict[str, int]:
         """Return the names of the groups, each with its offset."""
-        found: dict[str, int] = {}
+        groups: dict[str, int] = {}
         for token in tokens(self.document.text):
             if token.kind is Kind.START and token.name == "group":
                 for attribute in token.attributes():
                     if attribute.name == "name" and attribute.value:
-                        found.setdefault(attribute.value, attribute.value_start)
-        return found
+                        groups.setdefault(attribute.value, attribute.value_start)
+        return groups
 
 
 def _rule_of(cursor: Cursor) -> AttributeRule | None:
@@ -146,7 +146,9 @@ def _explain(document: Document, offset: int) -> Explanation | None:
     if rule is not None and rule.type in (LINK, JOINT) and cursor.attribute is not None and cursor.attribute.value:
         kind = NameKind.LINK if rule.type is LINK else NameKind.JOINT
         name = cursor.attribute.value
-        facts = next((known for robot in semantics.robots if (known := part_facts(robot, kind, name))), None)
+        facts = next(
+            (robot_facts for robot in semantics.robots if (robot_facts := part_facts(robot, kind, name))), None
+        )
         if facts is not None:
             text = f"**{kind.value} {name}**\n\n{facts}"
             return Explanation(text, cursor.attribute.value_start, cursor.attribute.value_end)
@@ -154,9 +156,9 @@ def _explain(document: Document, offset: int) -> Explanation | None:
         described = _described_group(document.text, cursor.attribute.value or "")
         if described:
             return Explanation(described, cursor.attribute.value_start, cursor.attribute.value_end)
-    found = explain_at(document, offset, semantics.names)
-    if found is not None or not document.file.name.endswith(".xacro"):
-        return found
+    explanation = explain_at(document, offset, semantics.names)
+    if explanation is not None or not document.file.name.endswith(".xacro"):
+        return explanation
     values = values_in(document.project, document.texts, document.file)
     further_facts = facts_at(document.project, document.texts, document.file, document.text, offset, values)
     return Explanation("\n\n".join(further_facts), offset, offset) if further_facts else None
@@ -202,19 +204,21 @@ def _parts(semantics: _Semantics, kind: NameKind, value: str) -> Iterator[Target
     document = semantics.document
     for file in semantics.descriptions:
         names = document.project.names(file, document.texts)
-        found = [name for name in names if name.kind is kind and _matches(name.name, value)]
+        names_of_kind = [name for name in names if name.kind is kind and _matches(name.name, value)]
         if kind is NameKind.JOINT:
-            found = [name for name in found if name.detail]  # Only the definition of a joint has a type.
-        exact = [name for name in found if name.name == value]
-        for name in dict.fromkeys(exact or found):
+            names_of_kind = [
+                name for name in names_of_kind if name.detail
+            ]  # Only the definition of a joint has a type.
+        exact = [name for name in names_of_kind if name.name == value]
+        for name in dict.fromkeys(exact or names_of_kind):
             yield Target(name.file, name.start, name.start + len(name.name))
-        if found:
+        if names_of_kind:
             return
 
 
-def _matches(written: str, value: str) -> bool:
+def _matches(source_name: str, value: str) -> bool:
     """Return whether a value matches a written name that is not only an expression."""
-    parts = _EXPRESSION.split(written)
+    parts = _EXPRESSION.split(source_name)
     if not any(parts):
         return False
     return re.fullmatch(".*".join(map(re.escape, parts)), value) is not None

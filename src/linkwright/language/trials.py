@@ -106,12 +106,14 @@ def trials(
             error = reason
         else:
             distinct.setdefault((str(expansion), frozenset(arguments)), Trial(entry, arguments, expansion))
-    found = [*distinct.values()]
-    if is_partial and not found:
-        found += _with_gaps(project, texts, entry)
-    if is_partial and is_switched and found:
-        found += _switched(project, texts, found[0], {str(trial.expansion) for trial in found})
-    return found, error
+    expansions = [*distinct.values()]
+    if is_partial and not expansions:
+        expansions += _with_gaps(project, texts, entry)
+    if is_partial and is_switched and expansions:
+        expansions += _trials_with_other_values(
+            project, texts, expansions[0], {str(trial.expansion) for trial in expansions}
+        )
+    return expansions, error
 
 
 def _with_gaps(project: Workspace, texts: Mapping[Path, str], entry: Path) -> Iterator[Trial]:
@@ -173,7 +175,9 @@ def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, g
     return None if element_range in gaps.get(file, ()) else (file, element_range)
 
 
-def _switched(project: Workspace, texts: Mapping[Path, str], base: Trial, known: set[str]) -> Iterator[Trial]:
+def _trials_with_other_values(
+    project: Workspace, texts: Mapping[Path, str], base: Trial, seen_results: set[str]
+) -> Iterator[Trial]:
     """Yield the new expansions that result from another value of a single argument."""
     begin = time.monotonic()
     for name, value in _values(project, texts, base.entry):
@@ -187,8 +191,8 @@ def _switched(project: Workspace, texts: Mapping[Path, str], base: Trial, known:
         except (LinkwrightError, Fault, RecursionError):
             continue
         text = str(expansion)
-        if text not in known:
-            known.add(text)
+        if text not in seen_results:
+            seen_results.add(text)
             yield Trial(base.entry, arguments, expansion, base.gaps, base.reason)
 
 

@@ -21,29 +21,29 @@ _MAX_PLACES = 300
 """The maximum number of occurrences of a name that are checked in a file."""
 
 
-def uses_at(document: Document, known: Format, offset: int, *, in_file: bool = False) -> list[Target]:
+def uses_at(document: Document, file_format: Format, offset: int, *, in_file: bool = False) -> list[Target]:
     """Return the definition and the uses of the name at an offset, or an empty list.
 
     The uses of a launch argument are also searched in the launch files of the package that mention its file.
 
     Args:
         document: the text.
-        known: its format.
+        file_format: the format of the text.
         offset: the character offset.
         in_file: whether only locations in the text are returned.
     """
-    found: dict[Target, None] = {}
-    for target in known.define(document, offset):
+    targets: dict[Target, None] = {}
+    for target in file_format.define(document, offset):
         name = document.other(target.file)[target.start : target.end] if target.end > target.start else ""
         if not name or document.text.find(name, max(0, offset - len(name)), offset + len(name)) < 0:
             continue
         if not in_file or target.file == document.file:
-            found[target] = None
+            targets[target] = None
         for other in [document] if in_file else [*_documents(document, target.file)]:
             own = format_of(other.file)
             if own is not None:
-                found.update(dict.fromkeys(_uses(other, own, target, name)))
-    return list(found)
+                targets.update(dict.fromkeys(_uses(other, own, target, name)))
+    return list(targets)
 
 
 def _documents(document: Document, file: Path) -> Iterator[Document]:
@@ -54,7 +54,7 @@ def _documents(document: Document, file: Path) -> Iterator[Document]:
     others: list[Path] = []
     if is_launch_file_name(file.name) or file.name.endswith(".launch"):
         packages = (enclosing_package(path.parent) for path in (document.file, file))
-        folders = dict.fromkeys(found[1] for found in packages if found is not None)
+        folders = dict.fromkeys(package[1] for package in packages if package is not None)
         others = [real_path(source_of(str(path))) for folder in folders for path in launch_files_below(folder)]
     for number, path in enumerate(dict.fromkeys((document.file, file, *others))):
         if number < _MAX_FILES:
@@ -63,8 +63,8 @@ def _documents(document: Document, file: Path) -> Iterator[Document]:
                 yield Document(document.project, document.texts, path, text)
 
 
-def _uses(document: Document, known: Format, target: Target, name: str) -> Iterator[Target]:
+def _uses(document: Document, file_format: Format, target: Target, name: str) -> Iterator[Target]:
     places = re.finditer(rf"(?<![\w.-]){re.escape(name)}(?![\w.-])", document.text)
     for _, position in zip(range(_MAX_PLACES), places, strict=False):
-        if target in known.define(document, position.start()):
+        if target in file_format.define(document, position.start()):
             yield Target(document.file, *position.span())

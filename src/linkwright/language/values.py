@@ -51,7 +51,7 @@ def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list
         file: the file.
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
-    found: dict[tuple[int, int], ValuedText] = {}
+    valued_texts: dict[tuple[int, int], ValuedText] = {}
     calls = (
         (entry, values) for entry in project.index.entries(file, texts) for values, _ in project.argument_calls(entry)
     )
@@ -60,9 +60,9 @@ def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list
         for expression in evaluated_expressions(inputs):
             if real_path(expression.file) == file:
                 key = expression.start, expression.end
-                text = found.setdefault(key, ValuedText(*key))
+                text = valued_texts.setdefault(key, ValuedText(*key))
                 text.evaluations += [(evaluation, values) for evaluation in expression.evaluations]
-    return list(found.values())
+    return list(valued_texts.values())
 
 
 def value_at(texts: Sequence[ValuedText], offset: int) -> ValuedText | None:
@@ -87,8 +87,8 @@ def outermost_texts(texts: Sequence[ValuedText]) -> Iterator[ValuedText]:
 def short_values(text: ValuedText) -> str:
     """Return the first values of a text on one short line, for the end of its line."""
     values = [value[1:-1] if value[:1] in ("'", '"') else value for value in text.values() if value]
-    shown = " | ".join(values[:_SHOWN_BESIDE]) + (" | ..." if len(values) > _SHOWN_BESIDE else "")
-    return _shortened(shown)
+    short_text = " | ".join(values[:_SHOWN_BESIDE]) + (" | ..." if len(values) > _SHOWN_BESIDE else "")
+    return _shorten(short_text)
 
 
 def describe_values(text: ValuedText, source: str) -> str:
@@ -120,7 +120,7 @@ def _origin(evaluations: Sequence[tuple[Evaluation, Mapping[str, str]]]) -> str:
     origin = f" {', '.join(calls[:_SHOWN_CALLS])}" + (", ..." if len(calls) > _SHOWN_CALLS else "")
     arguments = evaluations[0][1]
     if arguments and all(values for _, values in evaluations):
-        origin += f" `{_shortened(' '.join(f'{name}:={value}' for name, value in arguments.items()))}`"
+        origin += f" `{_shorten(' '.join(f'{name}:={value}' for name, value in arguments.items()))}`"
     return "" if origin == " " else origin
 
 
@@ -129,10 +129,10 @@ def _call(frame: Frame | None) -> str:
     call = next((frame for frame in frames(frame) if frame.macro is not None), None)
     if call is None:
         return ""
-    written = " ".join([call.macro or "", *(f'{name}="{value}"' for name, value in call.site.attributes.items())])
+    call_text = " ".join([call.macro or "", *(f'{name}="{value}"' for name, value in call.site.attributes.items())])
     span = call.site.span()
-    return f"`{_shortened(written)}`" + ("" if span is None else f" ({Path(span.file).name}:{span.line})")
+    return f"`{_shorten(call_text)}`" + ("" if span is None else f" ({Path(span.file).name}:{span.line})")
 
 
-def _shortened(text: str) -> str:
+def _shorten(text: str) -> str:
     return text if len(text) <= _MAX_LABEL else f"{text[: _MAX_LABEL - 3]}..."

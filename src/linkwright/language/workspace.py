@@ -131,21 +131,21 @@ class Workspace:
 
     def configurations_below(self, folder: Path) -> list[Path]:
         """Return the files below a folder that may mention links and joints."""
-        found, _ = walk(folder, (*MENTIONING_FILES, ".srdf", ".srdf.xacro", ".sdf", ".world"))
-        return [real_path(path) for path in found]
+        paths, _ = walk(folder, (*MENTIONING_FILES, ".srdf", ".srdf.xacro", ".sdf", ".world"))
+        return [real_path(path) for path in paths]
 
     def files(self, suffixes: tuple[str, ...]) -> list[Path]:
         """Return the files of the workspace with some suffixes, inside packages or not."""
-        found = (path for folder in self.folders for path in walk(folder, suffixes)[0])
-        return [*dict.fromkeys(map(real_path, found))]
+        paths = (path for folder in self.folders for path in walk(folder, suffixes)[0])
+        return [*dict.fromkeys(map(real_path, paths))]
 
-    def package_neighbors(self, file: Path, known: Container[Path]) -> list[Path]:
+    def package_neighbors(self, file: Path, known_files: Container[Path]) -> list[Path]:
         """Return the descriptions in a file's package, except known ones."""
         package = enclosing_package(file.parent)
         if package is None:
             return []
         folder = real_path(package[1])
-        return [other for other in self.index.files if other not in known and other.is_relative_to(folder)]
+        return [other for other in self.index.files if other not in known_files and other.is_relative_to(folder)]
 
     def names(self, file: Path, texts: Mapping[Path, str]) -> list[NameDefinition]:
         """Return the names defined in a file, and in the descriptions that include it.
@@ -167,18 +167,18 @@ class Workspace:
             file: text for file, text in texts.items() if file.name.endswith(DESCRIPTIONS) and file in self.index.files
         }
         versions = versions_of(texts)
-        known = self._robots.pop(entry, None)
-        if known is None or known[0] != versions:
+        cached = self._robots.pop(entry, None)
+        if cached is None or cached[0] != versions:
             overlay = Overlay({str(path): text for path, text in texts.items()})
             try:
                 robot = read(expand(entry, {}, packages=self.finder(entry), overlay=overlay).document).robot
             except LinkwrightError:
                 robot = None
-            known = versions, robot
-        self._robots[entry] = known
+            cached = versions, robot
+        self._robots[entry] = cached
         if len(self._robots) > _MAX_ROBOTS:
             del self._robots[next(iter(self._robots))]
-        return known[1]
+        return cached[1]
 
     def all_names(self, texts: Mapping[Path, str]) -> list[NameDefinition]:
         """Return the names that all descriptions of the workspace define.
@@ -197,13 +197,13 @@ class Workspace:
             if status.st_size > MAX_CHARACTERS:
                 return ()
             changed_ns = status.st_mtime_ns
-            known = self._names.get(file)
-            if known is None or known[0] != changed_ns:
+            cached = self._names.get(file)
+            if cached is None or cached[0] != changed_ns:
                 text = decode(read_bytes(file), str(file))
-                known = self._names[file] = (changed_ns, tuple(definitions_in(text, file)))
+                cached = self._names[file] = (changed_ns, tuple(definitions_in(text, file)))
         except (OSError, LinkwrightError):
             return ()
-        return known[1]
+        return cached[1]
 
     def subjects(self, file: Path, texts: Mapping[Path, str]) -> list[Path]:
         """Return the descriptions and packages to check when a file has changed.
@@ -226,8 +226,8 @@ class Workspace:
                 self.index.refresh()
                 return [*dict.fromkeys((*entries, *below))]
         package = enclosing_package(file.parent)
-        found = self.index.entries(file, texts) if is_description else []
-        subjects = [*found, *([] if package is None else [real_path(package[1])])]
+        descriptions = self.index.entries(file, texts) if is_description else []
+        subjects = [*descriptions, *([] if package is None else [real_path(package[1])])]
         if subjects and file not in subjects:
             self._results.pop(file, None)  # findings about the file alone, before it had subjects
         return subjects
@@ -245,7 +245,7 @@ class Workspace:
         return self.record(subject, self.checked(subject, texts), texts, changed)
 
     def record(
-        self, subject: Path, found: tuple[Diagnostic, ...], texts: Mapping[Path, str], changed: Iterable[Path] = ()
+        self, subject: Path, findings: tuple[Diagnostic, ...], texts: Mapping[Path, str], changed: Iterable[Path] = ()
     ) -> dict[Path, list[Diagnostic]]:
         """Store the findings about a subject, and return the findings about each affected file.
 
@@ -253,14 +253,14 @@ class Workspace:
 
         Args:
             subject: the description or the folder of the package.
-            found: the findings that `checked` has returned.
+            findings: the findings that `checked` has returned.
             texts: the texts of the open files that were checked.
             changed: files that are included in the result even if there is no finding about them.
         """
         before = self._results.pop(subject, _NOTHING).findings
-        if found:
-            self._results[subject] = _Result(found, versions_of(texts))
-        return self._of_files({_file(diagnostic, subject) for diagnostic in (*before, *found)} | {*changed})
+        if findings:
+            self._results[subject] = _Result(findings, versions_of(texts))
+        return self._of_files({_file(diagnostic, subject) for diagnostic in (*before, *findings)} | {*changed})
 
     def without_findings(self) -> dict[Path, list[Diagnostic]]:
         """Return an empty list for each file with findings, to clear the findings in an editor."""
@@ -274,15 +274,15 @@ class Workspace:
             file: the file.
             texts: the texts of the open files.
         """
-        found = UniqueFindings()
+        unique_findings = UniqueFindings()
         versions = versions_of(texts)
         for subject, result in self._results.items():
             for finding in result.findings:
                 if isinstance(finding, Finding) and finding.fix is not None and _file(finding, subject) == file:
                     edited = {real_path(edit.source_file) for edit in finding.fix.edits}
                     if all(result.versions.get(other) == versions.get(other) for other in edited):
-                        found.add([finding])
-        return [finding for finding in found.all() if isinstance(finding, Finding)]
+                        unique_findings.add([finding])
+        return [finding for finding in unique_findings.all() if isinstance(finding, Finding)]
 
     def findings(self, file: Path, texts: Mapping[Path, str]) -> list[Diagnostic]:
         """Return the findings with a location in a file, if its text has not changed since.
@@ -291,18 +291,18 @@ class Workspace:
             file: the file.
             texts: the texts of the open files.
         """
-        found = UniqueFindings()
+        unique_findings = UniqueFindings()
         versions = versions_of(texts)
         for result in self._results.values():
             if result.versions.get(file) == versions.get(file):
-                found.add(
+                unique_findings.add(
                     [
                         finding
                         for finding in result.findings
                         if finding.span is not None and real_path(finding.span.file) == file
                     ]
                 )
-        return found.all()
+        return unique_findings.all()
 
     def checked(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
         """Check a description or package, and return the findings without their elements.
@@ -311,8 +311,8 @@ class Workspace:
             subject: a description, or the folder of a package, as `subjects` returns them.
             texts: the texts of the open files.
         """
-        found = self._checked(subject, texts) if subject in texts or subject.exists() else ()
-        return tuple(map(without_element, found))
+        findings = self._checked(subject, texts) if subject in texts or subject.exists() else ()
+        return tuple(map(without_element, findings))
 
     def _checked(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
         overlay = Overlay({str(path): text for path, text in texts.items()})
@@ -321,8 +321,8 @@ class Workspace:
             return (*trouble, *relevant_package_findings(diagnostics, [subject]))
         if not self._is_xml(subject, texts):
             return ()
-        named = frozenset({subject}) if subject in texts else frozenset()
-        targets = Targets((subject,), self.index.packages, named)
+        open_subjects = frozenset({subject}) if subject in texts else frozenset()
+        targets = Targets((subject,), self.index.packages, open_subjects)
         checked, trouble = self._checker.check_file(subject, targets, overlay, Contexts())
         examined = Examined.of(checked, subject)
         return (*trouble, *relevant_findings(examined, [examined], targets, [subject]))
@@ -333,13 +333,13 @@ class Workspace:
 
     def _of_files(self, files: set[Path]) -> dict[Path, list[Diagnostic]]:
         """Return the findings about some files, of all subjects, without duplicates."""
-        found = {file: UniqueFindings() for file in files}
+        findings_by_file = {file: UniqueFindings() for file in files}
         for subject, result in self._results.items():
             for diagnostic in result.findings:
                 file = _file(diagnostic, subject)
-                if file in found:
-                    found[file].add([diagnostic])
-        return {file: unique.all() for file, unique in found.items()}
+                if file in findings_by_file:
+                    findings_by_file[file].add([diagnostic])
+        return {file: unique.all() for file, unique in findings_by_file.items()}
 
 
 def _file(diagnostic: Diagnostic, subject: Path) -> Path:

@@ -32,12 +32,12 @@ def yaml_value(document: Document, name: str, names: Sequence[NameDefinition]) -
         name: the property.
         names: the names that the files of the description define.
     """
-    written, file = _definition_of(name, NameKind.PROPERTY, names)
-    found = _LOADED.search(written)
-    if found is None or file is None:
+    value_text, file = _definition_of(name, NameKind.PROPERTY, names)
+    match = _LOADED.search(value_text)
+    if match is None or file is None:
         return None
-    path = found["path"] or f"${{{found['name']}}}"
-    text = _replaced(path, file, document, names)
+    path = match["path"] or f"${{{match['name']}}}"
+    text = _replace_known(path, file, document, names)
     if "$" in text or not text or "\0" in text:
         return None
     target = file.parent / text
@@ -45,18 +45,18 @@ def yaml_value(document: Document, name: str, names: Sequence[NameDefinition]) -
         value: Any = _content(target, target.stat().st_mtime_ns)
     except OSError:
         return None
-    for key in _KEY.finditer(found["rest"]):
+    for key in _KEY.finditer(match["rest"]):
         value = value.get(key[1]) if isinstance(value, dict) else None
     return value
 
 
 def _definition_of(name: str, kind: NameKind, names: Sequence[NameDefinition]) -> tuple[str, Path | None]:
     """Return the value of a property or argument as written, and the file that defines it."""
-    found = next((candidate for candidate in names if candidate.kind is kind and candidate.name == name), None)
-    return ("", None) if found is None else (found.detail, found.file)
+    definition = next((candidate for candidate in names if candidate.kind is kind and candidate.name == name), None)
+    return ("", None) if definition is None else (definition.detail, definition.file)
 
 
-def _replaced(text: str, file: Path, document: Document, names: Sequence[NameDefinition]) -> str:
+def _replace_known(text: str, file: Path, document: Document, names: Sequence[NameDefinition]) -> str:
     """Replace the known properties, arguments and packages in a text."""
 
     def value(part: re.Match[str]) -> str:
@@ -66,8 +66,8 @@ def _replaced(text: str, file: Path, document: Document, names: Sequence[NameDef
         if part[1] == "dirname":
             return str(file.parent)
         kind = NameKind.ARGUMENT if part[1] == "arg" else NameKind.PROPERTY
-        written, _ = _definition_of(part[2] or part[3], kind, names)
-        return written or part[0]
+        value_text, _ = _definition_of(part[2] or part[3], kind, names)
+        return value_text or part[0]
 
     for _ in range(_DEEPEST):
         replaced = _PART.sub(value, text)

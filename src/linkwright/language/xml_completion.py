@@ -26,10 +26,10 @@ def complete(document: Document, offset: int, names: Sequence[NameDefinition] = 
         offset: the character offset of the cursor.
         names: the names that the files of the description define.
     """
-    found: dict[str, Completion] = {}
+    completions: dict[str, Completion] = {}
     for item in _complete(document, offset, names):
-        found.setdefault(item.label, item)
-    return list(found.values())
+        completions.setdefault(item.label, item)
+    return list(completions.values())
 
 
 def _complete(document: Document, offset: int, names: Sequence[NameDefinition]) -> Iterator[Completion]:
@@ -104,16 +104,18 @@ def _one_line(text: str) -> str:
     return " ".join(text.split())
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
     return text.replace("\\", "\\\\").replace("$", "\\$").replace("}", "\\}")
 
 
 def _element_snippet(rule: ElementRule) -> str:
-    shown = [attribute for attribute in rule.attributes if attribute.required or attribute.usual]
-    attributes_text = "".join(f' {attribute.name}="${{{number}}}"' for number, attribute in enumerate(shown, 1))
+    snippet_attributes = [attribute for attribute in rule.attributes if attribute.required or attribute.usual]
+    attributes_text = "".join(
+        f' {attribute.name}="${{{number}}}"' for number, attribute in enumerate(snippet_attributes, 1)
+    )
     if rule.text is not None and not rule.children:
-        default = f":{_escaped(rule.text.default)}" if rule.text.default and len(rule.text.default) < 40 else ""
-        return f"{rule.tag}{attributes_text}>${{{len(shown) + 1}{default}}}</{rule.tag}>"
+        default = f":{_escape(rule.text.default)}" if rule.text.default and len(rule.text.default) < 40 else ""
+        return f"{rule.tag}{attributes_text}>${{{len(snippet_attributes) + 1}{default}}}</{rule.tag}>"
     has_content = bool(rule.child_rules) or rule.tag in ("xacro:macro", "xacro:if", "xacro:unless")
     return f"{rule.tag}{attributes_text}>$0</{rule.tag}>" if has_content else f"{rule.tag}{attributes_text}/>$0"
 

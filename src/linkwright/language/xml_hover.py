@@ -31,11 +31,11 @@ def explain_at(document: Document, offset: int, names: Sequence[NameDefinition] 
     """
     text = document.text
     cursor = cursor_at(text, offset)
-    found = definitions_at(text, offset, names)
-    if found:
+    definitions = definitions_at(text, offset, names)
+    if definitions:
         name = name_at(text, offset)
         start, end = (name[1], name[1] + len(name[0])) if name else (offset, offset)
-        return Explanation("\n\n".join(map(describe_name, found)), start, end)
+        return Explanation("\n\n".join(map(describe_name, definitions)), start, end)
     root = root_of(document.file)
     if root is None:
         return None
@@ -62,17 +62,21 @@ def _explain_attribute(
     if tag.startswith(PREFIX) and tag not in XACRO:
         macro = called_macro(tag, names)
         parameters = () if macro is None else macro_parameters(macro)
-        found = next((parameter for parameter in parameters if parameter.name == name), None)
-        return None if found is None or macro is None else Explanation(describe_parameter(found, macro), start, end)
+        macro_parameter = next((parameter for parameter in parameters if parameter.name == name), None)
+        return (
+            None
+            if macro_parameter is None or macro is None
+            else Explanation(describe_parameter(macro_parameter, macro), start, end)
+        )
     rule = XACRO.get(tag) or rule_at(root, cursor.tags, cursor.elements)
     attribute = None if rule is None else rule.attribute_rules.get(name)
     if attribute is None:
         return None
     value = cursor.attribute.value or ""
     if cursor.syntax is CursorSyntax.VALUE:
-        known = _explain_value(document, cursor, attribute, value)
-        if known:
-            return Explanation(known, start, end)
+        value_explanation = _explain_value(document, cursor, attribute, value)
+        if value_explanation:
+            return Explanation(value_explanation, start, end)
         angles = _in_degrees(cursor, attribute, value)
         if angles:
             return Explanation(f"{localized(describe_attribute(attribute))}\n\n{angles}", start, end)
@@ -96,8 +100,8 @@ def _in_degrees(cursor: Cursor, rule: AttributeRule, value: str) -> str:
 def _explain_value(document: Document, cursor: Cursor, rule: AttributeRule, value: str) -> str:
     """Return the explanation of a simulator plugin or hardware parameter, or empty."""
     if cursor.tags[-1] == "plugin" and rule.name in ("filename", "name"):
-        given = {attribute.name: attribute.value or "" for attribute in cursor.elements[-1].attributes()}
-        plugin = plugin_of(given.get("filename", ""), given.get("name", ""))
+        attributes = {attribute.name: attribute.value or "" for attribute in cursor.elements[-1].attributes()}
+        plugin = plugin_of(attributes.get("filename", ""), attributes.get("name", ""))
         return "" if plugin is None else describe_plugin(plugin)
     if rule.type is PARAMETER_NAME and "hardware" in cursor.tags:
         plugin_name = hardware_of(document.text, element_at(document.text, cursor.elements[:-1]))
@@ -114,17 +118,17 @@ def describe_plugin(plugin: SimulatorPlugin) -> str:
 
 
 def _explain_text(document: Document, cursor: Cursor, root: ElementRule) -> Explanation | None:
-    """Explain the text inside an element."""
+    """Explain the text inside an element, or return None."""
     rule = rule_at(root, cursor.tags, cursor.elements) if cursor.tags else None
     if rule is None or rule.text is None:
         return None
     begin = cursor.offset - len(cursor.typed)
     ends = document.text.find("<", cursor.offset)
-    written = document.text[begin : ends if ends >= 0 else len(document.text)]
-    value = written.strip()
+    element_text = document.text[begin : ends if ends >= 0 else len(document.text)]
+    value = element_text.strip()
     if not value:
         return None
-    start = begin + written.index(value)
+    start = begin + element_text.index(value)
     if rule.text.type is HARDWARE_PLUGIN:
         purpose = hardware_plugins(document).get(value)
         parameters = ", ".join(f"`{name}`" for name in hardware_parameters(document, value))
@@ -138,10 +142,10 @@ def _explain_word(cursor: Cursor) -> Explanation | None:
     """Explain the macro parameter or function at a cursor in an expression, or return None."""
     if cursor.syntax is not CursorSyntax.VALUE or not cursor.is_in_expression or cursor.token is None:
         return None
-    found = name_at(cursor.token.text, cursor.offset - cursor.token.start)
-    if found is None:
+    name = name_at(cursor.token.text, cursor.offset - cursor.token.start)
+    if name is None:
         return None
-    word, start = found[0], found[1] + cursor.token.start
+    word, start = name[0], name[1] + cursor.token.start
     parameter = next(
         (candidate for candidate in parameters_in_scope(cursor) if candidate.name == word.partition(".")[0]), None
     )

@@ -203,10 +203,12 @@ def _interfaces(document: Document, cursor: Cursor, start: int) -> Iterator[Comp
     component = element_at(document.text, cursor.elements[:-1])
     tag = cursor.tags[-1]
     others = [] if component is None else [sibling for sibling in component.children if sibling.tag.name == tag]
-    given = {_attribute(sibling.tag, "name") for sibling in others if sibling.tag.start != cursor.elements[-1].start}
+    present_names = {
+        _attribute(sibling.tag, "name") for sibling in others if sibling.tag.start != cursor.elements[-1].start
+    }
     is_joint = len(cursor.tags) < 2 or cursor.tags[-2] == "joint"
     likely = INTERFACES if is_joint else (*_names_in_text(document.text, tag), *INTERFACES)
-    yield from _value_completions((name for name in dict.fromkeys(likely) if name not in given), start)
+    yield from _value_completions((name for name in dict.fromkeys(likely) if name not in present_names), start)
 
 
 def _names_in_text(text: str, tag: str) -> list[str]:
@@ -217,15 +219,17 @@ def _parameters(document: Document, cursor: Cursor, start: int) -> Iterator[Comp
     """Yield the parameters of hardware or of an interface."""
     component = element_at(document.text, cursor.elements[:-1])
     others = [] if component is None else [child for child in component.children if child.tag.name == "param"]
-    given = {_attribute(sibling.tag, "name") for sibling in others if sibling.tag.start != cursor.elements[-1].start}
+    present_names = {
+        _attribute(sibling.tag, "name") for sibling in others if sibling.tag.start != cursor.elements[-1].start
+    }
     if cursor.tags[-2:-1] == ("hardware",):
         plugin = hardware_of(document.text, component)
         for parameter in hardware_parameters(document, plugin, start).values():
-            if parameter.name not in given:
+            if parameter.name not in present_names:
                 yield Completion(parameter.name, ItemKind.ATTRIBUTE, start, plugin, parameter.meaning)
     elif cursor.tags[-2:-1] in (("command_interface",), ("state_interface",)):
         for name, meaning in _INTERFACE_PARAMETERS.items():
-            if name not in given:
+            if name not in present_names:
                 yield Completion(name, ItemKind.ATTRIBUTE, start, "", meaning)
 
 
@@ -236,12 +240,12 @@ def hardware_of(text: str, hardware: OutlineElement | None) -> str:
 
 
 def element_at(text: str, elements: Sequence[Token]) -> OutlineElement | None:
-    """Return the innermost of some nested elements in the outline of a text."""
-    inside, found = Outline.of(text).elements, None
+    """Return the innermost of some nested elements in the outline of a text, or None if it is missing."""
+    inside, innermost = Outline.of(text).elements, None
     for element in elements:
-        found = next((candidate for candidate in inside if candidate.tag.start == element.start), None)
-        inside = [] if found is None else found.children
-    return found
+        innermost = next((candidate for candidate in inside if candidate.tag.start == element.start), None)
+        inside = [] if innermost is None else innermost.children
+    return innermost
 
 
 def _attribute(token: Token, name: str) -> str:
@@ -262,11 +266,11 @@ def _name_completions(
     if not kinds:
         return
     expanded = [name for name in part_names(document) if name.kind in kinds]
-    written = [name for kind in kinds for name in sorted_by_use(definitions_of_kind(names, kind), document.text)]
-    near = [name for name in written if name.file == document.file]
+    defined_names = [name for kind in kinds for name in sorted_by_use(definitions_of_kind(names, kind), document.text)]
+    near = [name for name in defined_names if name.file == document.file]
     in_macro = cursor.macro is not None
     patterns = [name for name in near if "$" in name.name]
-    plain = [name for name in written if "$" not in name.name]
+    plain = [name for name in defined_names if "$" not in name.name]
     macro = "" if cursor.macro is None else _attribute(cursor.macro, "name")
     own = [name for name in near if name.owner == macro] if in_macro else []
     for name in (*own, *(patterns if in_macro else ()), *expanded, *plain):
@@ -282,24 +286,28 @@ def _simulator_plugin(document: Document, cursor: Cursor, start: int) -> Iterato
     is_classic = ".so" in document.text and "gz-sim" not in document.text and "ignition-gazebo" not in document.text
     plugins = sorted(simulator_plugins().values(), key=lambda plugin: plugin.is_classic != is_classic)
     if name == "filename":
-        named = plugin_of("", class_name)
-        for plugin in ([] if named is None else [named]) + plugins:
-            spelled = _spelled(plugin.filename, cursor.typed)
+        plugin_of_class = plugin_of("", class_name)
+        for plugin in ([] if plugin_of_class is None else [plugin_of_class]) + plugins:
+            spelled = _spelled_name(plugin.filename, cursor.typed)
             yield Completion(spelled, ItemKind.VALUE, start, plugin.class_name, plugin.about)
     elif name == "name":
-        known = plugin_of(library)
-        if known is not None and known.class_name:
-            yield Completion(_spelled(known.class_name, cursor.typed), ItemKind.VALUE, start, library, known.about)
-        elif known is not None:
-            yield Completion(known.library.removeprefix("gazebo_ros_"), ItemKind.VALUE, start, library, known.about)
+        known_plugin = plugin_of(library)
+        if known_plugin is not None and known_plugin.class_name:
+            yield Completion(
+                _spelled_name(known_plugin.class_name, cursor.typed), ItemKind.VALUE, start, library, known_plugin.about
+            )
+        elif known_plugin is not None:
+            yield Completion(
+                known_plugin.library.removeprefix("gazebo_ros_"), ItemKind.VALUE, start, library, known_plugin.about
+            )
         for plugin in plugins:
-            if plugin.class_name and (known is None or not known.is_classic):
+            if plugin.class_name and (known_plugin is None or not known_plugin.is_classic):
                 yield Completion(
-                    _spelled(plugin.class_name, cursor.typed), ItemKind.VALUE, start, plugin.filename, plugin.about
+                    _spelled_name(plugin.class_name, cursor.typed), ItemKind.VALUE, start, plugin.filename, plugin.about
                 )
 
 
-def _spelled(name: str, typed: str) -> str:
+def _spelled_name(name: str, typed: str) -> str:
     """Return the name of a plugin, with an old prefix such as ``ignition-gazebo-`` if typed."""
     if typed.startswith(("ign", "libign")):
         prefix = "lib" if typed.startswith("lib") else ""

@@ -57,7 +57,10 @@ def check_arguments(description: LaunchDescription, values: Mapping[str, str]) -
         if value is not None and argument.choices is not None and not argument.conditionally_included:
             errors += _argument_errors(argument, values)
         elif value is None and argument.default_value is None and not argument.conditionally_included:
-            errors += [_misspelled(argument.name, undeclared, error) for error in _argument_errors(argument, values)]
+            errors += [
+                _misspelled_argument_error(argument.name, undeclared, error)
+                for error in _argument_errors(argument, values)
+            ]
     if errors:
         raise LinkwrightError(*errors)
     return [_undeclared_warning(name, declared_names) for name in undeclared]
@@ -75,7 +78,7 @@ def _argument_errors(argument: DeclareLaunchArgument, values: Mapping[str, str])
     return ()
 
 
-def _misspelled(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagnostic:
+def _misspelled_argument_error(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagnostic:
     """Return the error for a missing argument.
 
     If a similar undeclared argument was passed, the error has a hint.

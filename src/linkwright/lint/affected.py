@@ -49,14 +49,14 @@ class TextFiles:
             candidates: paths relative to the root.
         """
         pending = list(changed)
-        found = set(pending)
+        affected = set(pending)
         while pending:
             path = pending.pop()
             for other in self._naming(path):
-                if other not in found:
-                    found.add(other)
+                if other not in affected:
+                    affected.add(other)
                     pending.append(other)
-        return found & set(candidates)
+        return affected & set(candidates)
 
     def _naming(self, path: str) -> Iterator[str]:
         """Yield the files whose texts can name a file."""

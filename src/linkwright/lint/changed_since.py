@@ -46,14 +46,14 @@ class ChangedSince:
     def targets(self) -> Targets:
         """Return the descriptions that changed files can affect, and the packages with such files."""
         changed = (file.new_path for file in self._changed_files)
-        return self._affected(self.root, self._paths, filter(None, changed))
+        return self._affected_paths(self.root, self._paths, filter(None, changed))
 
     def known_findings(self, check: Check) -> dict[Key, int]:
         """Return the number of findings of the commit with each key, in which files have their new names."""
         files = CommitFiles(self._repository, self._commit, self._name, must_be_complete=False)
         try:
             paths = [path for path in map(files.root.joinpath, self._old_names()) if path.exists()]
-            targets = self._affected(files.root, paths, filter(None, self._new_names))
+            targets = self._affected_paths(files.root, paths, filter(None, self._new_names))
             if not targets.files and not targets.packages:
                 return {}
             return count_keys(check(targets, paths), files.root, self._new_names)
@@ -77,7 +77,7 @@ class ChangedSince:
             names.append(old_names.get(name) or name)
         return names
 
-    def _affected(self, root: Path, paths: Sequence[Path], changed: Iterable[str]) -> Targets:
+    def _affected_paths(self, root: Path, paths: Sequence[Path], changed: Iterable[str]) -> Targets:
         targets = find_targets(paths, with_packages=self._with_packages)
         changed_names = set(changed)
         names = {_relative(file, root): file for file in targets.files}

@@ -84,13 +84,13 @@ def count_keys(
     return counts
 
 
-def new_findings(findings: Sequence[Diagnostic], folder: Path, known: Mapping[Key, int]) -> list[Diagnostic]:
+def new_findings(findings: Sequence[Diagnostic], folder: Path, counts: Mapping[Key, int]) -> list[Diagnostic]:
     """Return the findings without as many of each key as are known.
 
     A finding that differs from a known one only in numbers is not new. Of a finding that lists names, such as
     undeclared dependencies, only the names that no known finding lists are new.
     """
-    remaining = dict(known)
+    remaining = dict(counts)
     rest: list[tuple[Key, Diagnostic]] = []
     for finding in findings:
         key = key_of(finding, folder)
@@ -106,7 +106,7 @@ def new_findings(findings: Sequence[Diagnostic], folder: Path, known: Mapping[Ke
         if similar.get(key.without_numbers, 0) > 0:
             similar[key.without_numbers] -= 1
             continue
-        known_names = [other.names for other in known if (other.code, other.file) == (key.code, key.file)]
+        known_names = [other.names for other in counts if (other.code, other.file) == (key.code, key.file)]
         new = _with_new_names(finding, key, known_names)
         if new is not None:
             result.append(new)
@@ -121,14 +121,14 @@ def _with_new_names(finding: Diagnostic, key: Key, known_names: Sequence[frozens
     lists = {name: items for name, value in message.arguments.items() if (items := listed_items(value))}
     if len(lists) != 1:
         return finding
-    ((argument, listed),) = lists.items()
-    listed_names = frozenset(name for item in listed for name in _QUOTED.findall(item))
+    ((argument, entries),) = lists.items()
+    listed_names = frozenset(name for item in entries for name in _QUOTED.findall(item))
     others = key.names - listed_names
-    known: frozenset[str] = frozenset().union(
+    fingerprints: frozenset[str] = frozenset().union(
         *(names for names in known_names if others <= names and names & listed_names)
     )
-    new_items = [item for item in listed if not known.issuperset(_QUOTED.findall(item) or [item])]
-    if len(new_items) == len(listed):
+    new_items = [item for item in entries if not fingerprints.issuperset(_QUOTED.findall(item) or [item])]
+    if len(new_items) == len(entries):
         return finding
     if not new_items:
         return None
@@ -163,6 +163,6 @@ def write_baseline(path: Path, findings: Iterable[Diagnostic], folder: Path) -> 
     counts = count_keys(findings, folder)
     items = [json.dumps({**key._asdict(), "count": count}, ensure_ascii=False) for key, count in sorted(counts.items())]
     lines = ",\n    ".join(items)
-    listed = f"[\n    {lines}\n  ]" if items else "[]"
-    write_whole_file(path, f'{{\n  "version": {_VERSION},\n  "findings": {listed}\n}}\n')
+    list_text = f"[\n    {lines}\n  ]" if items else "[]"
+    write_whole_file(path, f'{{\n  "version": {_VERSION},\n  "findings": {list_text}\n}}\n')
     return sum(counts.values())

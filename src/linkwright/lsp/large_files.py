@@ -40,13 +40,13 @@ async def findings_of_process(
             try:
                 process.start()  # This returns when the process has read the texts.
                 sender.close()
-                found: tuple[Diagnostic, ...] | None = None if is_cancelled.is_set() else receiver.recv()
+                findings: tuple[Diagnostic, ...] | None = None if is_cancelled.is_set() else receiver.recv()
             except (EOFError, OSError):
-                found = None
+                findings = None
         if process.pid is not None:
             process.kill()
             process.join()
-        return found
+        return findings
 
     try:
         return await asyncio.to_thread(work)

@@ -282,8 +282,8 @@ class LinkwrightServer(LanguageServer):
 
     def documents(self) -> dict[Path, TextDocument]:
         """Return the open documents, by path."""
-        found = {path: self.workspace.text_documents.get(uri) for path, uri in self._uris.items()}
-        return {path: document for path, document in found.items() if document is not None}
+        documents = {path: self.workspace.text_documents.get(uri) for path, uri in self._uris.items()}
+        return {path: document for path, document in documents.items() if document is not None}
 
     # --- checks -----------------------------------------------------------------------------------------------
 
@@ -352,8 +352,8 @@ class LinkwrightServer(LanguageServer):
         if findings is None:
             _log.error("The check of '%s' failed", subject)
             return
-        found = await self._attempt(partial(project.record, subject, findings, texts, changed), subject)
-        self._publish(found or {}, texts)
+        findings_by_file = await self._attempt(partial(project.record, subject, findings, texts, changed), subject)
+        self._publish(findings_by_file or {}, texts)
 
     def _cancel_checks(self) -> None:
         """Cancel the running and the waiting checks."""

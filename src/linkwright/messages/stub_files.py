@@ -159,7 +159,7 @@ def package_stubs(package: str, type_names: Sequence[str], library: Library) -> 
         type_names: the full names of its interfaces.
         library: the library that contains the interfaces.
     """
-    found = {f"{package}/__init__.pyi": _HEAD}
+    stubs = {f"{package}/__init__.pyi": _HEAD}
     for kind in KINDS:
         names = StructureNames(f"{package}.{kind}")
         prefix = f"{package}/{kind}/"
@@ -171,9 +171,9 @@ def package_stubs(package: str, type_names: Sequence[str], library: Library) -> 
         body = "\n".join(lines)
         imports = "".join(f"import {module}\n" for module in sorted(names.modules))
         head = import_lines(body) + ("\n" + imports if imports else "")
-        found[f"{package}/{kind}/__init__.pyi"] = _HEAD + "\n" + head + "\n" + body
-        found[f"{package}/__init__.pyi"] += f"from {package} import {kind} as {kind}\n"
-    return found
+        stubs[f"{package}/{kind}/__init__.pyi"] = _HEAD + "\n" + head + "\n" + body
+        stubs[f"{package}/__init__.pyi"] += f"from {package} import {kind} as {kind}\n"
+    return stubs
 
 
 def _lines_of(type_name: str, library: Library, names: StructureNames) -> list[str]:

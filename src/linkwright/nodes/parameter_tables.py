@@ -351,7 +351,7 @@ class _OneOf:
     choices: tuple[str, ...]
 
     def __call__(self, name: str, value: Any) -> Phrase | None:
-        """Return the error message if the value or an item of it is not one of the words."""
+        """Return an error message if the value, or an item of a list, is not one of the choices, else None."""
         for item in (value,) if isinstance(value, str) else value:
             if item not in self.choices:
                 text = phrase(

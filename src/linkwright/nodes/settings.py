@@ -84,12 +84,12 @@ def positive(node: Node, name: str, value: float) -> float:
     return value
 
 
-def bad_value(name: str, value: object, node: str, known: Sequence[str] = ()) -> LinkwrightError:
+def bad_value(name: str, value: object, node: str, choices: Sequence[str] = ()) -> LinkwrightError:
     """Return the error NODE433 for an invalid value of a parameter."""
     message = phrase("parameter '{name}' of '{node}' cannot be '{value}'", name=name, node=node, value=value)
     hint = None
-    if known:
-        hint = did_you_mean(str(value), known) or phrase("choose from {names}", names=", ".join(known))
+    if choices:
+        hint = did_you_mean(str(value), choices) or phrase("choose from {names}", names=", ".join(choices))
     return LinkwrightError(Diagnostic("NODE433", message, hint=hint))
 
 

@@ -156,7 +156,7 @@ class PackageFinder:
         If several packages have the same name, the first in the order of the search is included.
         """
         packages = dict(self._extra)
-        for name, share in self._all():
+        for name, share in self._all_packages():
             packages.setdefault(name, share)
         return packages
 
@@ -222,7 +222,7 @@ class PackageFinder:
         for root in self._source_roots():
             yield _share_of_optional_sources(name, self._scan(root).find(name))
 
-    def _all(self) -> Iterator[tuple[str, Path]]:
+    def _all_packages(self) -> Iterator[tuple[str, Path]]:
         for prefix in self._prefixes():
             yield from ament.packages_in_prefix(prefix)
         for install in self._install_folders():

@@ -264,10 +264,10 @@ def _problem_response(text: str) -> web.Response:
     return web.json_response({"problem": text})
 
 
-def _no_space_text(needed: int, free: int) -> Phrase:
+def _no_space_text(required_bytes: int, free: int) -> Phrase:
     return phrase(
         "the machine that runs Linkwright does not have enough space for a recording of "
         "{needed} MB: {free} MB are free",
-        needed=needed // 1_000_000,
+        needed=required_bytes // 1_000_000,
         free=free // 1_000_000,
     )

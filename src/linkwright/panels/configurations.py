@@ -180,7 +180,7 @@ class ConfigurationFeature(PageFeature):
 
     # --- files -------------------------------------------------------------------------------------------------
 
-    def _new(self, request: Request[NewConfiguration]) -> None:
+    def _create_configuration(self, request: Request[NewConfiguration]) -> None:
         if request.message.discard or self._may_discard(request.page, request.manager, None):
             self._open_config(request.manager, RvizConfig.default())
 
@@ -250,7 +250,7 @@ _HANDLERS: dict[type, Callable[..., None]] = {
     GroupDisplays: ConfigurationFeature._group,
     LoadConfiguration: ConfigurationFeature._load,
     MoveDisplays: ConfigurationFeature._move,
-    NewConfiguration: ConfigurationFeature._new,
+    NewConfiguration: ConfigurationFeature._create_configuration,
     OpenConfiguration: ConfigurationFeature._open,
     Redo: ConfigurationFeature._redo,
     RemoveDisplays: ConfigurationFeature._remove,

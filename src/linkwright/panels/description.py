@@ -127,8 +127,8 @@ class KnownDescription:
 
         The lists are empty if `previous` is None.
         """
-        links = _changed(previous.robot.links, self.robot.links) if previous else []
-        joints = _changed(previous.robot.joints, self.robot.joints) if previous else []
+        links = _changed_names(previous.robot.links, self.robot.links) if previous else []
+        joints = _changed_names(previous.robot.joints, self.robot.joints) if previous else []
         return DescriptionChanged(self.display, self.revision, links, joints)
 
     def text_of_file(self, file: str) -> DescriptionText:
@@ -149,7 +149,7 @@ class KnownDescription:
         return InertiaFindings(self.display, self.revision, implausible_inertias(self.robot, finder))
 
 
-def _changed(previous: Mapping[str, Part], current: Mapping[str, Part]) -> list[str]:
+def _changed_names(previous: Mapping[str, Part], current: Mapping[str, Part]) -> list[str]:
     """Return the names of new or changed links or joints.
 
     Source positions are ignored.
@@ -178,15 +178,15 @@ class DescriptionFeature(PageFeature):
 
     def on_robot_changed(self) -> None:
         """Send the names of the links and joints that have changed to pages."""
-        shown: set[str] = set()
+        shown_ids: set[str] = set()
         for manager in self.managers.all():
             for display in manager.robot_models():
-                shown.add(display.id)
+                shown_ids.add(display.id)
                 previous = self._descriptions.get(display.id)
-                known = self._current_description(display)
-                if known is not None and known is not previous:
-                    manager.pages.publish(known.changes_since(previous))
-        for removed_id in self._descriptions.keys() - shown:
+                description = self._current_description(display)
+                if description is not None and description is not previous:
+                    manager.pages.publish(description.changes_since(previous))
+        for removed_id in self._descriptions.keys() - shown_ids:
             del self._descriptions[removed_id]
 
     def on_diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
@@ -207,10 +207,10 @@ class DescriptionFeature(PageFeature):
 
     def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the revision of each description that pages can request."""
-        known = [self._current_description(display) for display in manager.robot_models()]
+        descriptions = [self._current_description(display) for display in manager.robot_models()]
         return [
             DescriptionChanged(description.display, description.revision, [], [])
-            for description in known
+            for description in descriptions
             if description is not None
         ]
 
@@ -239,27 +239,27 @@ class DescriptionFeature(PageFeature):
 
     async def details(self, display: RobotModelDisplay) -> Description | None:
         """Return the details of the description that a display shows, or None if it shows none."""
-        known = self._current_description(display)
-        if known is None:
+        description = self._current_description(display)
+        if description is None:
             return None
         async with self._answer_lock:
-            return await asyncio.to_thread(lambda: known.details)
+            return await asyncio.to_thread(lambda: description.details)
 
     async def _answer(self, page: Page, request: _Request) -> None:
         robot_models = self.managers.of(page).robot_models()
         display = next((display for display in robot_models if display.id == request.display), None)
-        known = None if display is None else self._current_description(display)
+        description = None if display is None else self._current_description(display)
         texts_with_findings = dict(self._texts_with_findings)
 
         def answer() -> ServerMessage | None:
             if isinstance(request, AskDescriptionText):
-                return _text(known, texts_with_findings, request)
-            if known is None:
+                return _text(description, texts_with_findings, request)
+            if description is None:
                 return None
             if isinstance(request, AskDescription):
-                return known.details
+                return description.details
             if isinstance(request, AskInertia):
-                return known.findings(self.context.finder)
+                return description.findings(self.context.finder)
             return display.provenance(request.link) if display is not None else None
 
         async with self._answer_lock:
@@ -273,19 +273,19 @@ class DescriptionFeature(PageFeature):
         If the description has changed, it has a new revision.
         """
         robot, prefix = display.robot, display.properties.text("TF Prefix")
-        known = self._descriptions.get(display.id)
+        description = self._descriptions.get(display.id)
         if robot is None:
-            return known
-        if known is None or known.robot is not robot or known.prefix != prefix:
-            revision = known.revision + 1 if known else 1
+            return description
+        if description is None or description.robot is not robot or description.prefix != prefix:
+            revision = description.revision + 1 if description else 1
             files = self.context.library.files(display.text)
-            known = KnownDescription(display.id, revision, robot, display.text, prefix, files)
-            self._descriptions[display.id] = known
-        return known
+            description = KnownDescription(display.id, revision, robot, display.text, prefix, files)
+            self._descriptions[display.id] = description
+        return description
 
 
 def _text(
-    known: KnownDescription | None, texts_with_findings: dict[str, str], request: AskDescriptionText
+    description: KnownDescription | None, texts_with_findings: dict[str, str], request: AskDescriptionText
 ) -> DescriptionText:
     """Return the text of a file.
 
@@ -293,10 +293,12 @@ def _text(
     """
     file = request.file
     if file in texts_with_findings:
-        return DescriptionText(request.display, known.revision if known else 0, file, texts_with_findings[file])
-    if known is None:
+        return DescriptionText(
+            request.display, description.revision if description else 0, file, texts_with_findings[file]
+        )
+    if description is None:
         return DescriptionText(request.display, 0, file, None)
-    return known.text_of_file(file)
+    return description.text_of_file(file)
 
 
 class DiagnosticsFeature(PageFeature):
@@ -322,10 +324,10 @@ class DiagnosticsFeature(PageFeature):
 
     def on_robot_changed(self) -> None:
         """Show an additional finding (VIEW207) while no visual of a robot can be drawn."""
-        shown = self._all_diagnostics()
-        if shown != self._shown_diagnostics:
-            self._shown_diagnostics = shown
-            self.context.pages.publish(shown)
+        shown_findings = self._all_diagnostics()
+        if shown_findings != self._shown_diagnostics:
+            self._shown_diagnostics = shown_findings
+            self.context.pages.publish(shown_findings)
 
     def _all_diagnostics(self) -> Diagnostics:
         models = [model for manager in self.managers.all() for model in manager.robot_models()]

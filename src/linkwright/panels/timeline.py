@@ -227,7 +227,7 @@ class TimelineFeature(PageFeature):
     def attach(self, playback: Playback, bag: BagReader) -> None:
         """Show a recording to pages.
 
-        A read error must be reported with `failed`.
+        A read error must be reported with `show_error`.
         """
         from linkwright.bag.publishing import missing_type_findings
 

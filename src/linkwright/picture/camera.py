@@ -109,7 +109,7 @@ class Camera:
         """
         across = (x - self.size[0] / 2) / self.scale
         upward = (self.size[1] / 2 - y) / self.scale
-        base = self._combined(*self.center)
+        base = self._combine(*self.center)
         start = [base[axis] + across * self.right[axis] + upward * self.up[axis] for axis in range(3)]
         if self.distance:
             viewpoint = add_vectors(base, scaled(self.toward, self.distance))
@@ -123,7 +123,7 @@ class Camera:
         points[~is_ahead] = np.nan
         return points
 
-    def _combined(self, right: float, up: float, toward: float) -> Vector3:
+    def _combine(self, right: float, up: float, toward: float) -> Vector3:
         parts = (scaled(self.right, right), scaled(self.up, up), scaled(self.toward, toward))
         return add_vectors(add_vectors(parts[0], parts[1]), parts[2])
 

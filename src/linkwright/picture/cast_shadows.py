@@ -34,22 +34,22 @@ class CastShadows:
         self._right = unit_vector(cross((0.0, 0.0, 1.0), key)) if abs(key[2]) < 0.999 else (1.0, 0.0, 0.0)
         self._up = cross(key, self._right)
         solid = mesh.solid
-        used = np.zeros(len(mesh.points), dtype=bool)
-        used[mesh.faces[solid].reshape(-1)] = True
+        is_used = np.zeros(len(mesh.points), dtype=bool)
+        is_used[mesh.faces[solid].reshape(-1)] = True
         x, y, z = self._components(mesh.points)
-        self._origin = float(x[used].min()), float(y[used].min())
-        extents = float(x[used].max()) - self._origin[0], float(y[used].max()) - self._origin[1]
+        self._origin = float(x[is_used].min()), float(y[is_used].min())
+        extents = float(x[is_used].max()) - self._origin[0], float(y[is_used].max()) - self._origin[1]
         self._cell = max(*extents, 1e-9) / (_CELLS - 2)
         self._columns, rows = (int(extent / self._cell) + 2 for extent in extents)
-        self._high = float(z[used].max())
-        self._depth = max(self._high - float(z[used].min()), 1e-9)
+        self._high = float(z[is_used].max())
+        self._depth = max(self._high - float(z[is_used].min()), 1e-9)
         cells = ((x - self._origin[0]) / self._cell, (y - self._origin[1]) / self._cell)
         buffer = DepthBuffer(self._columns, 0, rows, self._high, self._high - self._depth)
         buffer.add(ScreenTriangles.of(*cells, z, mesh.faces), solid)
         self._distances = np.full((rows, self._columns), 2.0, np.float32)
-        seen = buffer.seen(1)
-        if seen is not None:
-            self._distances[seen.window][seen.mask] = seen.distances
+        visible = buffer.seen(1)
+        if visible is not None:
+            self._distances[visible.window][visible.mask] = visible.distances
 
     def light(self, points: Array, normals: Floats) -> Floats:
         """Return the fraction of the light that reaches points of surfaces despite shadows, from 0 to 1.

@@ -77,17 +77,17 @@ def shadow_map(mesh: Mesh, key: Vector3) -> ShadowMap | None:
     solid = mesh.solid
     if not len(solid) or key[2] <= 0.1:
         return None
-    used = np.zeros(len(mesh.points), dtype=bool)
-    used[mesh.faces[solid].reshape(-1)] = True
-    low, high = mesh.points[used].min(axis=0), mesh.points[used].max(axis=0)
+    is_used = np.zeros(len(mesh.points), dtype=bool)
+    is_used[mesh.faces[solid].reshape(-1)] = True
+    low, high = mesh.points[is_used].min(axis=0), mesh.points[is_used].max(axis=0)
     ground = float(low[2])
     height = np.maximum(mesh.points[:, 2] - ground, 0.0)
     x = mesh.points[:, 0] - height * (key[0] / key[2])
     y = mesh.points[:, 1] - height * (key[1] / key[2])
     size = max(float(extent) for extent in high - low) or 1e-6
     margin = 2.2 * (_LEAST_SOFTNESS + _SOFTNESS * float(high[2] - low[2]) / size) * size
-    left, right = float(x[used].min()) - margin, float(x[used].max()) + margin
-    back, front = float(y[used].min()) - margin, float(y[used].max()) + margin
+    left, right = float(x[is_used].min()) - margin, float(x[is_used].max()) + margin
+    back, front = float(y[is_used].min()) - margin, float(y[is_used].max()) + margin
     cell = max(right - left, front - back) / _CELLS
     columns, rows = int((right - left) / cell) + 2, int((front - back) / cell) + 2
     triangles = ScreenTriangles.of((x - left) / cell, (y - back) / cell, height / size, mesh.faces)
@@ -99,12 +99,12 @@ def shadow_map(mesh: Mesh, key: Vector3) -> ShadowMap | None:
     for limit, layer in zip(_HEIGHTS, layers.reshape(-1, rows, columns), strict=True):
         middle = (lower_limit + min(limit, 1.0)) / 2
         reach = max(1, round((_LEAST_SOFTNESS + _SOFTNESS * middle) * size / cell))
-        light *= np.float32(1.0) - _blurred(layer, reach)
+        light *= np.float32(1.0) - _blur(layer, reach)
         lower_limit = limit
     return ShadowMap(ground, (left, back), cell, (np.float32(1.0) - light) * np.float32(_DARKNESS))
 
 
-def _blurred(mask: NDArray[np.bool_], reach: int) -> Floats:
+def _blur(mask: NDArray[np.bool_], reach: int) -> Floats:
     """Return a mask after two box blurs, with values from 0 to 1."""
     area = 2 * reach + 1
     sums = box_sums(box_sums(mask.astype(np.int64), reach), reach)

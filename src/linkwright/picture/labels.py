@@ -53,14 +53,14 @@ def draw_labels(light: Floats, alpha: Floats, anchors: Sequence[Anchor], camera:
         return
     x, y, _ = camera.project(np.array([anchor.position for anchor in anchors]))
     scale = max(min(camera.size) / _USUAL_SIDE, _LEAST_SCALE)
-    placed: list[_Placed] = []
+    labels: list[_Placed] = []
     for index in sorted(range(len(anchors)), key=lambda number: (float(y[number]), number)):
-        placed.append(_place(anchors[index].text, (float(x[index]), float(y[index])), placed, camera.size, scale))
-    for label in placed:
+        labels.append(_place(anchors[index].text, (float(x[index]), float(y[index])), labels, camera.size, scale))
+    for label in labels:
         _draw(light, alpha, _leader(label), _PEN * 0.7 * scale, _HALO * 0.5 * scale)
-    for label in placed:
+    for label in labels:
         _draw(light, alpha, np.array([(label.anchor, label.anchor)]), _DOT * scale, (_DOT + 1.0) * scale)
-    for label in placed:
+    for label in labels:
         _draw(light, alpha, _letters(label), _PEN * scale, _HALO * scale)
 
 

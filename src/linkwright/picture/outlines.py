@@ -27,7 +27,7 @@ def draw_outline(light: Floats, alpha: Floats, mask: NDArray[np.bool_], color: C
         per_pixel: the samples per pixel along a row.
     """
     reach = max(1, round(_WIDTH * per_pixel))
-    line = _dilated(mask, reach) & ~mask
+    line = _dilate(mask, reach) & ~mask
     paint = np.array(color, np.float32)
     paint *= paint
     light[mask] = light[mask] * (1 - _TINT) + paint * (alpha[mask] * _TINT)[:, None]
@@ -35,7 +35,7 @@ def draw_outline(light: Floats, alpha: Floats, mask: NDArray[np.bool_], color: C
     alpha[line] = 1.0
 
 
-def _dilated(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
+def _dilate(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
     """Return the samples within a distance from a mask."""
     dilated = np.zeros_like(mask)
     rows = len(mask)
@@ -43,7 +43,7 @@ def _dilated(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
     for shift in range(-reach, reach + 1):
         width = isqrt(reach * reach - shift * shift)
         if width not in widened:
-            widened[width] = _widened(mask, width)
+            widened[width] = _widen(mask, width)
         source = widened[width]
         if shift >= 0:
             dilated[shift:] |= source[: rows - shift]
@@ -52,7 +52,7 @@ def _dilated(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
     return dilated
 
 
-def _widened(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
+def _widen(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
     """Return a mask extended to both sides along its rows."""
     columns = mask.shape[1]
     totals = np.zeros((len(mask), columns + 2 * reach + 1), np.int32)

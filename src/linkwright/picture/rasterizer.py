@@ -275,7 +275,7 @@ class DepthBuffer:
         rows, columns = np.flatnonzero(is_seen.any(axis=1)), np.flatnonzero(is_seen.any(axis=0))
         if not len(rows):
             return None
-        window = (_aligned(rows, len(keys), aligned), _aligned(columns, self.width, aligned))
+        window = (_align(rows, len(keys), aligned), _align(columns, self.width, aligned))
         mask = is_seen[window]
         seen_keys = keys[window][mask]
         distances = (seen_keys >> _TRIANGLE_BITS).astype(np.float32)
@@ -291,7 +291,7 @@ class DepthBuffer:
         )
 
 
-def _aligned(indices: Indices, count: int, step: int) -> slice:
+def _align(indices: Indices, count: int, step: int) -> slice:
     """Return a range of indices, extended by one step on both sides and rounded outward to multiples of the step."""
     first, last = int(indices[0]) // step - 1, int(indices[-1]) // step + 2
     return slice(max(first * step, 0), min(last * step, count))

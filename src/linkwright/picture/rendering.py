@@ -101,15 +101,15 @@ class _Renderer:
         bands = [self._band(first, min(first + rows, self._height)) for first in range(0, self._height, rows)]
         light, alpha = (np.concatenate(arrays) for arrays in zip(*bands, strict=True))
         draw_labels(light, alpha, self._anchors, self._camera)
-        return _quantized(light, alpha)
+        return _quantize(light, alpha)
 
     def _band(self, first: int, last: int) -> tuple[Floats, Floats]:
         """Return the light of some rows of pixels, multiplied by the opacity, and the opacity."""
         overlap = _LINE_REACH + occlusion_reach(self._camera)
         upper, lower = max(0, first - overlap), min(self._height, last + overlap)
         light, alpha = self._bodies(upper, lower)
-        kept = slice(first - upper, last - upper)
-        light, alpha = light[kept], alpha[kept]
+        requested_rows = slice(first - upper, last - upper)
+        light, alpha = light[requested_rows], alpha[requested_rows]
         light_below, alpha_below = self._ground(first, last)
         rest = 1.0 - alpha
         return light + light_below * rest[:, :, None], alpha + alpha_below * rest
@@ -128,7 +128,7 @@ class _Renderer:
         self._blend(light, alpha, opaque, is_first=True)
         transparent = mesh.transparent
         if len(transparent):
-            for layer in reversed(self._peeled(transparent, opaque)):
+            for layer in reversed(self._peel(transparent, opaque)):
                 self._blend(light, alpha, layer)
         ghosts = mesh.ghosts
         if len(ghosts):
@@ -139,9 +139,9 @@ class _Renderer:
             layer = opaque.empty_copy()
             layer.add(self._screen, triangles)
             draw_outline(light, alpha, (layer.keys != NOTHING).reshape(alpha.shape), color, scale)
-        return _filtered(light, scale), _filtered(alpha, scale)
+        return _filter(light, scale), _filter(alpha, scale)
 
-    def _peeled(self, transparent: Indices, opaque: DepthBuffer) -> list[DepthBuffer]:
+    def _peel(self, transparent: Indices, opaque: DepthBuffer) -> list[DepthBuffer]:
         """Return the transparent surfaces in front of the opaque ones, the nearest first."""
         layers: list[DepthBuffer] = []
         for _ in range(_PEELED_LAYERS):
@@ -170,60 +170,60 @@ class _Renderer:
             opacity: the opacity; None for that of the materials.
             is_first: whether nothing was drawn yet; corners and shadows are those of the first surface.
         """
-        seen = buffer.seen(self._per_pixel)
-        if seen is None:
+        visible = buffer.seen(self._per_pixel)
+        if visible is None:
             return
-        shaded = self._shader.shade(seen)
-        lines = self._lines(seen, shaded.normals)
+        shaded = self._shader.shade(visible)
+        lines = self._lines(visible, shaded.normals)
         alphas = shaded.alpha if opacity is None else np.full(len(lines), opacity, np.float32)
         alphas = alphas + (1.0 - alphas) * lines
         colors = shaded.light
         if is_first:
-            colors *= self._ambient(seen, shaded.normals)[:, None]
+            colors *= self._ambient(visible, shaded.normals)[:, None]
         colors *= ((1.0 - lines) * alphas)[:, None]
         colors += (lines * alphas * _EDGE_LIGHT)[:, None]
-        light, alpha = light[seen.window], alpha[seen.window]
+        light, alpha = light[visible.window], alpha[visible.window]
         if not is_first:
             rest = 1.0 - alphas
-            colors += light[seen.mask] * rest[:, None]
-            alphas = alphas + alpha[seen.mask] * rest
-        light[seen.mask] = colors
-        alpha[seen.mask] = alphas
+            colors += light[visible.mask] * rest[:, None]
+            alphas = alphas + alpha[visible.mask] * rest
+        light[visible.mask] = colors
+        alpha[visible.mask] = alphas
 
-    def _ambient(self, seen: SeenTriangles, normals: Floats) -> Floats:
+    def _ambient(self, visible: SeenTriangles, normals: Floats) -> Floats:
         """Return the fraction of ambient light at samples, computed at the center of each pixel."""
         scale, camera = self._per_pixel, self._camera
         middles = (slice(scale // 2, None, scale), slice(scale // 2, None, scale))
-        is_seen = seen.mask[middles]
-        nearness = np.zeros(seen.mask.shape, np.float32)
-        nearness[seen.mask] = self._range[0] - seen.distances * (self._range[0] - self._range[1])
+        is_seen = visible.mask[middles]
+        nearness = np.zeros(visible.mask.shape, np.float32)
+        nearness[visible.mask] = self._range[0] - visible.distances * (self._range[0] - self._range[1])
         depth = nearness[middles]
         if camera.distance:
             depth = (camera.distance - camera.distance / np.where(is_seen, depth, 1.0)).astype(np.float32)
         turned = np.zeros((3, *is_seen.shape), np.float32)
-        at_middle = np.zeros(seen.mask.shape, dtype=bool)
+        at_middle = np.zeros(visible.mask.shape, dtype=bool)
         at_middle[middles] = True
-        of_middles = normals[at_middle[seen.mask]]
+        of_middles = normals[at_middle[visible.mask]]
         for axis, direction in enumerate((camera.right, camera.up, camera.toward)):
             turned[axis][is_seen] = along(of_middles, direction)
         ambient = ambient_light(depth, turned, is_seen, camera)
         if self._cast is not None:
-            x, y = (values[at_middle[seen.mask]].astype(np.float64) / scale for values in (seen.x, seen.y))
+            x, y = (values[at_middle[visible.mask]].astype(np.float64) / scale for values in (visible.x, visible.y))
             points = camera.points_at(x, y, depth[is_seen].astype(np.float64))
             ambient[is_seen] *= self._cast.light(points, of_middles)
-        spread: Floats = np.repeat(np.repeat(ambient, scale, axis=0), scale, axis=1)[seen.mask]
+        spread: Floats = np.repeat(np.repeat(ambient, scale, axis=0), scale, axis=1)[visible.mask]
         return spread
 
-    def _lines(self, seen: SeenTriangles, normals: Floats) -> Floats:
+    def _lines(self, visible: SeenTriangles, normals: Floats) -> Floats:
         """Return the darkness of lines at samples."""
-        bodies = np.full(seen.mask.shape, -1, np.int32)
-        bodies[seen.mask] = self._body_numbers[self._mesh.parts[seen.triangles]]
-        distances = np.full(seen.mask.shape, 2.0, np.float32)
-        distances[seen.mask] = seen.distances
-        normal_grid = np.zeros((3, *seen.mask.shape), np.float32)
+        bodies = np.full(visible.mask.shape, -1, np.int32)
+        bodies[visible.mask] = self._body_numbers[self._mesh.parts[visible.triangles]]
+        distances = np.full(visible.mask.shape, 2.0, np.float32)
+        distances[visible.mask] = visible.distances
+        normal_grid = np.zeros((3, *visible.mask.shape), np.float32)
         for axis in range(3):
-            normal_grid[axis][seen.mask] = normals[:, axis]
-        lines: Floats = edge_strength(distances, normal_grid, bodies, self._per_pixel)[seen.mask]
+            normal_grid[axis][visible.mask] = normals[:, axis]
+        lines: Floats = edge_strength(distances, normal_grid, bodies, self._per_pixel)[visible.mask]
         return lines
 
     # --- ground ------------------------------------------------------------------------------------------------
@@ -250,7 +250,7 @@ class _Renderer:
         return light, alpha
 
 
-def _filtered(samples: Floats, per_pixel: int) -> Floats:
+def _filter(samples: Floats, per_pixel: int) -> Floats:
     """Return pixels as weighted averages of samples, shape (rows, columns, ...), that overlap neighbors."""
     return _filtered_rows(_filtered_rows(samples.swapaxes(0, 1), per_pixel).swapaxes(0, 1), per_pixel)
 
@@ -274,7 +274,7 @@ def _filtered_rows(samples: Floats, per_pixel: int) -> Floats:
     return total
 
 
-def _quantized(light: Floats, alpha: Floats) -> Image:
+def _quantize(light: Floats, alpha: Floats) -> Image:
     """Convert light multiplied by opacity to 8-bit pixels."""
     image = np.empty((*alpha.shape, 4), np.uint8)
     light = light / np.maximum(alpha, np.float32(1e-6))[:, :, None]

@@ -88,9 +88,9 @@ class _VisualReader:
         surfaces = []
         for visual in link.visuals:
             for surface in self._visual(link, visual):
-                placed = surface.placed(exact_placement(visual.origin))
-                if placed.is_in_range:
-                    surfaces.append(placed)
+                surface_in_link = surface.placed(exact_placement(visual.origin))
+                if surface_in_link.is_in_range:
+                    surfaces.append(surface_in_link)
                 else:
                     self.add_out_of_range(link.name)
         return tuple(surfaces)

@@ -88,11 +88,11 @@ class Shader:
         }
         self._starts = np.cumsum([0, *(len(surface.points) for surface in mesh.surfaces)])
 
-    def shade(self, seen: SeenTriangles) -> Shaded:
+    def shade(self, visible: SeenTriangles) -> Shaded:
         """Return the colors of the samples at which triangles are visible."""
-        table, rows = self._table(seen.triangles)
+        table, rows = self._table(visible.triangles)
         parts = [
-            self._shade(seen.x[part], seen.y[part], seen.triangles[part], table, rows[part])
+            self._shade(visible.x[part], visible.y[part], visible.triangles[part], table, rows[part])
             for part in (slice(start, start + _BATCH) for start in range(0, len(rows), _BATCH))
         ]
         return Shaded(
@@ -160,7 +160,7 @@ class Shader:
             selected = np.flatnonzero(parts == index)
             coordinates = self._mesh.surfaces[index].coordinates
             if len(selected) and coordinates is not None:
-                u, v = self._interpolated(coordinates, index, triangles[selected], second[selected], third[selected]).T
+                u, v = self._interpolate(coordinates, index, triangles[selected], second[selected], third[selected]).T
                 height, width = texture.shape[:2]
                 columns = np.clip(np.floor((u - np.floor(u)) * width), 0, width - 1).astype(np.int64)
                 rows = np.clip(np.floor((v - np.floor(v)) * height), 0, height - 1).astype(np.int64)
@@ -169,11 +169,11 @@ class Shader:
         for index, colors in self._colored.items():
             selected = np.flatnonzero(parts == index)
             if len(selected):
-                mixed = self._interpolated(colors, index, triangles[selected], second[selected], third[selected])
+                mixed = self._interpolate(colors, index, triangles[selected], second[selected], third[selected])
                 albedo[selected] *= (mixed * mixed).astype(np.float32)
         return albedo
 
-    def _interpolated(
+    def _interpolate(
         self, values: NDArray[np.float64], part: int, triangles: Indices, second: Floats, third: Floats
     ) -> NDArray[np.float64]:
         """Return values of a surface's vertices, interpolated at samples."""

@@ -83,9 +83,9 @@ class _WorldReader:
             except FrameError:
                 continue  # The check of references reports this error.
             for surface in self._visual(placed_link.name, visual):
-                placed = surface.placed(frame)
-                if placed.is_in_range:
-                    yield placed
+                surface_in_link = surface.placed(frame)
+                if surface_in_link.is_in_range:
+                    yield surface_in_link
                 else:
                     self._add_incomplete(placed_link.name, phrase("a coordinate is out of range"))
 

@@ -127,7 +127,7 @@ def start_fresh(
 
 
 class ForkServer:
-    """A process from which programs are forked off, started with the first program.
+    """A process from which programs are forked; it starts with the first program.
 
     Each program has its own environment, folder, standard streams, session, signals and exit status. It shares the
     modules, the search path and the hash seed of the server.

@@ -165,7 +165,7 @@ class DescriptionSource:
         try:
             for profile in profiles:
                 self._subscriptions.append(
-                    self._context.node.create_subscription(String, topic, self._received, profile)
+                    self._context.node.create_subscription(String, topic, self._on_received, profile)
                 )
         except LinkwrightError as error:
             return phrase("Error subscribing: {message}", message=error.diagnostics[0].message)
@@ -207,7 +207,7 @@ class DescriptionSource:
             gid,
         )
 
-    def _received(self, message: String, info: MessageInfo) -> None:
+    def _on_received(self, message: String, info: MessageInfo) -> None:
         self.publisher = info.publisher_gid
         if self.publisher not in self._publishers:
             endpoints = self._context.node.graph.endpoints()

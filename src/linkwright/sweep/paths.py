@@ -31,7 +31,7 @@ def as_path(value: object) -> TimedPath | None:
         return None
     if rows.ndim != 2 or rows.shape[1] != 3 or not np.isfinite(rows).all() or not (np.diff(rows[:, 0]) > 0).all():
         return None
-    return _thinned(rows.tolist())
+    return _thin_out(rows.tolist())
 
 
 def recorded(points: Sequence[TimedPath]) -> dict[str, TimedPath]:
@@ -40,7 +40,7 @@ def recorded(points: Sequence[TimedPath]) -> dict[str, TimedPath]:
     return {ROBOT if number == 1 else f"{ROBOT} {number}": path for number, path in enumerate(moving, start=1)}
 
 
-def _thinned(rows: list[Any]) -> TimedPath:
+def _thin_out(rows: list[Any]) -> TimedPath:
     stride = max(1, math.ceil(len(rows) / MAX_POINTS))
     points = [(row[0], row[1], row[2]) for row in rows[::stride]]
     return [*points, tuple(rows[-1])] if (len(rows) - 1) % stride else points

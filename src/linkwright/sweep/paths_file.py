@@ -20,7 +20,7 @@ def paths_text(runs: Sequence[Run], outcomes: Mapping[int, Outcome]) -> str:
             "row": run.row,
             "parameters": dict(run.parameters),
             "seed": run.seed,
-            "paths": {name: _rounded(path) for name, path in outcomes[run.row].paths.items()},
+            "paths": {name: _round(path) for name, path in outcomes[run.row].paths.items()},
         }
         for run in runs
         if run.row in outcomes
@@ -29,5 +29,5 @@ def paths_text(runs: Sequence[Run], outcomes: Mapping[int, Outcome]) -> str:
     return f'{{"runs": [\n{lines}\n]}}\n'
 
 
-def _rounded(path: TimedPath) -> list[list[float]]:
+def _round(path: TimedPath) -> list[list[float]]:
     return [[round(number, _DIGITS) + 0.0 for number in point] for point in path]

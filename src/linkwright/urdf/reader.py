@@ -142,14 +142,14 @@ class MaterialTable:
         is_definition = material.rgba is not None or material.texture is not None
         if not material.name:
             return material if is_definition else None
-        known = self.materials.get(material.name)
-        if known is None:
+        defined_material = self.materials.get(material.name)
+        if defined_material is None:
             if not is_definition:
                 self._undefined.append((material, owner))
                 return None
             self.materials[material.name] = material
             return material
-        return known
+        return defined_material
 
     def report_undefined(self) -> None:
         """Report the references to materials without a previous definition."""
@@ -408,17 +408,17 @@ def _mimic_cycles(joints: Mapping[str, Joint]) -> dict[str, list[str]]:
     """
     leaders = {joint.name: joint.mimic.joint for joint in joints.values() if joint.mimic is not None}
     cycles: dict[str, list[str]] = {}
-    seen: set[str] = set()
+    seen_names: set[str] = set()
     for start in leaders:
         path: dict[str, None] = {}
         name = start
-        while name in leaders and name not in seen:
-            seen.add(name)
+        while name in leaders and name not in seen_names:
+            seen_names.add(name)
             path[name] = None
             name = leaders[name]
         if name in path:
             cycle = [*dropwhile(name.__ne__, path)]
             twice, ellipsis = [*cycle, *cycle], ["..."] if len(cycle) > _MAX_CYCLE else []
-            shown = min(len(cycle), _MAX_CYCLE)
-            cycles.update((name, [*twice[k : k + shown], *ellipsis]) for k, name in enumerate(cycle))
+            shown_count = min(len(cycle), _MAX_CYCLE)
+            cycles.update((name, [*twice[k : k + shown_count], *ellipsis]) for k, name in enumerate(cycle))
     return cycles

@@ -98,7 +98,7 @@ class Viewer:
         )
         config.options.set(("Fixed Frame",), fixed_frame_parameter.value)
         self._receivers: dict[str, Callable[[Page, Any], object]] = {}
-        self._audience = Audience(self._opening, self._receivers, self._page_closed, self._node.get_logger())
+        self._audience = Audience(self._opening, self._receivers, self._on_page_closed, self._node.get_logger())
         shared_objects: dict[str, Any] = {"meshes": self._server.meshes, "downloads": self._server.downloads}
         if beside is not None:  # share the files, and the IDs, which must be unique on a server
             host_context = beside.context
@@ -253,13 +253,13 @@ class Viewer:
             cls: the class of the feature.
             receives: the import paths of messages that the feature handles in addition to its `RECEIVES`.
         """
-        found = next((feature for feature in self._features if type(feature) is cls), None)
-        if found is None:
-            found = cls(self)
-            self._add(found, receives)
+        existing = next((feature for feature in self._features if type(feature) is cls), None)
+        if existing is None:
+            existing = cls(self)
+            self._add(existing, receives)
             if self._is_started:
-                found.start()
-        return found
+                existing.start()
+        return existing
 
     def _add(self, feature: PageFeature, receives: Iterable[str] = ()) -> None:
         self._features.append(feature)
@@ -304,7 +304,7 @@ class Viewer:
         """Return the messages of all features about a configuration."""
         return [message for feature in self._features for message in feature.configuration_messages(manager)]
 
-    def _page_closed(self, page: Page) -> None:
+    def _on_page_closed(self, page: Page) -> None:
         for feature in self._features:
             feature.remove_page(page)
         self.managers.on_page_closed(page)

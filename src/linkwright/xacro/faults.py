@@ -279,8 +279,8 @@ def attribute_name_span(element: Element, name: str) -> Span | None:
     source = element.source
     if source is None:
         return None
-    written = attribute_name_range(source.text, element.offset, name)
-    return source.span(*written) if written else element.span()
+    name_range = attribute_name_range(source.text, element.offset, name)
+    return source.span(*name_range) if name_range else element.span()
 
 
 def text_part_span(text: Text, start: int | None, end: int | None) -> Span | None:

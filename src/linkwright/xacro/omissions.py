@@ -111,8 +111,10 @@ class _OmittingExpander(Expander):
         count_before = self._unevaluated_count
         result = super().attributes(node, scope)
         if self._unevaluated_count > count_before:
-            written = node.attributes
-            names = [name for name in plan_of(node).evaluated if "$" in written[name] and result[name] == written[name]]
+            attributes = node.attributes
+            names = [
+                name for name in plan_of(node).evaluated if "$" in attributes[name] and result[name] == attributes[name]
+            ]
             result[UNEVALUATED] = " ".join(names)
         return result
 

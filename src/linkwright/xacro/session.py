@@ -209,10 +209,10 @@ class Session:
         Raises:
             Fault: if the package is not found.
         """
-        known = self._package_paths.get(name)
-        if known is None:
-            known = self._package_paths[name] = self._find_package(name)
-        return known
+        cached_path = self._package_paths.get(name)
+        if cached_path is None:
+            cached_path = self._package_paths[name] = self._find_package(name)
+        return cached_path
 
     def _find_package(self, name: str) -> str:
         packages = self._packages
@@ -374,14 +374,14 @@ class Session:
         """Return a function that warns when it is called by its deprecated bare name."""
         bare = better.partition(".")[2]
 
-        def warning(*arguments: Any, **named: Any) -> Any:
+        def warning(*arguments: Any, **keywords: Any) -> Any:
             self.warn(
                 "XAC507",
                 phrase("calling '{name}' by its bare name is deprecated", name=bare),
                 hint=phrase("write {form}", form=better),
                 called=bare,
             )
-            return function(*arguments, **named)
+            return function(*arguments, **keywords)
 
         return warning
 
@@ -401,9 +401,9 @@ _NOT_XML = "[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]"
 
 
 def _check_characters(text: str) -> None:
-    found = None if text.isprintable() else re.search(_NOT_XML, text)
-    if found:
-        message = phrase("the value contains a character that XML cannot represent: U+{ord:04X}", ord=ord(found[0]))
+    match = None if text.isprintable() else re.search(_NOT_XML, text)
+    if match:
+        message = phrase("the value contains a character that XML cannot represent: U+{ord:04X}", ord=ord(match[0]))
         raise Fault("XAC206", message, hint=phrase("write '\\\\' for a backslash: '\\' in a string begins an escape"))
 
 

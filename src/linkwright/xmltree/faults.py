@@ -143,7 +143,7 @@ class _Fault:
         if code == _MISMATCH:
             return self._mismatched_tag()
         if self._offset >= len(self._text.rstrip()) and code in (_NO_ELEMENT, _UNCLOSED_TOKEN) and self._open:
-            return self._never_closed()
+            return self._unclosed_fault()
         if code == _UNCLOSED_TOKEN:
             return self._unclosed_token()
         if code == _INVALID_TOKEN:
@@ -239,7 +239,7 @@ class _Fault:
             source=self._source,
         )
 
-    def _never_closed(self) -> Diagnostic:
+    def _unclosed_fault(self) -> Diagnostic:
         name, offset = self._open[-1]
         span = self._source.span(offset, offset + 1 + len(name))
         hint = phrase("write '</{name}>' where it ends", name=name)

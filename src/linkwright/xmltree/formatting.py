@@ -270,8 +270,8 @@ class _Layout:
         return attribute.start - self._text.rfind("\n", 0, attribute.start)
 
     def _one_line(self, tag: Token) -> str:
-        written = "".join(f" {_attribute_text(attribute)}" for attribute in tag.attributes())
-        return f"<{tag.name}{written}{self._ending(tag)}"
+        attribute_text = "".join(f" {_attribute_text(attribute)}" for attribute in tag.attributes())
+        return f"<{tag.name}{attribute_text}{self._ending(tag)}"
 
     def _ending(self, tag: Token) -> str:
         return self._empty_tag_end if tag.is_empty_element else ">"

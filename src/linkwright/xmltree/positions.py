@@ -36,15 +36,15 @@ def attribute_name_range(text: str, offset: int, name: str) -> tuple[int, int] |
 
     `offset` is the character offset of the start tag's ``<``.
     """
-    found = _attributes(text, offset).get(name)
-    return found and found[0]
+    attribute = _attributes(text, offset).get(name)
+    return attribute and attribute[0]
 
 
 def start_tag_end(text: str, offset: int) -> int:
     """Return the offset after the start tag whose ``<`` is at an offset of a well-formed text."""
-    found = _START_TAG.match(text, offset)
-    assert found is not None, "the text was parsed"
-    return found.end()
+    match = _START_TAG.match(text, offset)
+    assert match is not None, "the text was parsed"
+    return match.end()
 
 
 _Ranges = dict[str, tuple[tuple[int, int], tuple[int, int]]]

@@ -221,11 +221,11 @@ def _tolerate_second_declaration(source: SourceText, read_as: str) -> tuple[str,
 
 def _tolerate_dashes(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
     text = source.text
-    comments_with_dashes = [found for found in _OUTSIDE_TAGS.finditer(text) if _has_dashes(found[1])]
+    comments_with_dashes = [match for match in _OUTSIDE_TAGS.finditer(text) if _has_dashes(match[1])]
     if not comments_with_dashes:
         return read_as, None
-    for found in comments_with_dashes:
-        read_as = read_as[: found.start(1)] + found[1].replace("-", "=") + read_as[found.end(1) :]
+    for match in comments_with_dashes:
+        read_as = read_as[: match.start(1)] + match[1].replace("-", "=") + read_as[match.end(1) :]
     dash_offset = text.index("--", comments_with_dashes[0].start(1))
     message = phrase("'--' is not allowed inside a comment")
     return read_as, _Mistake(

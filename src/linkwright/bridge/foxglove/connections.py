@@ -36,8 +36,8 @@ def update(previous: Connections | None, current: Connections) -> dict[str, Any]
         for old_names, new_names in zip(base, current, strict=True)
     )
     previous_topics, current_topics = base[0].keys() | base[1].keys(), current[0].keys() | current[1].keys()
-    for changes, known, new in ((published, base[0], current[0]), (subscribed, base[1], current[1])):
-        changes.update({name: [] for name in known.keys() & current_topics if name not in new})
+    for changes, old, new in ((published, base[0], current[0]), (subscribed, base[1], current[1])):
+        changes.update({name: [] for name in old.keys() & current_topics if name not in new})
     return {
         "op": "connectionGraphUpdate",
         "publishedTopics": [{"name": name, "publisherIds": ids} for name, ids in published.items()],

@@ -120,7 +120,9 @@ def run_grade(arguments: argparse.Namespace) -> int:
             limits=limits,
             run_jobs=run_jobs,
             journal=journal,
-            progress=lambda done, count: line.show(phrase("{done} of {count} checks", done=done, count=count)),
+            progress=lambda finished_count, count: line.show(
+                phrase("{done} of {count} checks", done=finished_count, count=count)
+            ),
         )
     line.end()
     _write_outputs(arguments, course, students, limits)
@@ -154,8 +156,8 @@ def _select_steps(course: Course, arguments: argparse.Namespace) -> list[Step]:
     if not arguments.lesson and not arguments.step:
         return list(course.steps)
     lessons = {lesson.id for lesson in course.find_lessons(arguments.lesson)} if arguments.lesson else set()
-    named = {course.find_step(name).address for name in arguments.step}
-    return [step for step in course.steps if step.lesson.id in lessons or step.address in named]
+    selected_addresses = {course.find_step(name).address for name in arguments.step}
+    return [step for step in course.steps if step.lesson.id in lessons or step.address in selected_addresses]
 
 
 def _check_outputs(outputs: Sequence[Path]) -> None:

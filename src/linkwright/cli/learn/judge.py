@@ -123,20 +123,20 @@ def _require_program(program: Path, hint: Phrase | None = None) -> None:
         raise LinkwrightError(Diagnostic("LEARN142", message, hint=hint))
 
 
-def _rival_program(exercise: Exercise, chosen: Path | None) -> Path | None:
+def _rival_program(exercise: Exercise, chosen_program: Path | None) -> Path | None:
     """Return the program of the other robot, or None if the exercise has no other robot.
 
     Raises:
         LinkwrightError: LEARN142, there is no such program; LEARN145, a program is chosen for an exercise with one
             robot.
     """
-    if chosen is None:
+    if chosen_program is None:
         return None if exercise.rival is None else exercise.rival.program
     if exercise.rival is None:
         message = phrase("the exercise '{name}' has one robot, so that `--rival` has no effect", name=exercise.id)
         raise LinkwrightError(Diagnostic("LEARN145", message, hint=phrase("leave out the option")))
-    _require_program(chosen)
-    return chosen.absolute()
+    _require_program(chosen_program)
+    return chosen_program.absolute()
 
 
 def run_world(arguments: argparse.Namespace) -> int:

@@ -115,10 +115,12 @@ def _make(folder: PackFolder, arguments: argparse.Namespace) -> list[Diagnostic]
     )
     line = ProgressLine()
 
-    def progress(entry: ModelEntry, done: int, total: int | None) -> None:
+    def progress(entry: ModelEntry, received_bytes: int, total: int | None) -> None:
         size = total or entry.megabytes * _BYTES_PER_MB
         line.show(
-            phrase("{name}: {done} of {total} MB", name=entry.name, done=_megabytes(done), total=_megabytes(size))
+            phrase(
+                "{name}: {done} of {total} MB", name=entry.name, done=_megabytes(received_bytes), total=_megabytes(size)
+            )
         )
 
     try:
@@ -136,10 +138,10 @@ def _models(names: list[str]) -> list[ModelEntry]:
 
 
 def _docs(folder: Path | None) -> Path | None:
-    """Return the folder of the documentation.
+    """Return the folder of the documentation, or None, after checking that it is a site.
 
     Raises:
-        LinkwrightError: LEARN309 if it is not a site.
+        LinkwrightError: LEARN309, the folder has no index.html.
     """
     if folder is not None and not (folder / "index.html").is_file():
         message = phrase("'{path}' has no index.html", path=display_path(folder))
@@ -153,8 +155,8 @@ def _check(folder: PackFolder) -> list[Diagnostic]:
 
     line = ProgressLine()
 
-    def progress(done: int, total: int) -> None:
-        line.show(phrase("checked {done} of {total} MB", done=_megabytes(done), total=_megabytes(total)))
+    def progress(received_bytes: int, total: int) -> None:
+        line.show(phrase("checked {done} of {total} MB", done=_megabytes(received_bytes), total=_megabytes(total)))
 
     try:
         return check_pack(folder, progress)

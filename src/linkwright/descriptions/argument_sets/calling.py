@@ -161,7 +161,7 @@ class _CalledDescription:
                 changed_choices = {name for name, row in variation.rows.items() if row != selection.rows.get(name, 0)}
                 yield replace(
                     argument_set,
-                    varied=_varied(call, argument_set, first_set),
+                    varied=_varied_arguments(call, argument_set, first_set),
                     is_mixed=any(selection.rows.values()) and bool(changed_choices),
                     is_offered=bool(changed_choices) and changed_choices <= launch_names(file.choices).keys(),
                 )
@@ -281,7 +281,7 @@ def _has_placeholder(path: Text) -> bool:
     )
 
 
-def _varied(call: XacroCall, argument_set: ArgumentSet, reference_set: ArgumentSet) -> tuple[str, ...]:
+def _varied_arguments(call: XacroCall, argument_set: ArgumentSet, reference_set: ArgumentSet) -> tuple[str, ...]:
     """Return the names of the arguments that differ between two sets.
 
     If some of these arguments are plain choices, the result is limited to them. Texts composed of choices, such as

@@ -81,13 +81,13 @@ class ElementComparison:
             _without_common(_elements_by_key(elements), keys, common)
             for elements, keys in zip((old, new), contents, strict=True)
         )
-        yield from self._renamed(old, new, old_rest, new_rest)
+        yield from self._take_renamed(old, new, old_rest, new_rest)
         for base in dict.fromkeys([*new_rest, *old_rest]):
             for old_item, new_item in zip_longest(old_rest.get(base, ()), new_rest.get(base, ())):
                 key, _ = new_item or old_item
                 yield key, old_item and old_item[1], new_item and new_item[1]
 
-    def _renamed(
+    def _take_renamed(
         self, old: Sequence[Element], new: Sequence[Element], old_rest: _Rest, new_rest: _Rest
     ) -> Iterator[tuple[str, Element, Element]]:
         """Remove the renamed elements from the remaining ones, and yield them with their new keys."""

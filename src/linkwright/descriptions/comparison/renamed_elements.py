@@ -38,10 +38,10 @@ def renamed_elements(
             yield from pairs
             continue
         scores = [(_similarity(first, second), first, second) for first, second in pairs]
-        taken: set[int] = set()
+        paired_indices: set[int] = set()
         for score, first, second in sorted(scores, key=lambda item: -item[0]):
-            if score >= _MIN_SIMILARITY and not {id(first), id(second)} & taken:
-                taken |= {id(first), id(second)}
+            if score >= _MIN_SIMILARITY and not {id(first), id(second)} & paired_indices:
+                paired_indices |= {id(first), id(second)}
                 yield first, second
 
 

@@ -103,11 +103,11 @@ class RenameSearch:
     def run(self) -> None:
         """Match links until no more matches are found, and then the joints between matched links."""
         for _ in range(_MAX_PASSES):
-            found = list(self._unambiguous_pairs()) if self._old.names and self._new.names else []
-            for old_name, new_name in found:
+            pairs = list(self._unambiguous_pairs()) if self._old.names and self._new.names else []
+            for old_name, new_name in pairs:
                 self._links[old_name] = new_name
                 del self._old.names[old_name], self._new.names[new_name]
-            if not found:
+            if not pairs:
                 break
         self._match_joints()
 

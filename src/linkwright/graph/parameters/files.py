@@ -47,21 +47,21 @@ def read_parameter_file(path: str | Path) -> ParameterRules:
         LinkwrightError: GRAPH211, the file cannot be read; GRAPH212, its content is not a parameter file.
     """
     path = Path(path)
-    shown = display_path(path)
+    shown_path = display_path(path)
     try:
         text = read_text(path)
     except FileNotFoundError:
         candidates = [str(file) for file in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
         hint = did_you_mean(str(path), candidates)
         raise ParameterFileNotFoundError(
-            Diagnostic("GRAPH211", phrase("parameter file '{path}' does not exist", path=shown), hint=hint)
+            Diagnostic("GRAPH211", phrase("parameter file '{path}' does not exist", path=shown_path), hint=hint)
         ) from None
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
         raise LinkwrightError(
             Diagnostic(
                 "GRAPH211",
-                phrase("parameter file '{path}' cannot be read: {reason}", path=shown, reason=foreign(reason)),
+                phrase("parameter file '{path}' cannot be read: {reason}", path=shown_path, reason=foreign(reason)),
             )
         ) from error
     rules = parse_parameters(SourceText(str(path), text))

@@ -277,7 +277,7 @@ class SteppedNode:
         """Return a subscription callback that passes each message to `callback` between steps."""
         if stop_motion is not None:
             callback = partial(self._pass_if_finite, callback, stop_motion, topic)
-        deferred_callback: Callable[..., object] = partial(self._received, callback)
+        deferred_callback: Callable[..., object] = partial(self._on_received, callback)
         return deferred_callback if commander is None else commander.tracking_callback(deferred_callback)
 
     def _subscribe_to(
@@ -332,7 +332,7 @@ class SteppedNode:
         warning = phrase("a command on '{topic}' contains NaN or an infinite number: the motion stops", topic=topic)
         self.logger.warning(warning, throttle_duration_sec=_WARNING_PERIOD_S)
 
-    def _received(self, callback: Callable[[Any], object], message: Any) -> None:
+    def _on_received(self, callback: Callable[[Any], object], message: Any) -> None:
         self.post(partial(callback, message))
 
 

@@ -256,8 +256,8 @@ def _import_hint(error: ImportError) -> Phrase | None:
     if missing_module in _ROS_1_MODULES:
         return phrase("'{module}' is part of ROS 1; in ROS 2 it is 'rclpy'", module=missing_module)
     packages = {full.split("/")[0] for full in interface_names("msg")}
-    known = ("launch", "launch_ros", "ament_index_python", "rclpy", *sorted(packages))
-    suggestion = did_you_mean(missing_module, known)
+    known_packages = ("launch", "launch_ros", "ament_index_python", "rclpy", *sorted(packages))
+    suggestion = did_you_mean(missing_module, known_packages)
     if suggestion or not missing_module:
         return suggestion
     return provider_hint(missing_module)

@@ -134,7 +134,7 @@ class _Reader:
             if self._text[self._at] == ")":
                 break
             if not has_blank:
-                self._unexpected(match[0])
+                self._unexpected_character_error(match[0])
             arguments.append(self._parse_argument(quote))
         self._at += 1
         return instantiate_substitution(match[0], arguments, self._part(start, self._at))
@@ -168,7 +168,7 @@ class _Reader:
             self._at += 1
         return self._at > start
 
-    def _unexpected(self, name: str) -> NoReturn:
+    def _unexpected_character_error(self, name: str) -> NoReturn:
         character = self._text[self._at]
         hint = None if name in substitution_parse_methods else did_you_mean(name, substitution_parse_methods)
         if character == "(":

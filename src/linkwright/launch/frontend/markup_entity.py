@@ -40,7 +40,7 @@ class MarkupEntity(Entity):
 
     @property
     def source_location(self) -> SourceLocation | None:
-        """The location of the entity."""
+        """The location of the entity, or None if it is unknown."""
         return self._location
 
     def _check_all_read(self, present: Iterable[str], part_kind: str, ros_text: str) -> None:

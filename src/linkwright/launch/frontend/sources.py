@@ -24,7 +24,7 @@ class LaunchDescriptionSource(Located):
 
     Args:
         launch_description: the description, if it already exists.
-        location: the path of the file; empty if the description exists already.
+        location: the path of the file; empty if the description already exists.
         method: a text for listings that describes how the description is loaded.
     """
 

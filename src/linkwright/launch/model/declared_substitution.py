@@ -197,7 +197,7 @@ class DeclaredSubstitution(Substitution):
         return cls, dict(zip((argument.name for argument in arguments), data, strict=False))
 
     @classmethod
-    def wrong_count(cls, expected: str, given: int) -> Exception:  # noqa: ARG003 - for classes that use it
+    def wrong_count(cls, expected: str, argument_count: int) -> Exception:  # noqa: ARG003 - for classes that use it
         """Return the exception for a wrong number of arguments.
 
         As in ROS, the class of the exception depends on the substitution.

@@ -30,9 +30,9 @@ class _LaunchRosSubstitution(DeclaredSubstitution):
     """The base class of the substitutions of ``launch_ros``."""
 
     @classmethod
-    def wrong_count(cls, expected: str, given: int) -> Exception:
+    def wrong_count(cls, expected: str, argument_count: int) -> Exception:
         """Return an AttributeError for a wrong number of arguments, as ROS does."""
-        return AttributeError(f"{cls.__name__} substitution expects {expected}, but got {given}")
+        return AttributeError(f"{cls.__name__} substitution expects {expected}, but got {argument_count}")
 
 
 class FindPackage(_LaunchRosSubstitution, shown="{kind}(pkg={package})"):

@@ -72,7 +72,7 @@ class ROSAdapter:
 
     @property
     def argv(self) -> Sequence[str] | None:
-        """The arguments of the rclpy context."""
+        """The arguments of the rclpy context, or None for the arguments of the process."""
         return self._argv
 
     @property

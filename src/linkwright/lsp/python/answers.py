@@ -50,12 +50,12 @@ def combined(method: str, answers: Sequence[tuple[str, Any]], text: OpenText, pa
         text: the text.
         parameters: the parameters of the request.
     """
-    found = [(server, answer) for server, answer in answers if not _is_empty(answer)]
+    nonempty_answers = [(server, answer) for server, answer in answers if not _is_empty(answer)]
     if method == COMPLETION:
-        return _completions([answer for _, answer in found], text, parameters)
+        return _completions([answer for _, answer in nonempty_answers], text, parameters)
     if method == CODE_ACTION:
-        return [action for server, answer in found for action in _actions(server, answer)]
-    return found[0][1] if found else next((answer for _, answer in answers), None)
+        return [action for server, answer in nonempty_answers for action in _actions(server, answer)]
+    return nonempty_answers[0][1] if nonempty_answers else next((answer for _, answer in answers), None)
 
 
 def server_of_action(action: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | None:
@@ -82,16 +82,16 @@ def _actions(server: str, actions: Sequence[Mapping[str, Any]]) -> list[Mapping[
     return [marked_action(server, action) for action in actions if action.get("command") is None]
 
 
-def _completions(found: Sequence[Any], text: OpenText, parameters: Mapping[str, Any]) -> Any:
+def _completions(answers: Sequence[Any], text: OpenText, parameters: Mapping[str, Any]) -> Any:
     """Combine the completions of all servers, unless the first server specifies a range.
 
     Such a server replaces more or less than the word at the cursor, and its completions are returned alone.
 
     Editors apply the range of the first item to all items.
     """
-    if len(found) < 2:
-        return found[0] if found else None
-    lists = [answer if isinstance(answer, dict) else {"isIncomplete": False, "items": answer} for answer in found]
+    if len(answers) < 2:
+        return answers[0] if answers else None
+    lists = [answer if isinstance(answer, dict) else {"isIncomplete": False, "items": answer} for answer in answers]
     first, *others = lists
     edited_range = _edited_range(first)
     if edited_range is not None and text.written(edited_range) != text.word_before(parameters["position"]):
@@ -110,8 +110,8 @@ def _edited_range(answer: Mapping[str, Any]) -> Mapping[str, Any] | None:
     edit_range = answer.get("itemDefaults", {}).get("editRange") or answer["items"][0].get("textEdit")
     if edit_range is None:
         return None
-    found: Mapping[str, Any] = edit_range.get("range") or edit_range.get("insert") or edit_range
-    return found
+    range_: Mapping[str, Any] = edit_range.get("range") or edit_range.get("insert") or edit_range
+    return range_
 
 
 def _with_defaults(answer: Mapping[str, Any]) -> Callable[[Mapping[str, Any]], dict[str, Any]]:

@@ -37,8 +37,8 @@ def installed_programs() -> list[Program]:
 
     Programs in the interpreter's folder precede programs on the search path.
     """
-    found = ((name, _path_of(name)) for name in ("ty", "ruff"))
-    return [Program(name, (str(path), "server")) for name, path in found if path is not None]
+    programs = ((name, _path_of(name)) for name in ("ty", "ruff"))
+    return [Program(name, (str(path), "server")) for name, path in programs if path is not None]
 
 
 def _path_of(name: str) -> Path | None:

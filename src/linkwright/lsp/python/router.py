@@ -161,7 +161,7 @@ class Router:
         elif method == "textDocument/didOpen":
             self._opened(parameters["textDocument"])
         elif method in _TEXT_NOTIFICATIONS and text is not None:
-            self._text_changed(message, text)
+            self._on_text_changed(message, text)
         elif method == "$/cancelRequest":
             for name in self._questions[parameters["id"]].awaited if parameters["id"] in self._questions else ():
                 self._send(name, message)
@@ -182,7 +182,7 @@ class Router:
         for server in self._servers.values():
             server.send(_opening(text))
 
-    def _text_changed(self, message: Message, text: OpenText) -> None:
+    def _on_text_changed(self, message: Message, text: OpenText) -> None:
         self._send_all(message)
         if message["method"] == "textDocument/didChange":
             text.change(message["params"]["textDocument"]["version"], message["params"]["contentChanges"])
@@ -200,11 +200,11 @@ class Router:
 
     def _resolve(self, message: Message) -> None:
         """Send a code action to the server that offered it."""
-        found = server_of_action(message["params"])
-        if found is None or found[0] not in self._servers:
+        server_and_action = server_of_action(message["params"])
+        if server_and_action is None or server_and_action[0] not in self._servers:
             self._own.send(message)
             return
-        name, action = found
+        name, action = server_and_action
         self._resolving[message["id"]] = name
         self._send(name, {**message, "params": action})
 
@@ -212,7 +212,7 @@ class Router:
 
     def _on_own(self, message: Message) -> None:
         if "method" not in message and message.get("id") in self._questions:
-            self._answered(OWN, message)
+            self._on_answered(OWN, message)
             return
         if "method" not in message and message.get("id") == self._initialize_id and "result" in message:
             self._initialize_id = None
@@ -227,14 +227,14 @@ class Router:
         if self._servers.get(server.name) is not server:
             return
         if message is None:
-            self._ended(server)
+            self._on_server_ended(server)
         elif "method" not in message:
             if message.get("id") == INITIALIZE_ID:
                 server.initialized(message.get("result", {}).get("capabilities", {}))
             elif self._resolving.pop(message.get("id"), None) is not None:
                 self._editor.send(_resolved(server.name, message))
             else:
-                self._answered(server.name, message)
+                self._on_answered(server.name, message)
         elif "id" in message:
             error = {"code": _METHOD_NOT_FOUND, "message": "not supported"}
             server.send({"jsonrpc": "2.0", "id": message["id"], "error": error})
@@ -255,7 +255,7 @@ class Router:
         parameters = {"uri": text.uri, "version": text.version, "diagnostics": text.findings()}
         self._editor.send(_publication(parameters))
 
-    def _answered(self, name: str, message: Message) -> None:
+    def _on_answered(self, name: str, message: Message) -> None:
         """Store the response of a server, and respond to the editor once all servers have responded."""
         identifier = message.get("id")
         question = self._questions.get(identifier)
@@ -303,11 +303,11 @@ class Router:
             stubs = WorkspaceStubs(folders)
             stubs.update()
             environment = program_environment(folders, stubs.folder)
-            self._events.put(partial(self._prepared, stubs, environment))
+            self._events.put(partial(self._on_prepared, stubs, environment))
 
         self._search.submit(self._attempt, search)
 
-    def _prepared(self, stubs: WorkspaceStubs, environment: dict[str, str]) -> None:
+    def _on_prepared(self, stubs: WorkspaceStubs, environment: dict[str, str]) -> None:
         self._stubs, self._environment = stubs, environment
         for program in self._programs.values():
             self._start(program)
@@ -322,7 +322,7 @@ class Router:
         if starts <= _MAX_STARTS:
             parameters = _initialization(self._initialize, self._encoding)
             try:
-                server = PythonServer(program, self._environment, parameters, self._received)
+                server = PythonServer(program, self._environment, parameters, self._on_received)
             except OSError:
                 self._starts[program.name] = _MAX_STARTS
             else:
@@ -333,21 +333,21 @@ class Router:
         for identifier in [
             pending for pending, question in self._questions.items() if program.name in question.awaited
         ]:
-            self._answered(program.name, {"id": identifier, "result": None})
+            self._on_answered(program.name, {"id": identifier, "result": None})
         message = phrase("'{program}' cannot be run, so Python files are edited without it", program=program.name)
         shown = {"type": _WARNING, "message": localized(message)}
         self._editor.send({"jsonrpc": "2.0", "method": "window/showMessage", "params": shown})
 
-    def _received(self, server: PythonServer, message: Message | None) -> None:
+    def _on_received(self, server: PythonServer, message: Message | None) -> None:
         self._events.put(partial(self._on_server, server, message))
 
-    def _ended(self, server: PythonServer) -> None:
+    def _on_server_ended(self, server: PythonServer) -> None:
         """Respond to the open requests of a server that has ended, and restart the server."""
         del self._servers[server.name]
         server.close()
         for identifier, question in list(self._questions.items()):
             if server.name in question.awaited:
-                self._answered(server.name, {"id": identifier, "result": None})
+                self._on_answered(server.name, {"id": identifier, "result": None})
         for identifier in [pending for pending, name in self._resolving.items() if name == server.name]:
             del self._resolving[identifier]
             self._editor.send({"jsonrpc": "2.0", "id": identifier, "result": None})
@@ -387,7 +387,7 @@ class Router:
         if server is None or (
             capability and server.capabilities is not None and not server.capabilities.get(capability)
         ):
-            self._answered(name, {"id": message.get("id"), "result": None})
+            self._on_answered(name, {"id": message.get("id"), "result": None})
         else:
             server.send(message)
 

@@ -53,10 +53,10 @@ class WorkspaceStubs:
 
     def _stubs(self) -> dict[str, str]:
         finder, library = PackageFinder(start=self._folders), Library()
-        found: dict[str, str] = {}
+        stubs: dict[str, str] = {}
         with use_finder(finder):
             for package, share in finder.packages().items():
                 names = [f"{package}/{kind}/{name}" for kind in KINDS for name in interface_files(share, kind)]
                 if names and package not in catalog.packages():
-                    found |= package_stubs(package, names, library)
-        return found
+                    stubs |= package_stubs(package, names, library)
+        return stubs

@@ -62,11 +62,11 @@ def add_requests(server: LinkwrightServer) -> None:
     """Register the request handlers of this module."""
 
     def highlights(path: Path, positions: TextPositions, range_: types.Range | None = None) -> types.SemanticTokens:
-        found = highlights_in(positions.text, path)
+        highlights = highlights_in(positions.text, path)
         if range_ is not None:
             start, end = positions.offset(range_.start), positions.offset(range_.end)
-            found = [highlight for highlight in found if start <= highlight.start and highlight.end <= end]
-        return types.SemanticTokens(semantic_tokens(positions, found))
+            highlights = [highlight for highlight in highlights if start <= highlight.start and highlight.end <= end]
+        return types.SemanticTokens(semantic_tokens(positions, highlights))
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, _LEGEND)
     def semantic_tokens_full(

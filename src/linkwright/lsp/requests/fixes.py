@@ -71,9 +71,11 @@ def suppressions(
             edit = suppression(positions.text, real_path(path), finding.code, offset)
             if edit is not None:
                 edits.setdefault(edit, (finding.code, []))[1].extend(_shown_diagnostics(params, finding))
-    for edit, (code, shown) in edits.items():
+    for edit, (code, message) in edits.items():
         title = localized(phrase("ignore {code} here, with a reason", code=code))
-        yield types.CodeAction(title, types.CodeActionKind.QuickFix, shown or None, edit=document_edits(server, [edit]))
+        yield types.CodeAction(
+            title, types.CodeActionKind.QuickFix, message or None, edit=document_edits(server, [edit])
+        )
 
 
 def _is_on_lines(span: Span | None, range_: types.Range, positions: TextPositions) -> bool:

@@ -43,9 +43,11 @@ def matching_names(names: Iterable[NameDefinition], query: str) -> list[NameDefi
         characters = iter(name)
         return all(character in characters for character in query)
 
-    found = [(name.name.lower(), name) for name in names]
-    ranked = [(query not in lower, len(lower), number) for number, (lower, _) in enumerate(found) if matches(lower)]
-    return [found[number][1] for *_, number in sorted(ranked)]
+    lower_names = [(name.name.lower(), name) for name in names]
+    ranked = [
+        (query not in lower, len(lower), number) for number, (lower, _) in enumerate(lower_names) if matches(lower)
+    ]
+    return [lower_names[number][1] for *_, number in sorted(ranked)]
 
 
 def _symbols(server: LinkwrightServer, names: Iterable[NameDefinition]) -> Iterator[types.WorkspaceSymbol]:
@@ -104,8 +106,8 @@ class _MacroCalls:
         start = data.get("start") if isinstance(data, dict) else getattr(data, "start", None)
         positions = server.positions(self._file)
         text = "" if positions is None else positions.text
-        found = (name for name in occurrences_in(text, self._file) if name.kind is NameKind.MACRO)
-        self._macro = next((name for name in found if name.start == start), None)
+        macros = (name for name in occurrences_in(text, self._file) if name.kind is NameKind.MACRO)
+        self._macro = next((name for name in macros if name.start == start), None)
         self._uses = (
             references(server.project, texts, self._macro) if self._macro is not None and server.project else []
         )
@@ -174,8 +176,8 @@ def add_requests(server: LinkwrightServer) -> None:
     ) -> list[types.DocumentLink] | None:
         context = await server.indexed_format_context(params.text_document)
         if context is not None:
-            found = await server.run_in_check_thread(lambda: [*context.format.links(context.document)])
-            return _document_links(server, context.positions, found)
+            links = await server.run_in_check_thread(lambda: [*context.format.links(context.document)])
+            return _document_links(server, context.positions, links)
         path, positions = server.xml_text(params.text_document)
         if positions is None or server.project is None:
             return None
@@ -229,8 +231,8 @@ def add_requests(server: LinkwrightServer) -> None:
         if name is None or name.kind is not NameKind.MACRO:
             return None
         await server.when_indexed()
-        found = await server.run_in_check_thread(lambda: references(project, texts, name))
-        return [item for use in found if use.is_definition and (item := _macro_item(server, use)) is not None]
+        occurrences = await server.run_in_check_thread(lambda: references(project, texts, name))
+        return [item for use in occurrences if use.is_definition and (item := _macro_item(server, use)) is not None]
 
     @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
     async def incoming_calls(

@@ -117,11 +117,11 @@ def add_requests(server: LinkwrightServer) -> None:
         if server.texts() != texts:  # The offsets of the edits refer to the former texts.
             message = localized(phrase("a text has changed in the meantime; rename again"))
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
-        shown = [localized(note) for note in renaming.notes]
+        notes = [localized(note) for note in renaming.notes]
         if renaming.unchanged:
-            shown.append(_uncertain_mentions_message(server, renaming.unchanged))
-        if shown:
-            server.window_show_message(types.ShowMessageParams(types.MessageType.Info, "\n".join(shown)))
+            notes.append(_uncertain_mentions_message(server, renaming.unchanged))
+        if notes:
+            server.window_show_message(types.ShowMessageParams(types.MessageType.Info, "\n".join(notes)))
         return document_edits(server, renaming.edits)
 
     files = types.FileOperationFilter(types.FileOperationPattern("**/*"), "file")

@@ -87,8 +87,8 @@ async def show_robot(server: LinkwrightServer, uri: str, *, opens: bool) -> str:
 async def _open(server: LinkwrightServer, address: str) -> None:
     window = server.client_capabilities.window
     shows = window is not None and window.show_document is not None and window.show_document.support
-    shown = shows and await server.window_show_document_async(types.ShowDocumentParams(address, external=True))
-    if not shown or not shown.success:
+    is_shown = shows and await server.window_show_document_async(types.ShowDocumentParams(address, external=True))
+    if not is_shown or not is_shown.success:
         server.window_show_message(types.ShowMessageParams(types.MessageType.Info, address))
 
 

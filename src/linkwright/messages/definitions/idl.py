@@ -56,18 +56,18 @@ class _Token(NamedTuple):
     start: int
 
 
-def parse_idl(source: SourceText, type_name: str, known: KnownMessages) -> Definition:
+def parse_idl(source: SourceText, type_name: str, known_messages: KnownMessages) -> Definition:
     """Parse an ``.idl`` file.
 
     Args:
         source: the content of the file.
         type_name: the name of the interface, such as ``my_msgs/msg/Count``.
-        known: determines which messages exist, to check references.
+        known_messages: determines which messages exist, to check references.
 
     Raises:
         DefinitionError: MSG120 for text that cannot be parsed; MSG111, MSG114, MSG118 and MSG119 as for other files.
     """
-    reader = _Reader(source, known)
+    reader = _Reader(source, known_messages)
     reader.definitions(())
     return _assemble(reader, source, type_name)
 
@@ -89,9 +89,9 @@ def _assemble(reader: _Reader, source: SourceText, type_name: str) -> Definition
 class _Reader:
     """A parser that converts the tokens of one file to structures and constants."""
 
-    def __init__(self, source: SourceText, known: KnownMessages) -> None:
+    def __init__(self, source: SourceText, known_messages: KnownMessages) -> None:
         self._source = source
-        self._known = known
+        self._known = known_messages
         self._tokens = list(self._tokenize())
         self._at = 0
         self._typedefs: dict[str, FieldType] = {}
@@ -310,21 +310,21 @@ class _Reader:
     def _expect_kind(self, kind: str) -> _Token:
         token = self._next()
         if token.kind != kind:
-            self._unexpected(token, phrase("a {kind}", kind=term(kind)))
+            self._unexpected_token_error(token, phrase("a {kind}", kind=term(kind)))
         return token
 
     def _value(self) -> _Token:
         token = self._next()
         if token.kind not in {"number", "text", "name"}:
-            self._unexpected(token, phrase("a value"))
+            self._unexpected_token_error(token, phrase("a value"))
         return token
 
     def _expect(self, mark: str) -> None:
         token = self._next()
         if token.text != mark:
-            self._unexpected(token, quoted(mark))
+            self._unexpected_token_error(token, quoted(mark))
 
-    def _unexpected(self, token: _Token, expected: Phrase) -> NoReturn:
+    def _unexpected_token_error(self, token: _Token, expected: Phrase) -> NoReturn:
         actual = quoted(token.text) if token.text else phrase("the end of the file")
         self._fail(
             "MSG120",

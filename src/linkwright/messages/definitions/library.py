@@ -308,13 +308,13 @@ class TrustedMessages:
         return None
 
 
-def parse_source(source: SourceText, base: str, known: KnownMessages) -> Definition:
+def parse_source(source: SourceText, base: str, known_messages: KnownMessages) -> Definition:
     """Parse an interface file, as IDL if its suffix is ``.idl``.
 
     Args:
         source: the content of the file.
         base: the name of the interface, such as ``my_msgs/srv/Count``.
-        known: determines which messages exist, to check references.
+        known_messages: determines which messages exist, to check references.
 
     Raises:
         DefinitionError: the file has mistakes.
@@ -322,8 +322,8 @@ def parse_source(source: SourceText, base: str, known: KnownMessages) -> Definit
     if source.name.endswith(".idl"):
         from linkwright.messages.definitions.idl import parse_idl
 
-        return parse_idl(source, base, known)
-    return parse_interface(source, base, known)
+        return parse_idl(source, base, known_messages)
+    return parse_interface(source, base, known_messages)
 
 
 def wrong_kind_diagnostic(definition: Definition, kind: str) -> Diagnostic:

@@ -211,26 +211,26 @@ class KnownMessages(Protocol):
         """Return a hint with names that resemble a missing message's name, or None."""
 
 
-def parse_interface(source: SourceText, type_name: str, known: KnownMessages) -> Definition:
+def parse_interface(source: SourceText, type_name: str, known_messages: KnownMessages) -> Definition:
     """Parse an interface file.
 
     Args:
         source: the content of the file.
         type_name: the name of the interface, such as ``my_msgs/srv/Count``.
-        known: determines which messages exist, to check references.
+        known_messages: determines which messages exist, to check references.
 
     Raises:
         DefinitionError: the file has mistakes; the error contains all of them (MSG110 to MSG119).
     """
-    return _Reader(source, type_name, known).read()
+    return _Reader(source, type_name, known_messages).read()
 
 
 class _Reader:
-    def __init__(self, source: SourceText, type_name: str, known: KnownMessages) -> None:
+    def __init__(self, source: SourceText, type_name: str, known_messages: KnownMessages) -> None:
         self._source = source
         self._type_name = type_name
         self._package, self._kind, _ = type_name.split("/")
-        self._known = known
+        self._known = known_messages
         self._diagnostics: list[Diagnostic] = []
 
     def read(self) -> Definition:

@@ -103,7 +103,7 @@ class PoseReader:
     def read_orientation(
         self, orientation: Quaternion, covariance: Matrix, mounting: Transform, time_ns: int
     ) -> Reading | None:
-        """Convert the orientation of an IMU.
+        """Convert the orientation of an IMU to a reading, or return None if no value is usable.
 
         The result is the same as for `read`.
 

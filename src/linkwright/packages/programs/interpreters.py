@@ -51,15 +51,15 @@ def _python_interpreter(path: Path) -> str | None:
 
 @cache
 def _python_version(interpreter: str) -> tuple[int, ...] | None:
-    named = _VERSION.search(Path(os.path.realpath(interpreter)).name)
-    if named:
-        return int(named[1]), int(named[2])
+    version_in_name = _VERSION.search(Path(os.path.realpath(interpreter)).name)
+    if version_in_name:
+        return int(version_in_name[1]), int(version_in_name[2])
     program = "import sys; print(*sys.version_info[:2])"
     try:
-        done = subprocess.run(  # noqa: S603 - the interpreter that the user's script names
+        completed = subprocess.run(  # noqa: S603 - the interpreter that the user's script names
             [interpreter, "-I", "-S", "-c", program], capture_output=True, timeout=_QUERY_TIMEOUT, check=True, text=True
         )
-        return tuple(int(word) for word in done.stdout.split())
+        return tuple(int(word) for word in completed.stdout.split())
     except (OSError, subprocess.SubprocessError, ValueError):
         return None
 

@@ -380,9 +380,9 @@ class _Interpreter:
 
     def _method(self, owner: Any, name: str) -> Callable[..., Any]:
         if isinstance(owner, str) and name == "format":
-            return lambda *arguments, **named: format_template(owner, *arguments, **named)
+            return lambda *arguments, **keywords: format_template(owner, *arguments, **keywords)
         if isinstance(owner, PurePosixPath) and name in self._library.path_methods:
-            return lambda *arguments, **named: self._library.path_methods[name](owner, *arguments, **named)
+            return lambda *arguments, **keywords: self._library.path_methods[name](owner, *arguments, **keywords)
         if any(isinstance(owner, kind) and name in names for kind, names in METHODS.items()):
             method: Callable[..., Any] = getattr(owner, name)
             return method

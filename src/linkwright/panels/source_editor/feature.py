@@ -153,12 +153,12 @@ class SourceEditorFeature(PageFeature):
 
         If no file can be edited, the language server is ended, and the response gives the reason.
         """
-        known = self._description_files(page)
-        why_not = _refusal_reason(page, file, known, self._workspace)
+        description_files = self._description_files(page)
+        why_not = _refusal_reason(page, file, description_files, self._workspace)
         if why_not is not None:
             self.remove_page(page)
             return messages.EditorOpened("", "", why_not)
-        files = SourceFiles(Workspace(Path(file), self._workspace), known)
+        files = SourceFiles(Workspace(Path(file), self._workspace), description_files)
         editor = self._editors.get(page)
         if editor is None:
             self._editors[page] = _Editor(files, self._process(page))
@@ -235,7 +235,7 @@ class SourceEditorFeature(PageFeature):
             await asyncio.sleep(_PERIOD)
             for page, editor in list(self._editors.items()):
                 stamps = {path: known.stamp for path, known in editor.open_files.items()}
-                changed = await asyncio.to_thread(_changed, stamps)
+                changed = await asyncio.to_thread(_changed_paths, stamps)
                 for path in changed:
                     self._waiting.put_nowait((page, messages.AskSourceFile(path)))
 
@@ -266,18 +266,18 @@ def _stamp(path: str) -> tuple[int, ...]:
     return status.st_ino, status.st_size, status.st_mtime_ns, status.st_mode
 
 
-def _changed(stamps: dict[str, tuple[int, ...]]) -> list[str]:
+def _changed_paths(stamps: dict[str, tuple[int, ...]]) -> list[str]:
     """Return the paths of the files whose stamps have changed."""
     return [path for path, stamp in stamps.items() if _stamp(path) != stamp]
 
 
-def _refusal_reason(page: Page, file: str, known: frozenset[str], workspace: Path | None) -> Phrase | None:
+def _refusal_reason(page: Page, file: str, description_files: frozenset[str], workspace: Path | None) -> Phrase | None:
     """Return the reason why a page may not edit the workspace of a file, or None."""
     if not page.is_local:
         return elsewhere().message
     if find_spec(EXTRAS["lsp"]) is None:
         return phrase("the editor needs the language server: {hint}", hint=install_hint("lsp"))
-    if workspace is None and (file not in known or file.startswith("<")):
+    if workspace is None and (file not in description_files or file.startswith("<")):
         return phrase(
             "this description was received as text, so its file is unknown: open it with `linkwright view FILE`"
         )

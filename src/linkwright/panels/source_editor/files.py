@@ -49,7 +49,7 @@ class FileContent:
 
     @property
     def page_text(self) -> str | None:
-        """The text with the line end LF."""
+        """The text with the line end LF, or None if the file cannot be read."""
         return None if self.text is None else with_lf_line_ends(self.text)
 
 

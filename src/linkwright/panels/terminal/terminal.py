@@ -64,7 +64,7 @@ class Terminal:
 
     def _start(self) -> Pty:
         self._decoder = codecs.getincrementaldecoder("utf-8")("replace")
-        pty = self._start_shell(self._size, self._receive, self._ended)
+        pty = self._start_shell(self._size, self._receive, self._on_ended)
         pty.request_output()
         return pty
 
@@ -156,7 +156,7 @@ class Terminal:
             self._sent += 1
             self.page.send(TerminalOutput(self.number, self._sent, text, is_replay))
 
-    def _ended(self, status: int) -> None:
+    def _on_ended(self, status: int) -> None:
         self._add(self._decoder.decode(b"", final=True))
         self.status = status
         self._on_change()

@@ -99,9 +99,9 @@ class WindowsPty:
         while (text := self._input.get()) is not None:
             with suppress(Exception):  # The program has ended.
                 self._pty.write(text)
-            self._call(self._written, len(text.encode()))
+            self._call(self._write_pending, len(text.encode()))
 
-    def _written(self, size: int) -> None:
+    def _write_pending(self, size: int) -> None:
         self.unwritten_size = max(0, self.unwritten_size - size)
 
     def _wait(self) -> None:

@@ -213,20 +213,20 @@ class TfDisplay(ViewerDisplay):
     def on_frames_changed(self) -> None:
         """Update the rows of the frames if they have changed, and the status of each frame."""
         frames = self.host.frames
-        shown = tuple(sorted(self._filtered(set(frames.names))))
+        shown_names = tuple(sorted(self._filtered(set(frames.names))))
         parent_by_name = {
             name: frames.names[parent] if parent >= 0 else None
             for name, parent in zip(frames.names, frames.parents, strict=True)
         }
-        parents = tuple((name, parent_by_name[name]) for name in shown)
-        if (shown, parents) != (self._shown_frames, self._parents):
-            self._shown_frames, self._parents, self._schema = shown, parents, None
+        parents = tuple((name, parent_by_name[name]) for name in shown_names)
+        if (shown_names, parents) != (self._shown_frames, self._parents):
+            self._shown_frames, self._parents, self._schema = shown_names, parents, None
             self.publish_properties()
         filters = ((_WHITELIST, self._whitelist), (_BLACKLIST, self._blacklist))
         problems = [
             StatusRow(name, "error", frame_filter.problem) for name, frame_filter in filters if frame_filter.problem
         ]
-        self.set_status(problems + [self._frame_status(name) for name in shown])
+        self.set_status(problems + [self._frame_status(name) for name in shown_names])
 
     def _frame_status(self, name: str) -> StatusRow:
         problem = self.host.frames.problem(name)
@@ -262,9 +262,9 @@ class TfDisplay(ViewerDisplay):
 
     def _tree_spec(self) -> PropertySpec:
         children: dict[str | None, list[str]] = {}
-        shown = set(self._shown_frames)
+        shown_names = set(self._shown_frames)
         for name, parent in self._parents:
-            children.setdefault(parent if parent in shown else None, []).append(name)
+            children.setdefault(parent if parent in shown_names else None, []).append(name)
         roots = tuple(_tree(name, children, 1) for name in children.get(None, ()))
         return PropertySpec("Tree", "group", description="The tree of frames.", children=roots)
 

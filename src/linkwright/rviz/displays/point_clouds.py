@@ -157,11 +157,11 @@ class CloudDisplay(TopicDisplay):
             key: the key under which the points were sent.
             index: the index of the point among the points of this key.
         """
-        shown = next((cloud for cloud in self._shown_clouds if cloud.key == key), None)
-        if shown is None or not 0 <= index < len(shown.points):
+        shown_cloud = next((cloud for cloud in self._shown_clouds if cloud.key == key), None)
+        if shown_cloud is None or not 0 <= index < len(shown_cloud.points):
             return None
         fields: dict[str, float | str] = {}
-        for name, values in shown.points.channels.items():
+        for name, values in shown_cloud.points.channels.items():
             value = values[index]
             if name in ("rgb", "rgba"):
                 packed = int(value.astype(value.dtype.newbyteorder("=")).view("u4")) if value.itemsize == 4 else 0

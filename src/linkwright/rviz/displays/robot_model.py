@@ -230,7 +230,7 @@ class RobotModelDisplay(ViewerDisplay):
         elif path == ("TF Prefix",) and self.robot is not None:
             self._show_robot(self.robot)
         elif self._rows is not None and path[0] in (LINKS, JOINTS):
-            self._box_changed(self._rows, path)
+            self._on_box_changed(self._rows, path)
 
     def on_frames_changed(self) -> None:
         """Show in the status which links have a known pose."""
@@ -374,7 +374,7 @@ class RobotModelDisplay(ViewerDisplay):
         if self._derive_boxes(self._rows) or has_changed:
             self.publish_properties()
 
-    def _box_changed(self, rows: RobotRows, path: Path) -> None:
+    def _on_box_changed(self, rows: RobotRows, path: Path) -> None:
         """Set the check boxes that depend on a changed check box, as in RViz."""
         style = self.properties.text(*STYLE)
         dependent_paths: list[Path] = []

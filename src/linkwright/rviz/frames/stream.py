@@ -449,10 +449,10 @@ class FrameStream:
         self, snapshot: FrameSnapshot, poses: NDArray[np.float32], fixed_frame: str, *, has_new_structure: bool
     ) -> None:
         has_pose = ~np.isnan(poses[:, 0])
-        placed = has_pose.tobytes() + fixed_frame.encode()
-        if not has_new_structure and placed == self._last_placed:
+        placement = has_pose.tobytes() + fixed_frame.encode()
+        if not has_new_structure and placement == self._last_placed:
             return
-        self._last_placed = placed
+        self._last_placed = placement
         names = self._table.names
         self._on_frames(
             FrameView(

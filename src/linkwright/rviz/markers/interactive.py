@@ -84,7 +84,7 @@ class InteractiveMarkerClient:
         self._subscription: Subscription[Any] = node.create_subscription(
             get_message("visualization_msgs/msg/InteractiveMarkerUpdate"),
             f"{self._namespace}/update",
-            self._received,
+            self._on_received,
             QoSProfile(_UPDATE_DEPTH),
         )
         self._feedback_publisher: Publisher[Any] = node.create_publisher(
@@ -138,9 +138,9 @@ class InteractiveMarkerClient:
         self._events.on_status("ok", phrase("Initialized interactive marker client"))
         early_updates, self._early_updates = self._early_updates, []
         for update in early_updates:
-            self._received(update)
+            self._on_received(update)
 
-    def _received(self, update: Any) -> None:
+    def _on_received(self, update: Any) -> None:
         if self._sequence is None:
             self._early_updates = [*self._early_updates, update][-_UPDATE_DEPTH:]
             return

@@ -84,18 +84,18 @@ class VisualizationManager:
         self.history = History(lambda: owner.on_edit(self))
         self._owner = owner
         self._global_status: list[StatusRow] = []
-        self.time = TimeControl(context.node.get_clock(), self._time_changed, self._on_time_signal)
+        self.time = TimeControl(context.node.get_clock(), self._on_time_changed, self._on_time_signal)
         self._stream = FrameStream(
             context.node,
             self.pages,
             self.time,
             context.transforms,
-            on_frames=self._frames_changed,
+            on_frames=self._on_frames_changed,
             own_frames=self._robot_frames,
         )
         self._read_options()
         self.frames = FrameView(fixed_frame=self.fixed_frame)
-        self.tree = DisplayTree(config, self, self.history, rearranged=self._rearranged)
+        self.tree = DisplayTree(config, self, self.history, rearranged=self._on_rearranged)
         self.on_fading_changed()
 
     # --- lifecycle ---------------------------------------------------------------------------------------------
@@ -259,7 +259,7 @@ class VisualizationManager:
             display.restore(saved_entries)
         elif owner == GLOBAL:
             for path in self.config.options.restore(saved_entries):
-                self._option_changed(path[0])
+                self._on_option_changed(path[0])
 
     def fit_to_robot(self, diagonal: float, ground: float) -> None:
         """Fit grid and axes to a measured robot, except sizes that the user has changed.
@@ -301,7 +301,7 @@ class VisualizationManager:
         synchronization = read_synchronization(self.config.document)
         self.set_time(paused=False, mode=synchronization.mode, source=synchronization.source)
 
-    def _time_changed(self) -> None:
+    def _on_time_changed(self) -> None:
         time = self.time
         self.publish(TimeState(time.paused, time.mode, time.source, list(time.sources)))
 
@@ -317,9 +317,9 @@ class VisualizationManager:
 
     def _set_option(self, name: str, value: object) -> None:
         self.config.options.set((name,), value)
-        self._option_changed(name)
+        self._on_option_changed(name)
 
-    def _option_changed(self, name: str) -> None:
+    def _on_option_changed(self, name: str) -> None:
         options = self.config.options
         changes_rows = options.is_condition((name,))
         self.publish(
@@ -332,11 +332,11 @@ class VisualizationManager:
             self._stream.refresh()
             self._owner.on_fixed_frame_changed(self)
 
-    def _rearranged(self) -> None:
+    def _on_rearranged(self) -> None:
         self.on_fading_changed()
         self.publish(self.tree_message())
 
-    def _frames_changed(self, frames: FrameView) -> None:
+    def _on_frames_changed(self, frames: FrameView) -> None:
         has_new_names = frames.names != self.frames.names
         self.frames = frames
         for display in self.displays:

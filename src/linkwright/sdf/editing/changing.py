@@ -209,8 +209,8 @@ def reference_renaming_edits(world: WorldText, names: dict[str, str]) -> list[Re
     """
     edits: list[Replacement] = []
     for element, attribute in writing.references(world.element):
-        written = referenced_name(element, attribute)
-        head, colon, tail = written.partition(SEPARATOR)
+        reference = referenced_name(element, attribute)
+        head, colon, tail = reference.partition(SEPARATOR)
         new = names.get(head)
         if new is None:
             continue
@@ -418,15 +418,15 @@ def _pose_in_written_frame(world: WorldText, entity: Entity, pose: Pose) -> Pose
         EditError: this frame does not exist.
     """
     relative_to = entity.pose.relative_to
-    placed = entity.model.placement_frame if entity.model is not None else ""
+    placement_frame = entity.model.placement_frame if entity.model is not None else ""
     if isinstance(entity.written, Model | Include):
-        placed = entity.written.placement_frame or placed
-    if not relative_to and not placed:
+        placement_frame = entity.written.placement_frame or placement_frame
+    if not relative_to and not placement_frame:
         return pose
     try:
         local = compose(invert(world.frames.pose(relative_to)) if relative_to else IDENTITY, transform_of(pose))
-        if placed:
-            local = compose(local, world.frames.inside(entity.name).pose(placed))
+        if placement_frame:
+            local = compose(local, world.frames.inside(entity.name).pose(placement_frame))
     except FrameError as error:
         reason = phrase("'{name}' is relative to '{frame}', which cannot be placed", name=entity.name, frame=error.name)
         raise EditError(reason) from None
@@ -441,18 +441,18 @@ def _state_move_edits(entry: Element, old: Transform, new: Transform, pose: Pose
     displacement = compose(new, invert(old))
     edits: list[Replacement] = []
     for element in entry.walk():
-        written = element.first("pose") if element.tag in ("model", "link", "light") else None
-        if written is None:
+        pose_element = element.first("pose") if element.tag in ("model", "link", "light") else None
+        if pose_element is None:
             continue
         if element is entry:
-            edits += writing.pose_edits(written, pose)
+            edits += writing.pose_edits(pose_element, pose)
             continue
         try:
-            numbers = POSE_NUMBERS.read(written.text())
+            numbers = POSE_NUMBERS.read(pose_element.text())
             old_pose = transform_of(pose_of(numbers, degrees=False, rotation_format="euler_rpy"))
         except ValueError:
             continue
-        edits += writing.pose_edits(written, writing.pose_from_transform(compose(displacement, old_pose)))
+        edits += writing.pose_edits(pose_element, writing.pose_from_transform(compose(displacement, old_pose)))
     return edits
 
 

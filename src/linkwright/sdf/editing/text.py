@@ -129,7 +129,7 @@ class WorldText:
 
     @property
     def state(self) -> Element | None:
-        """The last saved state, whose poses take precedence over the poses of the models."""
+        """The last saved state, whose poses take precedence over the models' poses, or None."""
         return self.world.states[-1].element if self.world.states else None
 
     def entity(self, name: str) -> Entity:

@@ -73,9 +73,9 @@ def _frame_pose(simulation: Simulation, model: Model, path: str) -> Pose:
 
 
 def _pose_on_link(simulation: Simulation, link: str, link_in_frame: Transform) -> Pose:
-    """Return a function that returns the pose in the world of a frame fixed to a link.
+    """Return a function that returns the current pose in the world of a frame that is fixed to a link.
 
-    `context` is the pose of the link in this frame.
+    `link_in_frame` is the pose of the link in this frame.
     """
     frame_in_link = invert(link_in_frame)
     return lambda: compose(simulation.link_pose(link), frame_in_link)
@@ -84,7 +84,7 @@ def _pose_on_link(simulation: Simulation, link: str, link_in_frame: Transform) -
 def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, frame_pose: Pose) -> Iterator[Part]:
     """Yield the parts of a model.
 
-    `context` returns the pose of the model's frame in the world.
+    `frame_pose` returns the pose of the model's frame in the world.
     """
     for link in model.links:
         name = f"{path}{SEPARATOR}{link.name}"

@@ -94,7 +94,7 @@ class PluginContext:
 
     @property
     def element(self) -> Element | None:
-        """The element that declares the plugin or sensor."""
+        """The element that declares the plugin or sensor, or None if there is none."""
         if self.plugin is not None:
             return self.plugin.element
         return None if self.sensor is None else self.sensor.sensor.element

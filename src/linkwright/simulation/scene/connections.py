@@ -108,8 +108,8 @@ def connections_of(world: World) -> Connections:
     if not world.joints:
         return Connections({}, (), {})
     frames = Frames(world)
-    placed = _placed_joints(world, frames)
-    models = {model for joint in placed for model in _models(joint)}
+    placed_joints = _placed_joints(world, frames)
+    models = {model for joint in placed_joints for model in _models(joint)}
     poses: dict[str, Transform] = {}
     tree_links: dict[str, TreeLink] = {}
     for model in world.models:
@@ -126,7 +126,7 @@ def connections_of(world: World) -> Connections:
     free_links = {name for name in moving_links - joints_by_child.keys() if not tree_links[name].link.link.kinematic}
     attaching: dict[str, PlacedJoint] = {}
     loops: list[PlacedJoint] = []
-    for joint in placed:
+    for joint in placed_joints:
         known_links = tree_links.keys() | {WORLD}
         if not {joint.parent, joint.child} <= known_links or not {joint.parent, joint.child} & moving_links:
             continue
@@ -159,11 +159,11 @@ def _placed_joints(world: World, frames: Frames) -> list[PlacedJoint]:
     joints_by_name: dict[str, PlacedJoint] = {}
     for joint in world.joints:
         try:
-            placed = placed_joint(joint, frames, IDENTITY, "")
+            joint_at_pose = placed_joint(joint, frames, IDENTITY, "")
         except FrameError:
             continue  # `check` reports this joint.
-        if placed.name not in joints_by_name and placed.parent != placed.child:
-            joints_by_name[placed.name] = placed
+        if joint_at_pose.name not in joints_by_name and joint_at_pose.parent != joint_at_pose.child:
+            joints_by_name[joint_at_pose.name] = joint_at_pose
     return list(joints_by_name.values())
 
 

@@ -28,7 +28,7 @@ from linkwright.speech.sound.spectra import HOP, MelFrames
 MIN_PROBABILITY = 0.6
 """The minimum probability at which a class is reported."""
 
-_LEAD_IN = RATE // 5  # samples before the start of speech that are included
+_LEAD_IN = RATE // 5  # the number of samples before the start of speech that are included
 _MAX_SAMPLES = 10 * RATE  # the maximum number of samples in an utterance
 _FULL_SCALE = 32_768.0
 

@@ -19,10 +19,10 @@ from linkwright.speech.sound.activity import VoiceActivity, unsteady_noise
 from linkwright.speech.sound.samples import RATE, Samples
 from linkwright.speech.sound.spectra import BANDS, HOP, MelFrames, Powers
 
-_LEAD_IN = 20  # frames before the start of speech that are included, because a word starts softly
-_NOISE_FRAMES = 30  # earlier frames, used only to measure the noise
-_MATCH_INTERVAL = 5  # number of new frames after which an utterance is matched again
-_MAX_LENGTH_FACTOR = 2.5  # times the longest take: longer utterances are not words
+_LEAD_IN = 20  # the number of frames before the start of speech, because a word starts softly
+_NOISE_FRAMES = 30  # the number of earlier frames, which are used only to measure the noise
+_MATCH_INTERVAL = 5  # the number of new frames after which an utterance is matched again
+_MAX_LENGTH_FACTOR = 2.5  # the maximum length of a word, as a multiple of the longest take
 _MIN_NEAREST_CONFIDENCE = 0.1
 """The minimum confidence of a word that is reported as the nearest.
 

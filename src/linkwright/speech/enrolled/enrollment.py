@@ -12,14 +12,14 @@ from linkwright.speech.sound.activity import speech_span
 from linkwright.speech.sound.samples import Samples
 from linkwright.speech.sound.spectra import HOP, WINDOW, mel_frames
 
-_MIN_FRAMES, _MAX_FRAMES = 15, 300  # frames: 0.15 s and 3 s
-_SILENT_EDGE = 3  # frames at both ends of a recording that must not contain speech
-_MIN_RMS = 60.0  # RMS value of the loudest 50 ms, in units of a 16-bit sample: -55 dB of full scale
-_MIN_SIGNAL_TO_NOISE = 8.0  # dB, mean over the bands of the loudest frames
+_MIN_FRAMES, _MAX_FRAMES = 15, 300  # the minimum and maximum length of a word in frames: 0.15 s and 3 s
+_SILENT_EDGE = 3  # the number of frames at both ends of a recording that must not contain speech
+_MIN_RMS = 60.0  # the minimum RMS value of the loudest 50 ms, in steps of a 16-bit sample: -55 dB of full scale
+_MIN_SIGNAL_TO_NOISE = 8.0  # the minimum level above the noise in dB, as the mean over the bands of the loudest frames
 _MAX_CLIPPED_SHARE = 0.01
 _CLIPPED_LEVEL = 32_700
-_MAX_OWN_DISTANCE = 0.7  # times its distance to a reversed word; different words exceed this three times in four
-_SIMILAR_DISTANCE = 0.85  # times its distance to another word
+_MAX_OWN_DISTANCE = 0.7  # a multiple of the distance to a reversed word; 3 of 4 different words exceed it
+_SIMILAR_DISTANCE = 0.85  # a multiple of the distance to another word
 
 
 def enroll(words: Words, name: str, samples: Samples, has_gaps: bool = False) -> tuple[Diagnostic, ...]:
@@ -73,7 +73,7 @@ def enroll(words: Words, name: str, samples: Samples, has_gaps: bool = False) ->
 def _compare_take(words: Words, name: str, take: Take) -> Diagnostic | None:
     """Compare a take with the other takes of its word and with other words.
 
-    Return a finding if the take does not fit. The first take of a word is not compared.
+    Return a finding if the take does not fit, else None. The first take of a word is not compared.
     """
     if not words.takes(name):
         return None

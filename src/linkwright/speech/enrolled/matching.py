@@ -23,17 +23,17 @@ from linkwright.speech.sound.spectra import BANDS, Powers
 _Array = NDArray[np.float32]
 _Float = TypeVar("_Float", np.float32, np.float64)
 
-_NOISE_FACTOR = 2.0  # times the power of the noise
-_DYNAMIC_RANGE = 40.0  # dB below the loudest frames: another floor
-_LOUDEST_FRAMES = 12  # number of frames
+_NOISE_FACTOR = 2.0  # the floor of powers, as a multiple of the noise
+_DYNAMIC_RANGE = 40.0  # another floor of powers, in dB below the loudest frames
+_LOUDEST_FRAMES = 12  # the number of frames that determine the loudest level
 _CEPSTRA = 12
-_LEVEL_WEIGHT = 0.3  # weight of the zeroth coefficient
-_CHANGE_WEIGHT = 1.5  # weight of the differences
-_STAY_COST = np.float32(1.0)  # cost of staying in a frame of a take; a path can wait in the background instead
+_LEVEL_WEIGHT = 0.3  # the weight of the zeroth coefficient
+_CHANGE_WEIGHT = 1.5  # the weight of the differences
+_STAY_COST = np.float32(1.0)  # the cost of staying in a frame of a take; a path can wait in the background instead
 _INFINITE_COST = np.float32(1e9)
-_CONTEXT_FRAMES = 2  # frames on each side from which differences are computed
-_MAX_SINGLE_THREAD = 200_000  # multiplications: OpenBLAS distributes more than 262,144 over several threads
-_SPEECH_SOUND_FRAMES = 8  # frames: roughly the length of a speech sound
+_CONTEXT_FRAMES = 2  # the number of frames on each side from which differences are computed
+_MAX_SINGLE_THREAD = 200_000  # the maximum number of multiplications in one thread; OpenBLAS uses several above 262,144
+_SPEECH_SOUND_FRAMES = 8  # the approximate length of a speech sound, in frames
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +110,7 @@ class Templates:
         )
         path_distances = []
         for frame in range(int(match.last[take]), int(match.first[take]) - 1, -1):
-            if column < self._first_columns[take]:  # a path may skip the first frames
+            if column < self._first_columns[take]:  # The path has skipped the first frames.
                 break
             path_distances.append(match.distances[frame, column + column_offset])
             column -= int(match.steps[frame, column])

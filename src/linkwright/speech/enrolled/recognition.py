@@ -29,7 +29,7 @@ ACCEPTED = 0.5
 
 _MIN_RATIO_TERM = 1e-3
 _EXCLUDED_COST = np.float32(1e9)
-_MIN_REVERBERATION_LEVEL = 20.0  # dB above noise: below it, noise hides the decay of words, and all words seem far away
+_MIN_REVERBERATION_LEVEL = 20.0  # in dB above the noise; below this level, noise hides the decay of words
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +108,7 @@ class Recognizer:
             takes = self._takes[word]
             templates = Templates(takes)
             matches = [templates.match(take.powers, take.noise) for take in takes] if len(takes) > 1 else []
-            nearest = [int(np.argsort(match.cost)[1]) for match in matches]  # the nearest take except itself
+            nearest = [int(np.argsort(match.cost)[1]) for match in matches]  # the nearest other take
             worst_distances = [
                 templates.worst_distance(match, take) for match, take in zip(matches, nearest, strict=True)
             ]
@@ -144,9 +144,9 @@ def _reverse_median_take(takes: tuple[Take, ...]) -> Take:
     return Take(take.powers[::-1], take.noise)
 
 
-_DEFAULT_WORST = 15.0  # for a word with a single take
-_MAX_LEVEL = 30.0  # dB above the noise: a higher level makes no difference
-_WEIGHTS = np.array([-5.29, -4.40, -3.06, 0.12])  # fitted to 16 synthetic voices in five languages, clean and in noise
+_DEFAULT_WORST = 15.0  # the value for a word with a single take
+_MAX_LEVEL = 30.0  # in dB above the noise; a higher level makes no difference
+_WEIGHTS = np.array([-5.29, -4.40, -3.06, 0.12])  # fitted to 16 voices in five languages, with and without noise
 _OFFSET = -9.5
 _OFFSET_FAR = -11.5  # reverberation blurs differences between words, so these takes need to fit better
 

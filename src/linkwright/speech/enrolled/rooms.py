@@ -16,7 +16,7 @@ from linkwright.speech.enrolled.words import Take
 from linkwright.speech.sound.samples import RATE
 from linkwright.speech.sound.spectra import HOP
 
-_MAX_DECAY = 30.0  # dB: attenuation of the reverberation at which a take ends
+_MAX_DECAY = 30.0  # the attenuation of the reverberation in dB at which a take ends
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,7 +35,7 @@ MAX_TAKES = 10
 MAX_WORDS = 200
 
 _FORMAT, _VERSION = "linkwright enrolled words", 1
-_LEVEL_STEP = 0.5  # dB
+_LEVEL_STEP = 0.5  # the resolution of stored levels, in dB
 _MAX_NAME_LENGTH = 100
 _MAX_FRAMES = 400
 

@@ -20,7 +20,7 @@ _ThreadResult: TypeAlias = Heard | Diagnostic | LinkwrightError | None
 """A result of the thread. None means that all sound up to the end of an utterance was processed."""
 
 _MAX_GAPS = 100
-_GAP_TOLERANCE = 0.2  # s: engines do not know the exact start of a word
+_GAP_TOLERANCE = 0.2  # in seconds; engines do not report the exact start of a word
 
 
 class Listener:

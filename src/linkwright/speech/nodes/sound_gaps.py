@@ -55,7 +55,7 @@ class SoundGaps:
     def __init__(self) -> None:
         self._next_stamp: int | None = None
         self._steady_blocks = 0
-        self._small_jumps = 0  # sum of jumps that are too small to report individually
+        self._small_jumps = 0  # the sum of jumps that are too small to report individually
 
     def restart(self) -> None:
         """Start a new stream of a publisher that is assumed to stamp in the same way as before."""

@@ -17,24 +17,24 @@ from linkwright.speech.sound.spectra import BANDS, Powers
 HANGOVER = 40
 """The number of frames without speech that end an utterance: 0.4 s, longer than the closure of a plosive."""
 
-_MIN_POWER = 1.0  # below the noise of any microphone at 16 bits
-_START_LEVEL, _CONTINUE_LEVEL = 3.0, 2.0  # dB above the floor, mean over all bands in the last frames
-_TAKE_LEVEL = 4.0  # dB, for an example, which must be clear
-_MAX_BAND_LEVEL = 25.0  # dB: a single band, as in a whistle, is not speech
-_MAX_BELOW_LOUDEST = 45.0  # dB: softer sound does not belong to a take, regardless of the noise
-_SMOOTHING_FRAMES = 3  # number of frames
-_START_FRAMES = 4  # number of consecutive frames
-_MINIMUM_FRAMES = 80  # number of frames in which the minimum is searched for
-_MEAN_TO_MINIMUM = 1.4  # ratio of the noise's mean to its minimum, for sums of three frames
-_RISE_RATE, _FALL_RATE = 0.05, 0.08  # fractions by which the floor approaches the level with each frame
+_MIN_POWER = 1.0  # the minimum power of the noise floor, which is below the noise of any 16-bit microphone
+_START_LEVEL, _CONTINUE_LEVEL = 3.0, 2.0  # in dB above the floor, as the mean over all bands in the last frames
+_TAKE_LEVEL = 4.0  # the minimum level of speech in a take in dB, because takes must be clear
+_MAX_BAND_LEVEL = 25.0  # the maximum level of a band in dB, because a single loud band, as in a whistle, is not speech
+_MAX_BELOW_LOUDEST = 45.0  # in dB; softer sound does not belong to a take, whatever the noise
+_SMOOTHING_FRAMES = 3  # the number of frames over which levels are averaged
+_START_FRAMES = 4  # the number of consecutive loud frames that start an utterance
+_MINIMUM_FRAMES = 80  # the number of frames in which the minimum is searched
+_MEAN_TO_MINIMUM = 1.4  # the ratio of the noise's mean to its minimum, for sums of three frames
+_RISE_RATE, _FALL_RATE = 0.05, 0.08  # the fractions by which the floor approaches the level with each frame
 
-_LOUDEST_FRAMES = 12  # number of frames
-_SPEECH_RANGE = 7.0  # dB below the loudest: speech at the microphone is louder than other sounds by this amount
-_SOFT_START_FRAMES = 8  # frames by which a word may start before it reaches this level
+_LOUDEST_FRAMES = 12  # the number of frames that determine the loudest level
+_SPEECH_RANGE = 7.0  # in dB below the loudest level; speech at the microphone is louder than other sounds by this
+_SOFT_START_FRAMES = 8  # the number of frames by which a word may start before it reaches this level
 _MIN_NOISE_FRAMES = 15  # the minimum number of frames for measuring the noise
-_MIN_UNSTEADY_DEVIATION = 1.2  # dB, deviation of the level: 1 for steady noise, 2 and more for babble
-_MIN_UNSTEADY_LEVEL = 5.0  # dB, median above that of steady noise: up to 4 for steady noise, 8 and more for babble
-_NOISE_DEVIATIONS = 1.5  # standard deviations by which unsteady noise exceeds its mean
+_MIN_UNSTEADY_DEVIATION = 1.2  # the deviation of the level in dB: 1 for steady noise, 2 and more for babble
+_MIN_UNSTEADY_LEVEL = 5.0  # the median level in dB above the floor: up to 4 for steady noise, 8 and more for babble
+_NOISE_DEVIATIONS = 1.5  # the number of standard deviations by which unsteady noise exceeds its mean
 
 
 class VoiceActivity:

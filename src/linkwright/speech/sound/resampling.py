@@ -18,8 +18,8 @@ MAX_RATE = 384_000
 
 _PASS_BAND = 0.92
 _KAISER_BETA = 7.0
-_ZERO_CROSSINGS = 32  # zero crossings of the sinc on each side
-_BATCH = 8_192  # output samples per multiplication
+_ZERO_CROSSINGS = 32  # the number of zero crossings of the sinc on each side
+_BATCH = 8_192  # the number of output samples per multiplication
 
 
 class Resampler:

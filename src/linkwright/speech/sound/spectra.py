@@ -26,7 +26,7 @@ Powers: TypeAlias = NDArray[np.float64]
 """The power of each band, shape ``(frames, BANDS)``, where white noise with an RMS of one 16-bit step has 1."""
 
 _FFT_SIZE = 512
-_MIN_FREQUENCY, _MAX_FREQUENCY = 80.0, 7600.0  # Hz
+_MIN_FREQUENCY, _MAX_FREQUENCY = 80.0, 7600.0  # the range of the bands in Hz
 _PRE_EMPHASIS = 0.97
 
 

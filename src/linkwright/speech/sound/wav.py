@@ -18,7 +18,7 @@ from linkwright.files.input_files import read_file
 from linkwright.speech.sound.resampling import MAX_RATE, MIN_RATE, resample
 from linkwright.speech.sound.samples import RATE, Samples
 
-_MAX_FILE_SIZE = 1 << 30  # bytes
+_MAX_FILE_SIZE = 1 << 30  # in bytes
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
 _OTHER_FORMATS = {2: "ADPCM", 6: "A-law", 7: "mu-law", 0x11: "IMA ADPCM", 0x31: "GSM", 0x55: "MP3"}
 _SUPPORTED_FORMATS = {(_PCM, 8), (_PCM, 16), (_PCM, 24), (_PCM, 32), (_FLOAT, 32), (_FLOAT, 64)}

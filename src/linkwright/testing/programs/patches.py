@@ -185,8 +185,8 @@ def _is_alive(original: Original) -> Original:
 
 
 def _lockstep_thread(thread: threading.Thread) -> LockstepThread | None:
-    found: LockstepThread | None = vars(thread).get("_linkwright_thread")
-    return found
+    lockstep_thread: LockstepThread | None = vars(thread).get("_linkwright_thread")
+    return lockstep_thread
 
 
 def _select(original: Original) -> Original:

@@ -109,13 +109,13 @@ class LockstepThread:
         _threads[self.ident] = self
 
     def end(self) -> None:
-        """Return the last turn, because the calling thread ends."""
+        """Give the turn back for the last time, because the calling thread ends."""
         _threads.pop(self.ident, None)
         self.ended.set_result(None)
         self.turns.take_back(self)
 
     def wait(self, deadline_ns: int | None = None) -> None:
-        """Return the turn, and wait until `wake` is called or the graph's steady time reaches a deadline in ns.
+        """Give the turn back, and wait until `wake` is called or the steady time reaches a deadline in ns.
 
         Raises:
             BaseException: what an interruption raises.

@@ -175,14 +175,14 @@ def _choose_props(stage: Stage, options: Options, generator: np.random.Generator
     by_class: dict[int, list[Prop]] = {}
     for prop in stage.props:
         by_class.setdefault(prop.label, []).append(prop)
-    chosen: list[Prop] = []
+    selected_props: list[Prop] = []
     for _ in range(int(generator.integers(1, options.max_objects + 1))):
         classes = [label for label, props in by_class.items() if props]
         if not classes:
             break
         props = by_class[classes[int(generator.integers(len(classes)))]]
-        chosen.append(props.pop(int(generator.integers(len(props)))))
-    return chosen
+        selected_props.append(props.pop(int(generator.integers(len(props)))))
+    return selected_props
 
 
 def _distance_range(prop: Prop, focal: float, options: Options) -> tuple[float, float]:

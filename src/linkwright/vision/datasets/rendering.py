@@ -101,11 +101,11 @@ class Studio:
         for path, world_objects in zip(source.worlds, objects, strict=True):
             if not world_objects:
                 raise _no_objects_error(path, source.classes)
-        used_labels = {scene_object.label for found in objects for scene_object in found}
+        used_labels = {scene_object.label for image_objects in objects for scene_object in image_objects}
         self.unused = tuple(name for number, name in enumerate(self.classes) if number not in used_labels)
         self._stages = [
-            Stage(simulation, found, self._options.copies, self._options.distractors)
-            for simulation, found in zip(simulations, objects, strict=True)
+            Stage(simulation, image_objects, self._options.copies, self._options.distractors)
+            for simulation, image_objects in zip(simulations, objects, strict=True)
         ]
         self.render_method = self._stages[0].renderer.method
         self._pattern_sets: dict[int, int] = {}

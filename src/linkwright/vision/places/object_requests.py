@@ -74,12 +74,12 @@ class Answer(Enum):
 
 
 _ANSWERS: Mapping[Answer, Callable[[str], Phrase]] = {
-    Answer.SEARCHING: lambda it: phrase("I am looking for the {name}.", name=it),
-    Answer.FOUND: lambda it: phrase("I see the {name} and drive to it.", name=it),
-    Answer.ARRIVED: lambda it: phrase("I am at the {name}.", name=it),
-    Answer.NOT_FOUND: lambda it: phrase("I cannot find the {name}.", name=it),
-    Answer.LOST: lambda it: phrase("I have lost the {name}.", name=it),
-    Answer.BLOCKED: lambda it: phrase("An obstacle is between me and the {name}.", name=it),
+    Answer.SEARCHING: lambda name: phrase("I am looking for the {name}.", name=name),
+    Answer.FOUND: lambda name: phrase("I see the {name} and drive to it.", name=name),
+    Answer.ARRIVED: lambda name: phrase("I am at the {name}.", name=name),
+    Answer.NOT_FOUND: lambda name: phrase("I cannot find the {name}.", name=name),
+    Answer.LOST: lambda name: phrase("I have lost the {name}.", name=name),
+    Answer.BLOCKED: lambda name: phrase("An obstacle is between me and the {name}.", name=name),
     Answer.NO_DETECTIONS: lambda _: phrase("I am stopping, because I receive no detections."),
     Answer.STOPPED: lambda _: phrase("I am stopping."),
 }

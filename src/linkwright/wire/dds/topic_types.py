@@ -67,7 +67,9 @@ class TopicTypes:
         with self._lock:  # no other thread may see a type while it is created
             address = self._type_addresses.get(described_type)
             if address is None:
-                address = self._type_addresses[described_type] = self._new(participant, described_type, operation)
+                address = self._type_addresses[described_type] = self._create_type(
+                    participant, described_type, operation
+                )
         pointer = c.c_void_p(self._dds.ddsi_sertype_ref(address))
         code = self._dds.dds_create_topic_sertype(participant, name.encode(), c.byref(pointer), None, None, None)
         if code < 0:
@@ -79,7 +81,7 @@ class TopicTypes:
         while self._type_addresses:
             self._dds.ddsi_sertype_free(self._type_addresses.popitem()[1])
 
-    def _new(self, participant: int, described_type: Any, operation: str) -> int:
+    def _create_type(self, participant: int, described_type: Any, operation: str) -> int:
         """Create a type and return its address.
 
         The type belongs to an unused topic of the Python package, which is deleted with `participant`. If the topic

@@ -116,9 +116,9 @@ class Departures:
         """
         now = self._now()
         expired = [missing for missing in self._missing_publishers if missing.deadline <= now]
-        self._missing_publishers = [gone for gone in self._missing_publishers if gone.deadline > now]
-        for gone in expired:
-            info = gone.token.described() if self._is_lost(gone) else None
+        self._missing_publishers = [publisher for publisher in self._missing_publishers if publisher.deadline > now]
+        for publisher in expired:
+            info = publisher.token.described() if self._is_lost(publisher) else None
             if info is not None:
                 for callback in self._watchers:
                     callback(info)

@@ -165,7 +165,7 @@ class Engine(AnyEngine):
 
         try:
             token = self._create_token(publisher, EndpointKind.PUBLISHER)
-            outgoing = OutgoingTopic(publisher, token, self._session, self._matches_changed)
+            outgoing = OutgoingTopic(publisher, token, self._session, self._on_matches_changed)
         except BaseException:
             publisher.set_remote_sender(None)
             raise
@@ -194,7 +194,7 @@ class Engine(AnyEngine):
     def open_client(self, client: Any) -> None:
         """Mirror a client."""
         token = self._create_token(client, EndpointKind.CLIENT)
-        self._announce(client, RemoteServer(client, token, self._session, self._matches_changed))
+        self._announce(client, RemoteServer(client, token, self._session, self._on_matches_changed))
 
     def open_presence(self, presence: Any) -> None:
         """Announce an endpoint that neither sends nor receives, by declaring its token."""
@@ -291,7 +291,7 @@ class Engine(AnyEngine):
         self._token_changes.append((sample.kind == zenoh.SampleKind.PUT, str(sample.key_expr)))
         self._wake_event.set()
 
-    def _matches_changed(self) -> None:
+    def _on_matches_changed(self) -> None:
         self._is_stale = True
         self._wake_event.set()
 

@@ -186,8 +186,8 @@ def split(pattern: str, text: str) -> list[str]:
         RefusalError: if the split takes too long.
     """
     begins = re.match(_CLASS_BEGINS, pattern)
-    written = re.compile(_WRITTEN).finditer(pattern, begins.end() if begins else 0)
-    ends = next((match.end() for match in written if match[0] == "]"), 0)
+    element_match = re.compile(_WRITTEN).finditer(pattern, begins.end() if begins else 0)
+    ends = next((match.end() for match in element_match if match[0] == "]"), 0)
     if ends == len(pattern):
         return re.split(pattern, text)
     import regex

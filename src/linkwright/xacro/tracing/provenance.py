@@ -157,11 +157,11 @@ class Tracer:
         value = element.attributes[name]
         setting = self._recorder.setting(element, name)
         node, attribute = (setting.node, "value") if setting else (moment.node, name)
-        written = written_attribute(node, attribute)
+        source_text = written_attribute(node, attribute)
         return AttributeProvenance(
             name=name,
             value=value,
-            written=value if written is None else written,
+            written=value if source_text is None else source_text,
             span=node.attribute_span(attribute),
             values=setting.values if setting else moment.values.get(name, ()),
             calls=self._calls(setting.frame) if setting else calls,

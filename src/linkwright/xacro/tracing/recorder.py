@@ -202,17 +202,17 @@ class Recorder:
         node = self._properties.get((id(owner), reference.name))
         if node is not None:
             attribute = "value" if "value" in node.attributes else "default"
-            span, written = node.attribute_span(attribute), written_attribute(node, attribute)
-            return Value(reference.path, "property", format_value(value), span, written)
+            span, source_text = node.attribute_span(attribute), written_attribute(node, attribute)
+            return Value(reference.path, "property", format_value(value), span, source_text)
         parameter = self._parameters.get(id(owner), {}).get(reference.name)
         if parameter is not None:
             return Value(reference.path, "parameter", format_value(value), parameter.span, parameter.written)
         member = self._member_source(owner.values.get(reference.name), reference.path)
-        span, written = member or (None, None)
-        return Value(reference.path, "property", format_value(value), span, written)
+        span, source_text = member or (None, None)
+        return Value(reference.path, "property", format_value(value), span, source_text)
 
     def _member_source(self, namespace: object, path: str) -> tuple[Span | None, str | None] | None:
-        """Return the location and text of a namespace's property, such as ``A.B.radius``."""
+        """Return the location and text of a namespace's property, such as ``A.B.radius``, or None."""
         *_, name = parts = path.split(".")
         for segment in parts[1:-1]:
             namespace = namespace.values.get(segment) if isinstance(namespace, Scope) else None
@@ -230,8 +230,8 @@ class Recorder:
             node = self._arguments.get(reference.name)
             if node is None or reference.name in self._passed_names:
                 return Value(reference.path, "argument", format_value(value))
-            span, written = node.attribute_span("default"), written_attribute(node, "default")
-            return Value(reference.path, "argument", format_value(value), span, written)
+            span, source_text = node.attribute_span("default"), written_attribute(node, "default")
+            return Value(reference.path, "argument", format_value(value), span, source_text)
         return Value(reference.path, "package" if reference.command == "find" else "variable", format_value(value))
 
 
@@ -265,8 +265,8 @@ def _parameter_value(parameter: Parameter, value: Any, call: Element, macro: Ele
     """Return a parameter's value in a call, and the location of the argument or default."""
     text = format_value(value.text if isinstance(value, Lazy) else literal(value))
     if parameter.name in call.attributes:
-        span, written = call.attribute_span(parameter.name), written_attribute(call, parameter.name)
-        return Value(parameter.name, "parameter", text, span, written)
+        span, source_text = call.attribute_span(parameter.name), written_attribute(call, parameter.name)
+        return Value(parameter.name, "parameter", text, span, source_text)
     default = parameter.default
     if default is None:
         span = attribute_span(macro, "params", parameter.start, parameter.start + len(parameter.name))

@@ -125,10 +125,10 @@ class _RecordingSession(Session):
         source = node.source.text
         begin, end = node.offset, node.offset
         if isinstance(node, Element):
-            found = attribute_value_range(source, node.offset, self.current_attribute or "")
-            if found is None:
+            value_range = attribute_value_range(source, node.offset, self.current_attribute or "")
+            if value_range is None:
                 return None
-            begin, end = found
+            begin, end = value_range
         else:
             end = begin + len(node.data)
         offset = source.find(text, begin, end)

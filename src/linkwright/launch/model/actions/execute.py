@@ -436,7 +436,7 @@ class ExecuteProcess(ExecuteLocal):
 
     @property
     def additional_env(self) -> Pairs | None:
-        """The additional environment variables, as substitutions."""
+        """The additional environment variables, as substitutions, or None."""
         return self._description.additional_env
 
     @property

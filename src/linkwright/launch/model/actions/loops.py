@@ -137,7 +137,7 @@ class ForLoop(Action):
 
     @property
     def name(self) -> str | None:
-        """The name of the index in ``$(index NAME)``."""
+        """The name of the index in ``$(index NAME)``, or None."""
         return self._name
 
     def describe(self) -> str:

@@ -44,9 +44,9 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
     on_stderr: Texts = Texts(default="fail", kw_only=True)
 
     @classmethod
-    def wrong_count(cls, expected: str, given: int) -> Exception:
+    def wrong_count(cls, expected: str, argument_count: int) -> Exception:
         """Return a ValueError for a wrong number of arguments, as ROS does."""
-        return ValueError(*super().wrong_count(expected, given).args)
+        return ValueError(*super().wrong_count(expected, argument_count).args)
 
     def perform(self, context: LaunchContext) -> str:
         """Run the command, and return its standard output.

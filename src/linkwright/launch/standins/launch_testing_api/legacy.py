@@ -106,14 +106,14 @@ class LaunchTestService:
             side_effect: ``shutdown`` to end the launch when the test has passed.
         """
         test = f"test_{id(action)}_{test_suffix}"
-        written, collate, matches, patterns = output_test
+        output, collate, matches, patterns = output_test
         missing_patterns = list(patterns)
         self._tests[test] = _RUNNING
 
         def on_stdout(event: Any) -> Any:
-            nonlocal written
-            written = collate(written, output_filter(event.text) if output_filter else event.text)
-            missing_patterns[:] = [text for text in missing_patterns if not matches(written, text)]
+            nonlocal output
+            output = collate(output, output_filter(event.text) if output_filter else event.text)
+            missing_patterns[:] = [text for text in missing_patterns if not matches(output, text)]
             return None if missing_patterns else self._handle_pass(test, side_effect)
 
         def on_exit(*_: Any) -> Any:

@@ -50,7 +50,7 @@ class SideTopic:
         self.close()
         self._paused_messages = deque(maxlen=max(1, qos.depth))
         try:
-            self._subscription = self._host.context.node.create_subscription(self._type, topic, self._received, qos)
+            self._subscription = self._host.context.node.create_subscription(self._type, topic, self._on_received, qos)
         except LinkwrightError as error:
             return phrase("Error subscribing: {message}", message=error.diagnostics[0].message)
         return None
@@ -68,7 +68,7 @@ class SideTopic:
         while self._paused_messages and not self._host.time.paused:
             self._on_message(self._paused_messages.popleft())
 
-    def _received(self, message: Any) -> None:
+    def _on_received(self, message: Any) -> None:
         if self._host.time.paused:
             self._paused_messages.append(message)
         else:
@@ -271,7 +271,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._subscription = self.context.node.create_subscription(
                 message,
                 topic,
-                self._received,
+                self._on_received,
                 qos,
                 event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._on_incompatible_qos),
             )
@@ -378,7 +378,7 @@ class TopicDisplay(DataDisplay, ABC):
 
     # --- messages ----------------------------------------------------------------------------------------------
 
-    def _received(self, message: Any) -> None:
+    def _on_received(self, message: Any) -> None:
         self._count += 1
         if self._count == 1:
             self._report_count()

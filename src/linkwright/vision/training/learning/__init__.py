@@ -1,4 +1,4 @@
 """The code that imports PyTorch.
 
-Call `linkwright.vision.training.library.need_pytorch` before importing it.
+Call `linkwright.vision.training.library.require_pytorch` before importing it.
 """
