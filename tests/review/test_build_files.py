@@ -61,6 +61,7 @@ FILES = {
          ["installed executables: 'driver': lib/arm -> bin", "installed executables: 'tuner': lib/arm -> bin"], True),
         ("set(CMAKE_CXX_STANDARD 14)", "set(X 1) # a comment\nset(CMAKE_CXX_STANDARD 14)", [], False),
         ("install(DIRECTORY launch config", "install(DIRECTORY\n  config\n  launch", [], False),
+        ("project(arm)", "project(arms)", [], False),
     ],
 )  # fmt: skip
 def test_changes_of_cmake_files_are_reported(repository, compare, old, new, expected, is_breaking):

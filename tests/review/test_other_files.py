@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.review.reports.text import as_text
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
@@ -435,4 +436,21 @@ def test_other_kinds_of_dependencies_are_one_line(repository, compare):
     assert sentences(subject(compare(repository), "a/package.xml")) == [
         "format: 3 -> 2",
         "exec_depend -> depend: geometry_msgs, rclcpp, sensor_msgs",
+    ]
+
+
+def test_files_that_are_not_compared_have_their_states(package, compare):
+    package.commit({"a/old.txt": "old", "a/same.txt": "same", "a/moved.txt": "a text that moves\n" * 9})
+    textures = {f"a/textures/t{n}.png": "png" for n in range(5)}
+    robot = {"a/mjcf/arm.xml": "<mujoco model='arm'/>\n"}
+    moved = {"a/moved.txt": None, "a/new/moved.txt": "a text that moves\n" * 9}
+    package.commit({"a/old.txt": None, "a/same.txt": "other", **moved, **textures, **robot})
+    lines = as_text(compare(package, "HEAD~1..HEAD")).split("\n\n")[0].splitlines()
+    assert lines == [
+        "other changed files",
+        "  a/mjcf/arm.xml (added, robot or world of MuJoCo, not compared)",
+        "  a/new/moved.txt (renamed from a/moved.txt)",
+        "  a/old.txt (removed)",
+        "  a/same.txt",
+        "  a/textures/ (5 files, added)",
     ]

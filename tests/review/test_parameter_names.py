@@ -170,3 +170,21 @@ def test_inserted_item_of_a_list_does_not_shift_the_others(changes_of):
 def test_many_changes_of_a_list_are_one_line(changes_of):
     found, _ = changes_of(POINTS, POINTS.replace("0.0,", "2.0,"))
     assert found == ["list vertices: 22 values changed"]
+
+
+LAYERS = """costmap:
+  ros__parameters:
+    plugins: [voxels]
+    voxels:
+      height: 2.0
+      size: 16
+      source: scan
+"""
+
+
+def test_renamed_plugin_is_compared_with_the_old_one(changes_of):
+    found, found_breaking = changes_of(LAYERS, LAYERS.replace("voxels", "cubes").replace("16", "10"))
+    part = "costmap.ros__parameters"
+    renamed = f"{part}.voxels renamed to {part}.cubes"
+    assert found == [renamed, f"{part}.plugins [voxels] -> [cubes]", f"{part}.cubes.size 16 -> 10"]
+    assert found_breaking == found[1:2]

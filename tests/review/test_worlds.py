@@ -100,3 +100,48 @@ def test_added_element_is_shown_with_its_attributes(repository, compare):
     assert sentences(subject(compare(repository), PATH)) == [
         "world yard plugin Entity context menu filename=Menu added"
     ]
+
+
+HOUSE = """<sdf version="1.9"><world name="house">
+{links}
+<include><name>box</name><pose>1 0 0 0 0 0</pose><uri>model://crate</uri></include>
+<include><pose>2 0 0 0 0 0</pose><uri>model://lamp</uri></include>
+</world></sdf>
+""".format(
+    links="\n".join(
+        f'<model name="m{n}"><link name="wall_{n}"><visual name="v{n}"><transparency>0.5</transparency></visual></link>'
+        "</model>"
+        for n in range(4)
+    )
+)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("<name>box<", "<name>crate_1<", ["world house include crate_1 name: box -> crate_1"], True),
+        ("<include><pose>2", "<include><name>lamp_1</name><pose>2",
+         ["world house include lamp_1 name lamp_1 added"], False),
+        ("<include><name>box</name><pose>1 0 0 0 0 0</pose><uri>model://crate</uri></include>", "",
+         ["world house include box removed"], True),
+        ("<include><pose>2 0 0 0 0 0</pose><uri>model://lamp</uri></include>", "",
+         ["world house include model://lamp removed"], False),
+        ("model://crate", "model://barrel", ["world house include box uri: model://crate -> model://barrel"], False),
+    ],
+)  # fmt: skip
+def test_included_models_are_compared_by_address(repository, compare, old, new, expected, is_breaking):
+    assert old in HOUSE
+    repository.commit({PATH: HOUSE})
+    repository.write({PATH: HOUSE.replace(old, new)})
+    result = compare(repository)
+    assert sentences(subject(result, PATH)) == expected
+    assert bool(breaking(result)) is is_breaking
+
+
+def test_equal_changes_at_different_places_are_one(repository, compare):
+    repository.commit({PATH: HOUSE})
+    repository.write({PATH: HOUSE.replace("0.5", "0.2")})
+    (change,) = subject(compare(repository), PATH).changes
+    assert str(change.sentence) == "world house model m0 link wall_0 visual v0 transparency: 0.5 -> 0.2"
+    assert change.other_names[0] == "m1 link wall_1 visual v1"
+    assert len(change.other_names) == 3

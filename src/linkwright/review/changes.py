@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Hashable, Sequence
+from collections.abc import Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import NamedTuple
@@ -253,6 +253,7 @@ class Review:
         new_name: the new version in git's notation, or empty for the working tree.
         subjects: the compared files, with their differences.
         other_files: the changed files of other kinds, by path.
+        file_states: what happened to other files that are not in both versions under the same path, by path.
         new_findings: the findings of `linkwright check` that the old version does not have.
         fixed_findings: the findings of the old version that the new version does not have.
         notes: the parts that the review does not cover.
@@ -262,6 +263,7 @@ class Review:
     new_name: str
     subjects: Sequence[Subject] = ()
     other_files: Sequence[str] = ()
+    file_states: Mapping[str, Phrase] = field(default_factory=dict)
     new_findings: Sequence[Diagnostic] = ()
     fixed_findings: Sequence[Diagnostic] = ()
     notes: Sequence[Phrase] = field(default_factory=tuple)

@@ -29,6 +29,7 @@ from linkwright.review.kinds import LAUNCH_HELPER, KindRule, may_help_launch_fil
 from linkwright.review.launches.formats import with_other_formats
 from linkwright.review.launches.helpers import makes_actions
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
+from linkwright.review.other_files import file_states
 from linkwright.review.parts import compare_parts
 from linkwright.review.references import lost_references
 from linkwright.review.robots.lone_robots import read_lone_robot, robot_text
@@ -113,11 +114,13 @@ class _Reviewer:
             for change in subject.changes
             if change.location is not None
         } | {subject.path for subject in all_subjects if not subject.is_empty}
+        other_files = [file for file in self._changed_files if not {file.old_path, file.new_path} & (compared | parts)]
         return Review(
             self._versions.old.name,
             self._versions.new.name,
             grouped_meshes([subject for subject in all_subjects if not subject.is_empty and subject not in untouched]),
-            [file.path for file in self._changed_files if not {file.old_path, file.new_path} & (compared | parts)],
+            [file.path for file in other_files],
+            file_states(self._versions, other_files),
             *compare_findings(self._versions, old_findings, new_findings, self._new_paths),
             list(dict.fromkeys([*self._notes(), *missing_notes(all_subjects), *unreadable_notes(untouched)])),
         )

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 from linkwright.descriptions.comparison.numbers import comparable_text
 from linkwright.xmltree import Element
 
-_RENAMED = frozenset({"world", "model", "link", "joint", "sensor", "frame", "plugin"})
-"""The tags of elements whose names are used by other programs."""
+_RENAMED = frozenset({"world", "model", "link", "joint", "sensor", "frame", "plugin", "include"})
+"""The tags of elements whose names other programs use."""
 _MIN_SIMILARITY = 0.5
 _MAX_PAIRS = 2500
 """The maximum number of possible pairs. Descriptions with more pairs differ in their contents rather than in names."""
@@ -49,9 +49,16 @@ def _similarity(old: Element, new: Element) -> float:
     """Return the fraction of the contents that is equal, from 0 to 1."""
     if old.tag == "plugin" and old.attributes.get("filename") != new.attributes.get("filename"):
         return 0.0
+    if old.tag == "include" and _address(old) != _address(new):
+        return 0.0
     first, second = Counter(_contents(old, "")), Counter(_contents(new, ""))
     total = first.total() + second.total()
     return 2 * (first & second).total() / total if total else 0.0
+
+
+def _address(include: Element) -> str:
+    uri = include.first("uri")
+    return "" if uri is None else uri.text().strip()
 
 
 def _contents(element: Element, path: str) -> Iterator[str]:

@@ -76,6 +76,7 @@ class BuildFacts:
         is_complete: whether `files` has all files.
         rest: the other commands or settings, each with its name and its text.
         package: the path of the folder of the package relative to the root.
+        project: the name of the package; empty if it is not known.
     """
 
     facts: list[Fact] = field(default_factory=list)
@@ -83,6 +84,13 @@ class BuildFacts:
     is_complete: bool = True
     rest: list[tuple[str, str]] = field(default_factory=list)
     package: str = ""
+    project: str = ""
+
+    def place(self, path: str) -> str:
+        """Return an installed path without the name of the package, whose change the manifest reports."""
+        parts = PurePosixPath(path).parts
+        is_own = len(parts) > 1 and parts[1] == self.project
+        return PurePosixPath(parts[0], *parts[2:]).as_posix() if is_own else path
 
 
 def compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
@@ -94,7 +102,9 @@ def compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         )
         for name, fact in new_facts.items():
             before = old_facts.get(name)
-            if before is not None and before.value != fact.value and before.value and fact.value:
+            if before is None or not before.value or not fact.value:
+                continue
+            if old.place(before.value) != new.place(fact.value):
                 text = phrase(
                     "{kind}: '{name}': {old} -> {new}", kind=kind.title, name=name, old=before.value, new=fact.value
                 )
@@ -156,7 +166,7 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             continue
         if new_target is None:
             removed.append(target)
-        elif new_source == source:
+        elif new_source == source and old.place(target) != new.place(new_target):
             moved.setdefault((_folder(target), _folder(new_target)), []).append(_name(target))
     added = [
         target

@@ -41,18 +41,25 @@ def _read(version: Version, path: str) -> BuildFacts:
     commands = list(CMakeProgram(file.parent).run(source))
     for reader in (_targets, _interfaces, _exports, _packages, _tests, _settings):
         facts.facts += reader(commands)
+    cmake = read_cmake(source, file.parent)
+    _read_files(facts, cmake, file.parent)
     facts.rest = [
-        (_name_of(command), " ".join(word for word in command.words if not word.endswith(_INTERFACE_SUFFIXES)))
+        (_name_of(command), _own_text(command, facts.project))
         for command in commands
         if command.name not in _FACT_COMMANDS and not _is_test(command) and not _is_variable(command)
     ]
-    _read_files(facts, read_cmake(source, file.parent), file.parent)
     return facts
 
 
 def _name_of(command: Command) -> str:
     """Return the name of a command, or of the variable that it sets."""
     return command.words[0] if command.name == "set" else command.name
+
+
+def _own_text(command: Command, project: str) -> str:
+    """Return the arguments of a command without interfaces, and without the name of the project."""
+    words = [word for word in command.words if not word.endswith(_INTERFACE_SUFFIXES)]
+    return " ".join("${PROJECT_NAME}" if word == project else word for word in words)
 
 
 def _is_variable(command: Command) -> bool:
@@ -71,6 +78,7 @@ def _parent(path: str) -> str:
 def _read_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
     """Add the files that are copied. Programs are executables."""
     facts.is_complete = cmake.is_complete
+    facts.project = "" if cmake.project is None else cmake.project.text
     try:
         facts.files = {file.destination: file.source for file in cmake.installed(package) if file.content is None}
     except FileNotFoundError:

@@ -53,3 +53,28 @@ class MergedPaths:
         if len(names) > _MAX_WORDS:
             text = f"{text}, ... ({len(names)})"
         return " ".join([*words[:place], text, *words[place + 1 :]])
+
+
+_NAMED = frozenset(
+    {"world", "model", "include", "link", "joint", "visual", "collision", "sensor", "light", "plugin", "frame", "actor"}
+)
+"""The tags of elements with names."""
+
+
+def path_pattern(path: str) -> tuple[str, ...]:
+    """Return the words of a path, in which the names of elements are empty.
+
+    Equal changes with equal patterns belong together, such as of the visuals of all links.
+    """
+    words = path.split(" ")
+    return tuple("" if before in _NAMED else word for before, word in zip(["", *words], words, strict=False))
+
+
+def differing_parts(paths: Sequence[str]) -> list[str]:
+    """Return paths of the same number of words without the words that all of them begin or end with."""
+    rows = [path.split(" ") for path in paths]
+    columns = list(zip(*rows, strict=True))
+    places = [place for place, words in enumerate(columns) if len(set(words)) > 1]
+    if not places:
+        return list(paths)
+    return [" ".join(words[places[0] : places[-1] + 1]) for words in rows]

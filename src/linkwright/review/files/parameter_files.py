@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
@@ -12,14 +11,19 @@ from linkwright.diagnostics import phrase
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.files.bridges import compare_bridges, read_bridges
-from linkwright.review.files.parameter_names import NameRules, controllers, has_other_type, is_parameter, renamed_parts
+from linkwright.review.files.parameter_names import (
+    NameRules,
+    has_other_type,
+    is_parameter,
+    part_names,
+    renamed_node_reason,
+    renamed_parts,
+)
 from linkwright.review.files.value_changes import ValueChange, merged_values
 from linkwright.review.files.yaml_lists import item_labels
 from linkwright.review.files.yaml_values import YamlType, YamlValue, composed, yaml_values
 
 _MAX_BYTES = 4 << 20
-_SEPARATOR = re.compile(r"(?<=.)[.\[]")
-"""The separators of the names in a path."""
 
 
 def compare_parameter_files(pair: FilePair) -> None:
@@ -89,19 +93,14 @@ def _lone_parts(
     values: Mapping[str, YamlValue], others: Mapping[str, YamlValue]
 ) -> Iterator[tuple[str, list[YamlValue]]]:
     """Yield the parts of a file that another version does not have, as large as possible, with their values."""
-    other_parts = {part for name in others for part in _parts(name)}
+    other_parts = {part for name in others for part in part_names(name)}
     parts: dict[str, list[tuple[str, YamlValue]]] = {}
     for name, value in values.items():
         if name not in others:
-            part = next((part for part in _parts(name) if part not in other_parts), name)
+            part = next((part for part in part_names(name) if part not in other_parts), name)
             parts.setdefault(part, []).append((name, value))
     for part, named_values in parts.items():
         yield named_values[0][0] if len(named_values) == 1 else part, [value for _, value in named_values]
-
-
-def _parts(name: str) -> list[str]:
-    """Return the paths of the mappings that contain a value, the outermost first, and the path of the value."""
-    return [*(name[: match.start()] for match in _SEPARATOR.finditer(name)), name]
 
 
 def _is_below(name: str, part: str) -> bool:
@@ -115,9 +114,8 @@ def _with_new_names(
     for old_part, new_part in renamed_parts(old, new).items():
         inside = next(value for name, value in new.items() if _is_below(name, new_part))
         text = phrase("{old} renamed to {name}", old=old_part, name=new_part)
-        reason = phrase("the node '{name}' starts without these parameters", name=old_part)
-        is_controller = old_part in controllers(old)
-        pair.add(text, Location(pair.new_path, inside.line, inside.column), None if is_controller else reason)
+        location = Location(pair.new_path, inside.line, inside.column)
+        pair.add(text, location, renamed_node_reason(old_part, old))
         old = {
             f"{new_part}{name.removeprefix(old_part)}" if _is_below(name, old_part) else name: value
             for name, value in old.items()

@@ -27,8 +27,10 @@ _STAMPED_BY_DEFAULT = "use_stamped_vel"
 _NUMBER_OR_TRUTH = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
 _PLUGINS = re.compile(r"(^|[._])(plugins|plugin_names|plugin_ids)$")
 """The parameters with the names of plugins, which trees of behaviors and goals name."""
+_SEPARATOR = re.compile(r"(?<=.)[.\[]")
+"""The separators of the names in a path."""
 _MIN_FACTS = 6
-"""The number of parameters and values from which a node can be recognized under another name."""
+"""The number of parameters and values from which a part can be recognized under another name."""
 _MIN_SIMILARITY = 0.6
 
 
@@ -136,12 +138,16 @@ def _items(text: str) -> set[str]:
 
 
 def renamed_parts(old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> dict[str, str]:
-    """Return the parameters of nodes that have another name but similar values: the new names, by old name."""
-    old_parts, new_parts = _nodes(old), _nodes(new)
+    """Return the parts of a file that have another name but similar values: the new names, by old name.
+
+    Nodes, and plugins of a node, are such parts.
+    """
+    old_parts, new_parts = _lone_parts(old, new), _lone_parts(new, old)
     renamed: dict[str, str] = {}
-    for old_name in [name for name in old_parts if name not in new_parts]:
-        for new_name in [name for name in new_parts if name not in old_parts and name not in renamed.values()]:
-            first, second = old_parts[old_name], new_parts[new_name]
+    for old_name, first in old_parts.items():
+        for new_name, second in new_parts.items():
+            if new_name in renamed.values() or _parent(old_name) != _parent(new_name):
+                continue
             similarity = 2 * (first & second).total() / (first.total() + second.total())
             if first.total() >= _MIN_FACTS and similarity >= _MIN_SIMILARITY:
                 renamed[old_name] = new_name
@@ -149,12 +155,30 @@ def renamed_parts(old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) ->
     return renamed
 
 
-def _nodes(values: Mapping[str, YamlValue]) -> dict[str, Counter[str]]:
-    """Return the parameters of each node, alone and with their values."""
-    nodes: dict[str, Counter[str]] = {}
+def renamed_node_reason(part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
+    """Return why it is breaking to rename a part of the old file, or None if it has no parameters of a node."""
+    inside = next((match for name in values if (match := _NODE.match(name)) and name.startswith(f"{part}.")), None)
+    if inside is None or len(inside[0]) < len(part) or inside["node"] in controllers(values):
+        return None
+    return phrase("the node '{name}' starts without these parameters", name=inside["node"])
+
+
+def part_names(name: str) -> list[str]:
+    """Return the paths of the mappings and items that contain a value, the outermost first, and that of the value."""
+    return [*(name[: match.start()] for match in _SEPARATOR.finditer(name)), name]
+
+
+def _parent(part: str) -> str:
+    return (["", *part_names(part)])[-2]
+
+
+def _lone_parts(values: Mapping[str, YamlValue], others: Mapping[str, YamlValue]) -> dict[str, Counter[str]]:
+    """Return the largest parts that other values do not have: their names and values, alone and together."""
+    other_parts = {part for name in others for part in part_names(name)}
+    parts: dict[str, Counter[str]] = {}
     for name, value in values.items():
-        match = _NODE.match(name)
-        if match is not None:
-            parameter = name.removeprefix(match[0])
-            nodes.setdefault(match["node"], Counter()).update([parameter, f"{parameter}={value.text}"])
-    return nodes
+        part = next((part for part in part_names(name) if part not in other_parts), name)
+        if part != name:
+            inside = name.removeprefix(part)
+            parts.setdefault(part, Counter()).update([inside, f"{inside}={value.text}"])
+    return parts

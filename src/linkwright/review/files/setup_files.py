@@ -38,6 +38,7 @@ def _read(version: Version, path: str) -> BuildFacts:
     parent = PurePosixPath(path).parent.as_posix()
     facts = BuildFacts(package="" if parent == "." else parent)
     facts.is_complete = setup.has_call
+    facts.project = "" if setup.name is None else setup.name[0]
     for installed in setup.installed_files(file.parent):
         facts.files[installed.destination] = installed.source
     facts.facts += [

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.descriptions.comparison import Difference, ElementComparison
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.breaking import plugin_name_reason
+from linkwright.review.changes import Change, Location
 from linkwright.review.drawings.scene_images import world_images
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.merged_paths import MergedPaths
+from linkwright.review.files.merged_paths import MergedPaths, differing_parts, path_pattern
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
 
-_NAMED = re.compile(r"(?:^|.* )(?P<tag>world|model|link|joint|sensor|frame) (?P<name>\S+)")
+_NAMED = re.compile(r"(?:^|.* )(?P<tag>world|model|include|link|joint|sensor|frame) (?P<name>\S+)")
 """The path of an element whose name programs and other models use."""
+_INCLUDED_NAME = re.compile(r"(?:^|.* )include \S+ name")
+"""The path of the name of an included model."""
+_MIN_ALIKE = 3
+"""The number of equal changes of elements at different places from which they are one line."""
 
 
 def compare_worlds(pair: FilePair) -> None:
@@ -28,22 +35,73 @@ def compare_worlds(pair: FilePair) -> None:
         return
     differences = list(ElementComparison().child_differences(*elements))
     added = added_topics(differences)
-    merged = MergedPaths()
-    firsts: list[tuple[Difference, Phrase | None]] = []
-    for difference in differences:
-        reason = _breaking_reason(difference, added)
-        path = f"{difference.name} {difference.property}".strip()
-        content = "" if difference.element is None else _content(difference.element)
-        kind = difference.kind, difference.old, difference.new, content, None if reason is None else str(reason)
-        is_merged = path_of_renamed(difference, path) is None
-        if merged.add(path, kind if is_merged else id(difference)) == len(firsts):
-            firsts.append((difference, reason))
-    for path, (difference, reason) in zip(merged.paths, firsts, strict=True):
-        place = difference.new_place or difference.old_place
-        location = None if place is None else pair.location(place.span, is_old=difference.new_place is None)
-        pair.add(_sentence(difference, path), location, reason)
+    changes = [_WorldChange(difference, _breaking_reason(difference, added)) for difference in differences]
+    alone: list[_WorldChange] = []
+    for group in _alike(changes):
+        parts = differing_parts([change.path for change in group])
+        if len(group) < _MIN_ALIKE or not any(" " in part for part in parts):
+            alone += group
+            continue
+        locations = tuple(location for change in group[1:] if (location := change.location(pair)) is not None)
+        first = group[0]
+        text = _sentence(first.difference, first.path)
+        pair.changes.append(
+            Change(text, location=first.location(pair), other_names=tuple(parts[1:]), other_locations=locations)
+        )
+    _add_alone(pair, alone)
     if differences and pair.drawings.images:
         pair.images += world_images(pair)
+
+
+@dataclass(frozen=True)
+class _WorldChange:
+    """A difference between two worlds, and why it is breaking."""
+
+    difference: Difference
+    reason: Phrase | None
+
+    @property
+    def path(self) -> str:
+        """The names of the elements and of the value that differ."""
+        return f"{self.difference.name} {self.difference.property}".strip()
+
+    @property
+    def kind(self) -> Hashable:
+        """A key that is equal for equal changes of several elements."""
+        difference = self.difference
+        content = "" if difference.element is None else _content(difference.element)
+        reason = None if self.reason is None else str(self.reason)
+        return difference.kind, difference.old, difference.new, content, reason
+
+    @property
+    def is_renamed(self) -> bool:
+        """Whether the change is that of a name."""
+        return path_of_renamed(self.difference, self.path) is not None
+
+    def location(self, pair: FilePair) -> Location | None:
+        """Return the location in the new world, or in the old one of a removed element."""
+        place = self.difference.new_place or self.difference.old_place
+        return None if place is None else pair.location(place.span, is_old=self.difference.new_place is None)
+
+
+def _alike(changes: Sequence[_WorldChange]) -> Iterator[list[_WorldChange]]:
+    """Yield the changes in groups that are equal but for the names of the elements."""
+    groups: dict[Hashable, list[_WorldChange]] = {}
+    for number, change in enumerate(changes):
+        is_alone = change.reason is not None or change.is_renamed
+        groups.setdefault(number if is_alone else (path_pattern(change.path), change.kind), []).append(change)
+    yield from groups.values()
+
+
+def _add_alone(pair: FilePair, changes: Sequence[_WorldChange]) -> None:
+    """Add changes, of which those whose paths differ in one word are one."""
+    merged = MergedPaths()
+    firsts: list[_WorldChange] = []
+    for change in changes:
+        if merged.add(change.path, id(change) if change.is_renamed else change.kind) == len(firsts):
+            firsts.append(change)
+    for path, change in zip(merged.paths, firsts, strict=True):
+        pair.add(_sentence(change.difference, path), change.location(pair), change.reason)
 
 
 def _elements(file: Path) -> list[Element]:
@@ -83,8 +141,10 @@ def _breaking_reason(difference: Difference, added: frozenset[str]) -> Phrase | 
     path = f"{difference.name} {difference.property}".strip()
     is_removed = difference.kind == "removed" or (difference.kind == "changed" and difference.new is None)
     named = _NAMED.fullmatch(path_of_renamed(difference, path) or (path if is_removed else ""))
-    if named is not None:
+    if named is not None and not (named["tag"] == "include" and "/" in named["name"]):
         return _name_reason(named["tag"], named["name"])
+    if _INCLUDED_NAME.fullmatch(path) and difference.old:
+        return _name_reason("include", difference.old)
     if is_removed and difference.element is not None:
         reason = missing_topics_reason(difference, added)
         if reason is not None:

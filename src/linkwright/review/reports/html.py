@@ -16,6 +16,7 @@ from linkwright.review.reports.sections import (
     alike_text,
     breaking_changes,
     cases_text,
+    other_files,
     paths_text,
     repeated_text,
     sections_of,
@@ -68,7 +69,7 @@ def as_html(review: Review) -> str:
         *(_section(section, scenes) for section in sections_of(review)),
         *_findings(phrase("New findings"), review.new_findings),
         *_findings(phrase("Fixed findings"), review.fixed_findings),
-        *_list(phrase("Other changed files"), [f"<code>{escape(path)}</code>" for path in review.other_files]),
+        *_list(phrase("Other changed files"), [_other_file(*file) for file in other_files(review)]),
         *_list(phrase("Notes"), [_text(note) for note in review.notes]),
     ]
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{_text(title)}</title>'
@@ -77,6 +78,10 @@ def as_html(review: Review) -> str:
         f'<!doctype html>\n<html lang="{language()}"><head>{head}{style}</head>'
         f"<body><main>{''.join(parts)}</main><script>{_SCRIPT}</script>{scenes.script}</body></html>\n"
     )
+
+
+def _other_file(path: str, state: Phrase | None) -> str:
+    return f"<code>{escape(path)}</code>" + ("" if state is None else f" ({_text(state)})")
 
 
 def _breaking(review: Review) -> Iterator[str]:

@@ -14,6 +14,7 @@ from linkwright.review.reports.sections import (
     alike_text,
     breaking_changes,
     cases_text,
+    other_files,
     paths_text,
     repeated_text,
     sections_of,
@@ -77,9 +78,19 @@ def _parts(review: Review) -> Iterator[str]:
             )
     if review.other_files:
         title = phrase("Other changed files ({count})", count=len(review.other_files))
-        yield _details(_escape(title), (f"- {_code(path)}" for path in review.other_files))
+        yield _details(
+            _escape(title),
+            (
+                f"- {_code(path)}{'' if state is None else f' ({_escape(state)})'}"
+                for path, state in other_files(review)
+            ),
+        )
     if review.notes:
         yield "\n".join(f"> {_escape(note)}" for note in review.notes)
+
+
+def _other_file(path: str, state: Phrase | None) -> str:
+    return f"- {_code(path)}" + ("" if state is None else f" ({_escape(state)})")
 
 
 def _breaking_line(paths: Sequence[str], change: Change) -> str:

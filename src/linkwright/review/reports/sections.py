@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 
 from linkwright.diagnostics import Phrase, counted, joined_first, phrase, quoted_names
 from linkwright.review.changes import Change, Effect, Review, Subject
+from linkwright.review.other_files import grouped_files
 
 _MAX_NAMES = 3
 """The number of other links or joints that a line names."""
@@ -211,3 +212,13 @@ def summary(review: Review) -> Phrase:
         findings=counted("{count} new finding", "{count} new findings", len(review.new_findings)),
         fixed=counted("{count} fixed", "{count} fixed", len(review.fixed_findings)),
     )
+
+
+def other_files(review: Review) -> list[tuple[str, Phrase | None]]:
+    """Return the paths of the files that were not compared, and of folders with several of them, with their states."""
+    lines: list[tuple[str, Phrase | None]] = []
+    for path, count, state in grouped_files(review.other_files, review.file_states):
+        if count > 1 and state is not None:
+            state = phrase("{count} files, {state}", count=count, state=state)
+        lines.append((path, state))
+    return lines

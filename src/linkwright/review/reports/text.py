@@ -12,6 +12,7 @@ from linkwright.review.reports.sections import (
     Section,
     alike_text,
     cases_text,
+    other_files,
     repeated_text,
     sections_of,
     sentence_of,
@@ -34,8 +35,10 @@ def _lines(review: Review) -> Iterator[str]:
         yield from _section(section)
     if review.other_files:
         yield localized(phrase("other changed files"))
-        yield from (f"  {path}" for path in review.other_files[:_MAX_OTHER_FILES])
-        rest = len(review.other_files) - _MAX_OTHER_FILES
+        files = other_files(review)
+        for path, state in files[:_MAX_OTHER_FILES]:
+            yield f"  {path}" if state is None else f"  {path} ({localized(state)})"
+        rest = len(files) - _MAX_OTHER_FILES
         if rest > 0:
             yield f"  {localized(counted('{count} more file', '{count} more files', rest))}"
         yield ""

@@ -1,0 +1,85 @@
+"""The changed files that a review does not compare: what happened to them, and what they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.review.versions import Version, Versions
+
+_HEAD_BYTES = 4096
+"""The number of bytes at the beginning of a file that tell what it is."""
+_MIN_FILES = 4
+"""The number of files of a folder from which they are one line."""
+
+
+def file_states(versions: Versions, files: Iterable[ChangedFile]) -> dict[str, Phrase]:
+    """Return what happened to files that are not in both versions under the same path, and robots of other programs."""
+    states: dict[str, Phrase] = {}
+    for file in files:
+        state = _state(file)
+        version, path = (versions.new, file.new_path) if file.new_path else (versions.old, file.old_path)
+        kind = None if path is None or file.is_submodule else _kind(version, path)
+        if state is None:
+            state = kind
+        elif kind is not None:
+            state = phrase("{state}, {kind}", state=state, kind=kind)
+        if state is not None:
+            states[file.path] = state
+    return states
+
+
+def _state(file: ChangedFile) -> Phrase | None:
+    if file.old_path is None:
+        return phrase("added")
+    if file.new_path is None:
+        return phrase("removed")
+    return None if file.old_path == file.new_path else phrase("renamed from {path}", path=file.old_path)
+
+
+def _kind(version: Version, path: str) -> Phrase | None:
+    """Return what a file is if it is a robot or world of another simulator; these are not compared."""
+    suffix = PurePosixPath(path).suffix.lower()
+    if suffix in (".usd", ".usda", ".usdc"):
+        return phrase("robot or world in USD, not compared")
+    if suffix in (".wbt", ".proto") and _head(version, path).startswith(b"#VRML_SIM"):
+        return phrase("robot or world of Webots, not compared")
+    if suffix == ".xml" and b"<mujoco" in _head(version, path):
+        return phrase("robot or world of MuJoCo, not compared")
+    return None
+
+
+def _head(version: Version, path: str) -> bytes:
+    try:
+        with version.file(path).open("rb") as file:
+            return file.read(_HEAD_BYTES)
+    except OSError:
+        return b""
+
+
+def grouped_files(paths: Iterable[str], states: Mapping[str, Phrase]) -> list[tuple[str, int, Phrase | None]]:
+    """Return files, or a folder for several files in it to which the same happened.
+
+    Args:
+        paths: the paths of the files.
+        states: what happened to files, by path.
+
+    Returns:
+        The paths of the files or folders, the number of files, and what happened to them.
+    """
+    groups: dict[tuple[str, str], list[str]] = {}
+    for path in paths:
+        state = states.get(path)
+        folder = PurePosixPath(path).parent.as_posix()
+        is_simple = state is not None and not state.arguments and folder != "."
+        groups.setdefault((folder if is_simple else path, str(state)), []).append(path)
+    result: list[tuple[str, int, Phrase | None]] = []
+    for (folder, _), group in groups.items():
+        state = states.get(group[0])
+        if len(group) >= _MIN_FILES:
+            result.append((f"{folder}/", len(group), state))
+        else:
+            result += [(path, 1, state) for path in group]
+    return result
