@@ -708,7 +708,9 @@ def test_same_notations_in_python_and_xml(repository, compare):
 
 def test_prefix_of_frames_that_is_unknown_is_not_breaking(changes_of):
     text = """def generate_launch_description():
-    return LaunchDescription([Node(package="robot_state_publisher", executable="robot_state_publisher", parameters=[{}])])
+    return LaunchDescription([
+        Node(package="robot_state_publisher", executable="robot_state_publisher", parameters=[{}]),
+    ])
 """
     found, found_breaking = changes_of("arm.launch.py", text, "{}", '{"frame_prefix": Mixin.prefix()}')
     assert (len(found), found_breaking) == (1, [])
