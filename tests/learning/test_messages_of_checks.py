@@ -6,6 +6,7 @@ import pytest
 
 from linkwright.diagnostics.lookalikes import lookalike_hint, plain_text
 from linkwright.learning import NotYet, Work, expect_published
+from linkwright.learning.checks.programs import describe_failure
 from linkwright.testing import SteppedGraph
 
 TWIST = "geometry_msgs/msg/Twist"
@@ -219,3 +220,7 @@ def test_full_width_characters_are_replaced_or_reported():
     assert plain_text("０.２０ –１") == "0.20 -1"
     assert "'('" in lookalike_hint("init（）")
     assert lookalike_hint("init()") is None
+
+
+def test_timeout_of_a_busy_computer_is_explained(tmp_path):
+    assert "too busy" in describe_failure(TimeoutError(), tmp_path)

@@ -196,6 +196,8 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
             file=Path(match[1]).name,
             line=int(match[2]),
         )
+    elif isinstance(error, TimeoutError) and not str(error):
+        return phrase("the computer was too busy to run the check; check again")
     else:
         return phrase("the check failed: {error}", error=foreign(text))
     described = phrase("{file}, line {line}: {error}", file=Path(path).name, line=line, error=foreign(text))
