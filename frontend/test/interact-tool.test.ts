@@ -25,14 +25,14 @@ function event(part: Partial<ToolEvent> & Pick<ToolEvent, "type">): ToolEvent {
 beforeEach(() => {
   [told, under, takes, dragged] = [[], null, true, 0];
   const drawing = {
-    pointer: ({ type }: ScenePointer) => {
+    onPointer: ({ type }: ScenePointer) => {
       told.push(type);
       return takes;
     },
   } as unknown as Drawing;
   const stage = {
     isInteractive: true,
-    focalShapeVisible: false,
+    isFocalShapeVisible: false,
     viewport: { size: { width: 100, height: 100 } },
     picker: {
       objectAt: () => under && { display: "d", drawing, hit: { key: under, distance: 1, point: new Vector3() } },

@@ -31,7 +31,7 @@ export class TimeControlState {
     private readonly now: () => number = () => performance.now(),
   ) {
     connection.on("time_state", ({ paused, mode, source, sources }) => {
-      Object.assign(this, { paused, mode, source, sources });
+      Object.assign(this, { isPaused: paused, mode, source, sources });
       this.changed.emit();
     });
     connection.on("clock", (clock) => {

@@ -109,7 +109,7 @@ export class ViewState {
 
   /** Preserves the camera across reloads of the page. */
   preserveIn(memory: PageMemory): void {
-    const readState = () => ({ view: this.view, revision: this.revision, lookedAt: this.fittedTarget });
+    const readState = () => ({ view: this.view, revision: this.revision, fittedTarget: this.fittedTarget });
     memory.preserve("view", readState, (state: ReturnType<typeof readState>) => Object.assign(this, state));
   }
 

@@ -33,7 +33,7 @@ export class WordsState {
     private readonly voice: VoiceState,
   ) {
     connection.on("voice_words", ({ words, enough, file, problem }) => {
-      Object.assign(this, { words, enough, file, problem });
+      Object.assign(this, { words, requiredTakes: enough, file, problem });
       for (const { name } of words) this.newWords.delete(name);
       this.changed.emit();
     });
