@@ -98,6 +98,13 @@ def test_limits_of_a_joint_are_one_line(package, compare):
     assert str(sentence_of(found)) == expected
 
 
+def test_joint_without_limits_has_no_limits_of_zero(package, compare):
+    text = MACRO.replace('type="revolute"', 'type="continuous"').replace('lower="-1.5" upper="1.5" ', "")
+    package.write({SEGMENT: text})
+    lines = [line for line in sentences(subject(compare(package), ROBOT)) if "limit" in line]
+    assert lines == ["joint 'upper_joint': limit lower removed", "joint 'upper_joint': limit upper removed"]
+
+
 def test_added_sensors_have_their_topics(package, compare):
     package.commit({ROBOT: with_ranges("")})
     package.write({ROBOT: with_ranges(SENSOR)})
