@@ -71,6 +71,24 @@ def test_values_of_an_inertial_are_one_line(package, compare):
     assert str(sentence_of(found)) == expected
 
 
+def test_same_change_in_files_of_other_argument_sets_is_one_line(repository, compare):
+    part = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="base"/><link name="tip"/>{}</robot>'
+    joint = '<joint name="j" type="fixed"><parent link="base"/><child link="tip"/><origin xyz="{} 0 0"/></joint>'
+    robot = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r"><xacro:arg name="size" default="s"/>
+      <xacro:include filename="$(find a)/urdf/$(arg size).xacro"/></robot>"""
+    launch = """<launch><node pkg="robot_state_publisher" exec="robot_state_publisher">
+      <param name="robot_description" value="$(command 'xacro $(find-pkg-share a)/urdf/r.urdf.xacro size:=SIZE')"/>
+      </node></launch>"""
+    files = {"a/package.xml": "<package format='3'><name>a</name><version>1.0.0</version></package>"}
+    files |= {f"a/launch/{size}.launch.xml": launch.replace("SIZE", size) for size in "sml"}
+    files |= {f"a/urdf/{size}.xacro": part.format(joint.format(1)) for size in "sml"}
+    repository.commit({**files, "a/urdf/r.urdf.xacro": robot})
+    repository.write({f"a/urdf/{size}.xacro": part.format(joint.format(2)) for size in "sm"})
+    (found,) = subject(compare(repository), "a/urdf/r.urdf.xacro").changes
+    assert found.cases == ("size:=m", "size:=s")
+    assert len(found.other_locations) == 1
+
+
 def test_limits_of_a_joint_are_one_line(package, compare):
     package.write({SEGMENT: MACRO.replace('lower="-1.5" upper="1.5"', 'lower="-1" upper="1"')})
     (found,) = (change for change in subject(compare(package), ROBOT).changes if "limit" in str(change.sentence))
@@ -78,6 +96,13 @@ def test_limits_of_a_joint_are_one_line(package, compare):
         "joint 'upper_joint': limit: lower -1.5 -> -1 rad, upper 1.5 -> 1 rad; also 'middle_joint', 'lower_joint'"
     )
     assert str(sentence_of(found)) == expected
+
+
+def test_joint_without_limits_has_no_limits_of_zero(package, compare):
+    text = MACRO.replace('type="revolute"', 'type="continuous"').replace('lower="-1.5" upper="1.5" ', "")
+    package.write({SEGMENT: text})
+    lines = [line for line in sentences(subject(compare(package), ROBOT)) if "limit" in line]
+    assert lines == ["joint 'upper_joint': limit lower removed", "joint 'upper_joint': limit upper removed"]
 
 
 def test_added_sensors_have_their_topics(package, compare):
@@ -122,6 +147,17 @@ def test_edit_of_a_name_is_a_prefix_or_words():
     assert name_edit("link_0", "left_link_0") != name_edit("link_0", "link_0_left_")
 
 
+def test_parameters_that_hardware_gains_are_one_line(repository, compare):
+    hardware = '<ros2_control name="arm" type="system"><hardware><plugin>a/B</plugin>{}</hardware></ros2_control>'
+    robot = '<robot name="r"><link name="base"/>{}</robot>'
+    repository.commit({"a/urdf/r.urdf": robot.format(hardware.format(""))})
+    added = '<param name="ip">1.2.3.4</param><param name="port">80</param>'
+    repository.write({"a/urdf/r.urdf": robot.format(hardware.format(added))})
+    (found,) = subject(compare(repository), "a/urdf/r.urdf").changes
+    expected = "extension 'ros2_control arm': hardware param ip added: name=ip 1.2.3.4; also 'param port'"
+    assert str(sentence_of(found)) == expected
+
+
 ALL = ("sim:=true tool:=a", "sim:=true tool:=b", "sim:=false tool:=a", "")
 
 
@@ -132,6 +168,7 @@ ALL = ("sim:=true tool:=a", "sim:=true tool:=b", "sim:=false tool:=a", "")
         (("", ALL[2]), (ALL[0], ALL[1], ALL[2], ""), "without sim:=true"),
         (ALL[1:3], ALL, "with 2 of 4 argument sets"),
         (("",), ("", "sim:=true", "tool:=b"), "with the default arguments"),
+        (("a:=1 b:=1 c:=1 d:=1 e:=1",), ("a:=1 b:=1 c:=1 d:=1 e:=1", ""), "with a:=1 b:=1 c:=1 d:=1 ..."),
     ],
 )
 def test_argument_that_causes_a_change_is_named(cases, all_cases, expected):

@@ -11,6 +11,8 @@ from linkwright.review.changes import Change, Location
 
 _PART = re.compile(r"(?P<part>(?:joint|gpio|sensor) \S+) (?P<rest>.+)")
 """A property of hardware of ros2_control below one of its joints, GPIOs or sensors."""
+_PARAMETER = re.compile(r"(?P<parent>(?:.* )?)(?P<parameter>param \S+)")
+"""A parameter of hardware of ros2_control, or of one of its joints, as a whole."""
 _TOKEN = re.compile(r"[^\W_]+|[\W_]")
 """A word or number of a name, or a character between two of them."""
 _NO_NAME = re.compile(r"None|[\d\s.,;:+\-e<>()]*", re.ASCII)
@@ -24,7 +26,7 @@ def merged(changes: Iterable[Change]) -> list[Change]:
 
     Names are equal changes if the same part of them is replaced, such as a prefix that all links get.
     """
-    for key, names in ((_content, _names), (_content_of_part, _part_names)):
+    for key, names in ((_content, _names), (_content_of_part, _part_names), (_parent_of_parameter, _parameter_names)):
         groups: dict[Hashable, list[Change]] = {}
         for number, change in enumerate(changes):
             content = key(change) if change.name else None
@@ -110,6 +112,19 @@ def _part_names(change: Change) -> tuple[str, ...]:
         return (f"{change.property_name} -> {new_name}",)
     part = _PART.fullmatch(change.property_name)
     return (change.name,) if part is None else (part["part"],)
+
+
+def _parent_of_parameter(change: Change) -> Hashable | None:
+    """Return a key that is equal for parameters that the same element has gained or lost; None for other changes."""
+    parameter = _PARAMETER.fullmatch(change.property_name)
+    if parameter is None or change.reason is not None or change.other_names or "old" in change.core.arguments:
+        return None
+    return change.name, parameter["parent"], change.core.template
+
+
+def _parameter_names(change: Change) -> tuple[str, ...]:
+    parameter = _PARAMETER.fullmatch(change.property_name)
+    return (change.name,) if parameter is None else (parameter["parameter"],)
 
 
 def _as_one(changes: list[Change], names_of: Callable[[Change], tuple[str, ...]]) -> Change:

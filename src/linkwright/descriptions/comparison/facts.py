@@ -177,6 +177,9 @@ def joint_blocks(joint: Joint) -> list[Block]:
         if joint.mimic is not None and tag == "mimic":
             block.words("joint", joint.mimic.joint, child, "joint")
         for name in units:
+            is_unlimited = joint.type == "continuous" and name in ("lower", "upper")
+            if is_unlimited and (child is None or name not in child.attributes):
+                continue  # without the attribute, the position has no limit, and not the limit 0
             block.number(name, getattr(value, name, None), units[name], child, name)
         blocks.append(block)
     return blocks

@@ -20,6 +20,8 @@ _MAX_PATHS = 4
 _MAX_NAMED_CASES = 1
 """The number of argument sets that a line names."""
 
+_MAX_ARGUMENTS = 4
+"""The number of arguments of an argument set that a line names."""
 _ARGUMENT = re.compile(r" (?=[\w.-]+:=)")
 """The space between two arguments in the name of an argument set."""
 
@@ -171,7 +173,8 @@ def _distinct_values(name: str, cases: Sequence[str]) -> str:
     """Return the values of an argument set that the first set does not have, or those that only the first set has."""
     words = [set(_ARGUMENT.split(case)) for case in cases]
     others = set.intersection(*words) if name == cases[0] else words[0]
-    return " ".join(word for word in _ARGUMENT.split(name) if word not in others) or name
+    distinct = [word for word in _ARGUMENT.split(name) if word not in others]
+    return " ".join([*distinct[:_MAX_ARGUMENTS], *(["..."] if len(distinct) > _MAX_ARGUMENTS else [])]) or name
 
 
 def repeated_text(path: str, count: int) -> Phrase:

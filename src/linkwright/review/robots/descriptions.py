@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Iterator, Sequence, Sized
+from collections.abc import Hashable, Iterable, Iterator, Sequence, Sized
 from dataclasses import dataclass, field, replace
 
 from linkwright.descriptions.comparison import Comparison, Difference, sentence
@@ -56,7 +56,7 @@ def compare_descriptions(pair: FilePair) -> None:
             pair.figures += figures_of(old, new)
             if may_change_collisions(comparison.differences):
                 collisions = list(collision_changes(old, new, comparison.links))
-    pair.changes += merged(group.change(pair.cases) for group in groups.values())
+    pair.changes += merged(group.change(pair.cases) for group in _united(groups.values()))
     pair.changes += collisions
 
 
@@ -83,6 +83,20 @@ class _Group:
         cases = () if len(self.cases) == len(set(all_cases)) else tuple(self.cases)
         reason = common_reason(self.reasons)
         return replace(self.first, cases=cases, reason=reason, other_names=tuple(self.names)[1:])
+
+
+def _united(groups: Iterable[_Group]) -> Iterable[_Group]:
+    """Return groups in which the same change in the files of several argument sets is one."""
+    united: dict[Hashable, _Group] = {}
+    for group in groups:
+        key = group.first.effect, str(group.first.sentence), tuple(group.names)
+        known = united.setdefault(key, group)
+        if known is group:
+            continue
+        known.cases |= group.cases
+        if group.first.location is not None:
+            known.first = replace(known.first, other_locations=(*known.first.other_locations, group.first.location))
+    return united.values()
 
 
 # --- changes of a robot ----------------------------------------------------------------------------------------------
