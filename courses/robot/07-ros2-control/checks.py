@@ -136,7 +136,7 @@ def expect_topic(running, controller, topic, condition=None):
     try:
         running.wait_for_message(topic, *([] if condition is None else [condition]))
     except NotYet as reason:
-        if "the launch says" in str(reason):
+        if "the launch says" in str(reason) or "/controller_manager" not in running.nodes():
             raise
         raise NotYet(
             en=f"Nothing of {controller} is published on {topic}; the launch file must start 'spawner' with "
