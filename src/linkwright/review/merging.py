@@ -36,7 +36,7 @@ def merged(changes: Iterable[Change]) -> list[Change]:
 
 
 def common_reason(reasons: Iterable[Phrase | None]) -> Phrase | None:
-    """Return why several changes are breaking, of which each has a reason with its own name; None if they are not."""
+    """Return one reason for breaking changes whose reasons differ in their names; None if they are not breaking."""
     distinct = list({str(reason): reason for reason in reasons}.values())
     first = distinct[0]
     return first if first is None or len(distinct) == 1 else phrase("{reason}; likewise for the others", reason=first)
@@ -55,7 +55,7 @@ def _content(change: Change) -> Hashable:
 
 
 def name_edit(old: str, new: str) -> Hashable:
-    """Return the part of a name that is replaced and its replacement, or both values if they are no names."""
+    """Return the part of a name that is replaced and its replacement, or both values unless they are names."""
     if _NO_NAME.fullmatch(old) or _NO_NAME.fullmatch(new):
         return old, new
     start, end = _common_ends(old, new)

@@ -1,1 +1,1 @@
-"""What a report shows: images and scenes in 3D."""
+"""Drawings in reports: images and scenes in 3D."""

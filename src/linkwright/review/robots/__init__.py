@@ -1,1 +1,1 @@
-"""What a reader sees of two robots: their figures, reach, collisions and shared argument sets."""
+"""Comparisons of two robots: figures, reach, collisions and shared argument sets."""
