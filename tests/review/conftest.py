@@ -52,3 +52,17 @@ def sentences(subject: Subject) -> list[str]:
 
 def breaking(result: Review) -> list[str]:
     return [str(change.sentence) for _, change in result.breaking_changes]
+
+
+@pytest.fixture
+def changes_of(repository, compare):
+    """Review a replacement in a launch file, and return the sentences of all changes and of the breaking ones."""
+
+    def run(name: str, text: str, old: str, new: str):
+        assert old in text
+        repository.commit({f"arm/launch/{name}": text})
+        repository.write({f"arm/launch/{name}": text.replace(old, new)})
+        result = compare(repository)
+        return [sentence for subject in result.subjects for sentence in sentences(subject)], breaking(result)
+
+    return run

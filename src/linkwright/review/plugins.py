@@ -80,7 +80,7 @@ def _sensors_with_topics(element: Element) -> Iterator[Phrase]:
 
 
 def contents_text(element: Element) -> Phrase | None:
-    """Return the topics of a plugin, or the plugins and sensors in another element with theirs; None if there is none."""
+    """Return the topics of a plugin, or the plugins and sensors in another element with theirs, or None."""
     if element.tag == "plugin":
         topics = plugin_topics(element)
         return phrase("topics {topics}", topics=quoted_names(topics)) if topics else None

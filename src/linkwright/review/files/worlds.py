@@ -85,7 +85,7 @@ class _WorldChange:
 
 
 def _alike(changes: Sequence[_WorldChange]) -> Iterator[list[_WorldChange]]:
-    """Yield the changes in groups that are equal but for the names of the elements."""
+    """Yield the changes in groups that are equal except for the names of the elements."""
     groups: dict[Hashable, list[_WorldChange]] = {}
     for number, change in enumerate(changes):
         is_alone = change.reason is not None or change.is_renamed
