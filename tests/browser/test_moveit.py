@@ -16,12 +16,12 @@ from tests.rviz.displays.moveit.arm import (
     ARM,
     SolidPrimitive,
     attached,
+    collision_object,
     pose,
     primitive,
     scene,
     signed,
     state,
-    thing,
     trajectory,
 )
 
@@ -46,13 +46,17 @@ MOTION_PLANNING = configuration(
 def kitchen(*, wrist: float = 0.2):
     """A scene with a table, a ball, a cone, an octomap, and a cup in the hand."""
     robot = state(shoulder=0.3, wrist=wrist)
+    cylinder = primitive(SolidPrimitive.CYLINDER, 0.3, 0.08)
     robot.attached_collision_objects = [
-        attached("hand", thing("cup", primitive(SolidPrimitive.CYLINDER, 0.3, 0.08), frame="hand", at=pose(z=0.25)))
+        attached(
+            "hand",
+            collision_object("cup", cylinder, frame="hand", at=pose(z=0.25)),
+        )
     ]
     kitchen_scene = scene(
-        thing("table", primitive(SolidPrimitive.BOX, 1.0, 2.0, 0.05), at=pose(x=1.6, z=0.4)),
-        thing("ball", primitive(SolidPrimitive.SPHERE, 0.2), at=pose(x=1.6, y=0.5, z=0.63)),
-        thing("cone", primitive(SolidPrimitive.CONE, 0.5, 0.2), at=pose(x=1.6, y=-0.5, z=0.68)),
+        collision_object("table", primitive(SolidPrimitive.BOX, 1.0, 2.0, 0.05), at=pose(x=1.6, z=0.4)),
+        collision_object("ball", primitive(SolidPrimitive.SPHERE, 0.2), at=pose(x=1.6, y=0.5, z=0.63)),
+        collision_object("cone", primitive(SolidPrimitive.CONE, 0.5, 0.2), at=pose(x=1.6, y=-0.5, z=0.68)),
         robot=robot,
     )
     octomap = kitchen_scene.world.octomap

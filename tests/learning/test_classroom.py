@@ -128,7 +128,7 @@ def test_failed_check_names_unfinished_earlier_steps(workspace, capsys, grown_co
     status, out, _ = learn(capsys, "check", "b/one", "--course", grown_course)
     assert (status, out.splitlines()[-1]) == (
         1,
-        "steps before this one that are not done: 2; `linkwright learn catch-up b/one` takes them over from the course",
+        "unfinished steps before this one: 2; `linkwright learn catch-up b/one` takes them over from the course",
     )
     learn(capsys, "catch-up", "b/one", "--yes")
     assert "catch-up" not in learn(capsys, "check", "b/one")[1]

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_action, get_service
-from tests.control.controllers.arm import Asked, trajectory
+from tests.control.controllers.arm import SentGoal, trajectory
 from tests.simulation.test_plugins import SECOND, served
 
 ACTION = "control_msgs/action/FollowJointTrajectory"
@@ -111,9 +111,9 @@ class Arm:
     def positions(self) -> list[float]:
         return [self.server.simulation.joint_state(f"arm::{joint}")[0] for joint in JOINTS]
 
-    def ask(self, *points: Any) -> Asked:
+    def ask(self, *points: Any) -> SentGoal:
         goal = get_action(ACTION).Goal(trajectory=trajectory(*points))
-        return Asked(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # it has a node
+        return SentGoal(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # it has a node
 
 
 async def test_controller_can_start_before_first_update(tmp_path):
