@@ -48,7 +48,7 @@ XML_LAUNCH = """<launch>
         ('name="right"', 'name="rear"', "node 'arm/camera': name right -> rear", True),
         ('        Node(package="arm", executable="camera", name="left"),\n', "", "node 'arm/camera' removed", True),
         ("    return Launch", "    print('starting')\n    return Launch",
-         "other code changed", False),
+         "other code added: print('starting')", False),
         ('"arm/cmd"', '"cmd_vel"', "node 'arm/driver': remapping cmd arm/cmd -> cmd_vel", True),
     ],
 )  # fmt: skip

@@ -38,7 +38,7 @@ ROBOT = "world yard model robot"
         ('<sensor name="lidar"', '<sensor name="laser"', f"{ROBOT} link base sensor lidar renamed to 'laser'", True),
         ('<frame name="tool">', '<frame name="hand">', f"{ROBOT} frame tool renamed to 'hand'", True),
         ('      <link name="wheel"/>\n', "", f"{ROBOT} link wheel removed", True),
-        (SENSOR, "", f"{ROBOT} link base sensor lidar removed", True),
+        (SENSOR, "", f"{ROBOT} link base sensor lidar removed: sensor 'lidar' with the topics 'scan'", True),
         ("<topic>scan<", "<topic>front/scan<", f"{ROBOT} link base sensor lidar topic: scan -> front/scan", True),
         ("<topic>scan</topic>", "", f"{ROBOT} link base sensor lidar topic removed", True),
         (">laser<", ">lidar<", f"{ROBOT} link base sensor lidar gz_frame_id: laser -> lidar", True),
