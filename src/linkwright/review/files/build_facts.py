@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
+from linkwright.review.versions import Version
 
 _MAX_NAMES = 8
 """The number of names that a line lists."""
@@ -93,7 +94,21 @@ class BuildFacts:
         return PurePosixPath(parts[0], *parts[2:]).as_posix() if is_own else path
 
 
-def compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
+def compare_build_files(pair: FilePair, read: Callable[[Version, str], BuildFacts]) -> None:
+    """Compare two versions of a build file.
+
+    Args:
+        pair: the versions.
+        read: the function that returns the facts of a version, from its path in the repository.
+    """
+    sides = ((pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path))
+    versions = {version.file(path): (version, path) for version, path in sides}
+    facts = pair.read(lambda file: read(*versions[file]))
+    if facts is not None:
+        _compare_facts(pair, *facts)
+
+
+def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Add the differences between the facts of two versions of a build file."""
     for kind in FactKind:
         old_facts, new_facts = (

@@ -11,7 +11,7 @@ from linkwright.packages.readers.cmake import CMakeFile, read_cmake
 from linkwright.packages.readers.cmake_language import Argument, CMakeProgram, Command, within_package
 from linkwright.packages.readers.cmake_syntax import is_open
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.build_facts import BuildFacts, Fact, FactKind, compare_facts
+from linkwright.review.files.build_facts import BuildFacts, Fact, FactKind, compare_build_files
 from linkwright.review.versions import Version
 
 CMAKE_FILE = "CMakeLists.txt"
@@ -27,11 +27,7 @@ _INTERFACE_SUFFIXES = (".msg", ".srv", ".action", ".idl")
 
 def compare_cmake_files(pair: FilePair) -> None:
     """Compare two versions of a ``CMakeLists.txt``, with its subdirectories, as far as CMake is not needed for it."""
-    sides = ((pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path))
-    versions = {version.file(path): (version, path) for version, path in sides}
-    facts = pair.read(lambda file: _read(*versions[file]))
-    if facts is not None:
-        compare_facts(pair, *facts)
+    compare_build_files(pair, _read)
 
 
 def _read(version: Version, path: str) -> BuildFacts:

@@ -11,7 +11,7 @@ from linkwright.packages.readers.installed import PROGRAM_GROUP
 from linkwright.packages.readers.python_values import PythonFile, argument_of
 from linkwright.packages.readers.setup_py import SetupFile, read_setup
 from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.files.build_facts import BuildFacts, Fact, FactKind, compare_facts
+from linkwright.review.files.build_facts import BuildFacts, Fact, FactKind, compare_build_files
 from linkwright.review.versions import Version
 
 SETUP_FILE = "setup.py"
@@ -22,11 +22,7 @@ _SHOWN = frozenset({"name", "version", "python_requires", "license"})
 
 def compare_setup_files(pair: FilePair) -> None:
     """Compare two versions of a ``setup.py`` without running it."""
-    sides = ((pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path))
-    versions = {version.file(path): (version, path) for version, path in sides}
-    facts = pair.read(lambda file: _read(*versions[file]))
-    if facts is not None:
-        compare_facts(pair, *facts)
+    compare_build_files(pair, _read)
 
 
 def _read(version: Version, path: str) -> BuildFacts:
