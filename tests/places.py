@@ -5,6 +5,8 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+import pytest
+
 REPOSITORY = Path(__file__).resolve().parents[1]
 PACKAGE = REPOSITORY / "robots" / "my_robot_description"
 GAZEBO_PACKAGE = REPOSITORY / "robots" / "my_robot_gazebo"
@@ -21,3 +23,8 @@ TUTORIAL_PACKAGES = [PACKAGE, *([PUBLISHED] if PUBLISHED.is_dir() else [])]
 def without_meshes(package: Path, folder: Path) -> Path:
     """A copy of a package in a folder as readers of the tutorial have it at first: meshes are downloaded."""
     return shutil.copytree(package, folder / package.name, ignore=shutil.ignore_patterns("meshes", "__pycache__"))
+
+
+BUILT_PAGE = REPOSITORY / "src" / "linkwright" / "page" / "built"
+needs_page = pytest.mark.skipif(not (BUILT_PAGE / "export").is_dir(), reason="the page was not built")
+"""The mark of tests that use the page. `make test` builds it; a run without it skips them."""

@@ -9,15 +9,14 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from linkwright.page.server import PAGE_FOLDER
 from linkwright.review.reports.markdown import MARKER
 from tests.ci.conftest import HOSTILE_BRANCH, Example
 from tests.ci.runner import TEMPLATES, Runner
 from tests.ci.service import TOKEN, Service
+from tests.places import needs_page
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the scripts are for Linux and macOS")
 
-needs_page = pytest.mark.skipif(not (PAGE_FOLDER / "export").is_dir(), reason="the page was not built")
 FILES = ["comment.md", "pull-request.txt", "report.html", "report.json", "report.sarif"]
 LINK = "\n[report.html](https://example.org/artifacts/8)\n"
 

@@ -10,12 +10,11 @@ from pathlib import Path
 import pytest
 import yaml
 
-from linkwright.page.server import PAGE_FOLDER
 from linkwright.review.reports.markdown import MARKER
 from tests.ci.conftest import HOSTILE_BRANCH, Example
 from tests.ci.runner import TEMPLATES, Runner
 from tests.ci.service import TOKEN, Service
-from tests.places import REPOSITORY
+from tests.places import REPOSITORY, needs_page
 from tests.repositories import ARM, Repository
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the scripts are for Linux and macOS")
@@ -119,7 +118,7 @@ def test_linkwright_is_cloned_from_url(service: Service, runner: Runner, gitlab:
     assert Path(folder).is_relative_to(runner.temporary)
 
 
-@pytest.mark.skipif(not (PAGE_FOLDER / "export").is_dir(), reason="the page was not built")
+@needs_page
 @pytest.mark.parametrize("scenes", ["false", "true"])
 def test_scenes_are_in_the_page_if_the_variable_says_so(runner: Runner, gitlab: GitLab, scenes: str) -> None:
     assert gitlab.run(LINKWRIGHT_SCENES=scenes).returncode == 0

@@ -10,11 +10,11 @@ import re
 import pytest
 
 from linkwright.cli import main
-from linkwright.page.server import PAGE_FOLDER
 from linkwright.panels.export import html
 from linkwright.review import open_versions, review
 from linkwright.review.drawings import scenes
 from linkwright.review.reports import as_html, scene_page
+from tests.places import needs_page
 from tests.repositories import PACKAGE, Repository
 
 PATH = "arm_description/urdf/box.urdf"
@@ -22,7 +22,6 @@ URDF = """<robot name="box">
   <link name="base"><visual><geometry><mesh filename="{uri}"/></geometry></visual></link>
 </robot>"""
 URI = "package://arm_description/meshes/a.stl"
-needs_page = pytest.mark.skipif(not (PAGE_FOLDER / "export").is_dir(), reason="the page was not built")
 
 
 def stl(height: float) -> bytes:

@@ -152,7 +152,8 @@ def _in_neighboring_folder(path: Path) -> Path | None:
         folders = [*sorted(folder.iterdir())[:_MAX_COMPARED], folder.parent]
     except OSError:
         return None
-    return next((other / path.name for other in folders if os.path.isfile(other / path.name)), None)  # noqa: PTH113
+    candidates = (other / path.name for other in folders)
+    return next((file for file in candidates if os.path.isfile(file)), None)  # noqa: PTH113 - is_file() raises for EACCES
 
 
 def _similar_files(name: str, names: Iterable[str]) -> list[str]:
