@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import sys
+import tempfile
+import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -13,7 +16,8 @@ from linkwright.lsp.python import router as router_module
 from linkwright.lsp.python.programs import Program
 from linkwright.lsp.python.router import Router
 from linkwright.lsp.python.servers import Message
-from tests.waiting import wait_until
+from linkwright.lsp.python.workspace_stubs import WorkspaceStubs
+from tests.waiting import SECONDS, wait_until
 
 SERVER = """
 import json, sys
@@ -211,3 +215,22 @@ def test_exit_ends_linkwright(connect: Callable[..., Connection]) -> None:
     connection = connect()
     connection.request(None, "exit", {})
     wait_until(lambda: connection.own.is_closed)
+
+
+def test_close_during_the_search_removes_the_stubs(
+    connect: Callable[..., Connection], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    started = threading.Event()
+
+    def update_slowly(_: WorkspaceStubs) -> None:
+        started.set()
+        time.sleep(0.3)  # until the router's thread has ended
+
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(WorkspaceStubs, "update", update_slowly)
+    connection = connect(program("ty"))
+    connection.open()
+    assert started.wait(SECONDS)
+    assert list(tmp_path.glob("linkwright_stubs_*"))
+    connection.router.close()
+    assert not list(tmp_path.glob("linkwright_stubs_*"))

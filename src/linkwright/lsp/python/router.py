@@ -300,15 +300,14 @@ class Router:
         folders = _folders(self._initialize)
 
         def search() -> None:
-            stubs = WorkspaceStubs(folders)
+            self._stubs = stubs = WorkspaceStubs(folders)  # set here, so that close() also removes them during a search
             stubs.update()
-            environment = program_environment(folders, stubs.folder)
-            self._events.put(partial(self._on_prepared, stubs, environment))
+            self._events.put(partial(self._on_prepared, program_environment(folders, stubs.folder)))
 
         self._search.submit(self._attempt, search)
 
-    def _on_prepared(self, stubs: WorkspaceStubs, environment: dict[str, str]) -> None:
-        self._stubs, self._environment = stubs, environment
+    def _on_prepared(self, environment: dict[str, str]) -> None:
+        self._environment = environment
         for program in self._programs.values():
             self._start(program)
         held, self._held = self._held or [], None
