@@ -80,8 +80,10 @@ commands:
   ahead_for:
     phrases: {en: ["[please] [go|drive] forward {distance}"], zh: ["[请]前进{distance}"]}
     drive: {x: 0.5, distance: "{distance}"}
-  turn_left: {phrases: {en: ["turn left {angle}"], zh: ["左转{angle}"]}, drive: {turn: 2, angle: "{angle}"}}
-  turn_right: {phrases: {en: ["turn right {angle}"], zh: ["右转{angle}"]}, drive: {turn: -2, angle: "{angle}"}}
+  turn_left: {phrases: {en: ["turn left"], zh: [左转]}, drive: {turn: 2}}
+  turn_left_by: {phrases: {en: ["turn left {angle}"], zh: ["左转{angle}"]}, drive: {turn: 2, angle: "{angle}"}}
+  turn_right: {phrases: {en: ["turn right"], zh: [右转]}, drive: {turn: -2}}
+  turn_right_by: {phrases: {en: ["turn right {angle}"], zh: ["右转{angle}"]}, drive: {turn: -2, angle: "{angle}"}}
   seek:
     phrases: {en: ["go to {object}", "find {object}"], zh: ["去{object}[那里]", "找{object}"]}
     publish: {topic: target, type: std_msgs/msg/String, message: {data: "{object}"}}
@@ -189,6 +191,9 @@ CASES = [
         "a misspelled slot",
         Edit(COMMANDS, 'zh: ["前进{distance}"]', 'zh: ["前进{distanse}"]'),
         says="distanse",
+    ),
+    wrong(
+        "grammar", "no turn without an angle", Edit(COMMANDS, "zh: [左转]", "zh: []"), says="'左转' is not understood"
     ),
     wrong("grammar", "no Chinese", Edit(COMMANDS, ', zh: ["左转{angle}"]', ""), says="'左转九十度' is not understood"),
     wrong(
