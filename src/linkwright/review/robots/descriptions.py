@@ -14,7 +14,7 @@ from linkwright.review.robots.cases import Case, cases, switched_cases
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.robots.collisions import collision_changes, may_change_collisions
 from linkwright.review.robots.figures import RobotMeasures, figures_of
-from linkwright.review.robots.joined_values import has_joined_values, joined_sentence, with_joined_values
+from linkwright.review.robots.joined_values import JoinedDifferences, with_joined_values
 from linkwright.review.file_pair import FilePair
 from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.drawings.images import view_images
@@ -158,8 +158,8 @@ def _location(pair: FilePair, difference: Difference) -> Location | None:
 
 def sentence_of_difference(difference: Difference) -> Phrase:
     """Return a difference in one line. A moved or rotated frame also has the distance or angle."""
-    if has_joined_values(difference):
-        return joined_sentence(difference)
+    if isinstance(difference, JoinedDifferences):
+        return difference.sentence()
     text = sentence(difference)
     old_path = path_of_renamed(difference, difference.property)
     if old_path is not None:
