@@ -285,6 +285,17 @@ def test_interface_changes_are_reported(repository, compare, old, new, sentence,
     assert (breaking(result) == [sentence]) is is_breaking
 
 
+def test_renumbered_constants_are_one_change(repository, compare):
+    text = "uint8 OFF=0\nuint8 ON=1\nuint8 FAULT=2\nuint8 UNKNOWN=3\nuint8 state\n"
+    repository.commit({"m/msg/State.msg": text})
+    new = "uint8 OFF=0\nuint8 IDLE=1\nuint8 ON=2\nuint8 FAULT=3\nuint8 UNKNOWN=4\nuint8 state\n"
+    repository.write({"m/msg/State.msg": new})
+    renumbered = "3 constants have other values: ON 1 -> 2, FAULT 2 -> 3, UNKNOWN 3 -> 4"
+    result = compare(repository)
+    assert sentences(subject(result, "m/msg/State.msg")) == ["constant 'IDLE' = 1 added", renumbered]
+    assert breaking(result) == [renumbered]
+
+
 def test_comment_in_interface_is_not_reported(repository, compare):
     repository.commit({"m/msg/Count.msg": "int32 count\n"})
     repository.write({"m/msg/Count.msg": "# How many\nint32 count\n"})

@@ -14,6 +14,8 @@ from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
 
 _SEPARATOR = "---"
+_MIN_RENUMBERED = 3
+"""The number of constants with other values from which they are one line. An inserted value renumbers those below."""
 _PARTS = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
 """The names of the structures of a message, a service and an action, in front of the names of fields."""
 
@@ -111,16 +113,22 @@ def _compare_constants(
     pair: FilePair, old: Sequence[Constant], new: Sequence[Constant], part: str, places: _Places
 ) -> None:
     old_values, new_values = ({constant.name: constant.value for constant in constants} for constants in (old, new))
-    for name in dict.fromkeys([*new_values, *old_values]):
-        before, after = old_values.get(name), new_values.get(name)
+    for name, value in new_values.items():
         if name not in old_values:
-            text = phrase("constant '{name}' = {value} added", name=part + name, value=str(after))
-            pair.add(text, places.of(name))
-        elif name not in new_values:
+            pair.add(phrase("constant '{name}' = {value} added", name=part + name, value=str(value)), places.of(name))
+    for name in old_values:
+        if name not in new_values:
             reason = phrase("programs that use the constant do not build or start")
             text = phrase("constant '{name}' removed", name=part + name)
             pair.add(text, places.of(name, is_old=True), reason)
-        elif before != after:
-            reason = phrase("programs that were built with the old value send or expect another one")
-            text = phrase("constant '{name}': {old} -> {new}", name=part + name, old=str(before), new=str(after))
+    changed = [name for name in new_values if name in old_values and old_values[name] != new_values[name]]
+    reason = phrase("programs that were built with the old value send or expect another one")
+    if len(changed) < _MIN_RENUMBERED:
+        for name in changed:
+            old_text, new_text = str(old_values[name]), str(new_values[name])
+            text = phrase("constant '{name}': {old} -> {new}", name=part + name, old=old_text, new=new_text)
             pair.add(text, places.of(name), reason)
+        return
+    shown = [f"{part}{name} {old_values[name]} -> {new_values[name]}" for name in changed]
+    text = phrase("{count} constants have other values: {changes}", count=len(changed), changes=", ".join(shown))
+    pair.add(text, places.of(changed[0]), reason)

@@ -13,6 +13,7 @@ from linkwright.review.breaking import breaking_reason, frame_reason
 from linkwright.review.robots.cases import Case, cases, switched_cases
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.robots.collisions import collision_changes, may_change_collisions
+from linkwright.review.files.semantics import disabled_collisions
 from linkwright.review.robots.figures import RobotMeasures, figures_of
 from linkwright.review.robots.joined_values import JoinedDifferences, with_joined_values
 from linkwright.review.file_pair import FilePair
@@ -55,7 +56,8 @@ def compare_descriptions(pair: FilePair) -> None:
             new = RobotMeasures(case.new.robot, case.models.new, frames.new_root, frames.new, old_joints)
             pair.figures += figures_of(old, new)
             if may_change_collisions(comparison.differences):
-                collisions = list(collision_changes(old, new, comparison.links))
+                disabled = disabled_collisions(pair.versions.new.root)
+                collisions = list(collision_changes(old, new, comparison.links, disabled))
     pair.changes += merged(group.change(pair.cases) for group in _united(groups.values()))
     pair.changes += collisions
 
