@@ -121,14 +121,17 @@ def _compare_constants(
             reason = phrase("programs that use the constant do not build or start")
             text = phrase("constant '{name}' removed", name=part + name)
             pair.add(text, places.of(name, is_old=True), reason)
-    changed = [name for name in new_values if name in old_values and old_values[name] != new_values[name]]
+    changes = [
+        (name, str(old_values[name]), str(value))
+        for name, value in new_values.items()
+        if name in old_values and old_values[name] != value
+    ]
     reason = phrase("programs that were built with the old value send or expect another one")
-    if len(changed) < _MIN_RENUMBERED:
-        for name in changed:
-            old_text, new_text = str(old_values[name]), str(new_values[name])
-            text = phrase("constant '{name}': {old} -> {new}", name=part + name, old=old_text, new=new_text)
+    if len(changes) < _MIN_RENUMBERED:
+        for name, before, after in changes:
+            text = phrase("constant '{name}': {old} -> {new}", name=part + name, old=before, new=after)
             pair.add(text, places.of(name), reason)
         return
-    shown = [f"{part}{name} {old_values[name]} -> {new_values[name]}" for name in changed]
-    text = phrase("{count} constants have other values: {changes}", count=len(changed), changes=", ".join(shown))
-    pair.add(text, places.of(changed[0]), reason)
+    items = ", ".join(f"{part}{name} {before} -> {after}" for name, before, after in changes)
+    text = phrase("{count} constants have other values: {changes}", count=len(changes), changes=items)
+    pair.add(text, places.of(changes[0][0]), reason)
