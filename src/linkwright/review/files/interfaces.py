@@ -6,14 +6,17 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.messages.definitions.interfaces import Constant, Definition, Field, structures_of
 from linkwright.messages.definitions.library import TrustedMessages, parse_source, read_source
 from linkwright.packages import enclosing_package
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
+from linkwright.review.versions import Version
 
 _SEPARATOR = "---"
+_MAX_FIELDS = 10
+"""The number of fields that the line about an added interface names."""
 _MIN_RENUMBERED = 3
 """The number of constants with other values from which they are one line. An inserted value renumbers those below."""
 _PARTS = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
@@ -34,6 +37,17 @@ def compare_interfaces(pair: FilePair) -> None:
         places = _Places(pair, index)
         _compare_fields(pair, old_part.fields, new_part.fields, name, places)
         _compare_constants(pair, old_part.constants, new_part.constants, name, places)
+
+
+def interface_contents(version: Version, path: str) -> Phrase | None:
+    """Return the fields of an interface with their types, or None if there are none."""
+    parts = structures_of(_read(version.file(path)))
+    names = [
+        f"{field.type.to_msg_text()} {part}{field.name}"
+        for structure, part in zip(parts, _PARTS[len(parts)], strict=True)
+        for field in structure.fields
+    ]
+    return joined_first(names, _MAX_FIELDS) if names else None
 
 
 def _read(file: Path) -> Definition:

@@ -105,6 +105,12 @@ def is_parameter(name: str) -> bool:
     return _NODE.match(name) is not None
 
 
+def node_of_parameter(name: str) -> str | None:
+    """Return the name of the node in the path of a parameter, or None for another path."""
+    match = _NODE.match(name)
+    return None if match is None else match["node"]
+
+
 def has_other_type(old: YamlValue, new: YamlValue) -> bool:
     """Return whether two values have types that differ. Empty values fit all types."""
     if old.is_list != new.is_list and None not in (old.type, new.type):

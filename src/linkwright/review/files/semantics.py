@@ -10,6 +10,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined_first, phrase, term
 from linkwright.review.file_pair import FilePair
+from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element
 
@@ -59,6 +60,12 @@ def compare_semantics(pair: FilePair) -> None:
             pair.add(phrase("{entry} removed", entry=_title(entry)), location, removal_reason(entry.tag, entry.name))
     for tag in _PAIRS:
         _compare_pairs(pair, tag, *(_pairs(root, tag) for root in roots))
+
+
+def semantic_contents(version: Version, path: str) -> Phrase | None:
+    """Return the groups, states and other named elements of a semantic description, or None if there are none."""
+    titles = [_title(entry) for entry in _entries(_root(version.file(path)))]
+    return joined_first(titles, _MAX_PARTS) if titles else None
 
 
 def disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
