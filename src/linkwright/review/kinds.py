@@ -129,13 +129,21 @@ _RULES = (
         phrase("launch files and users that name the file do not find it"),
         contents=rviz_contents,
     ),
-    KindRule(SubjectKind.MAP, compare_maps, (".pgm",), phrase("map added"), phrase("map removed")),
+    KindRule(
+        SubjectKind.MAP,
+        compare_maps,
+        (".pgm",),
+        phrase("map added"),
+        phrase("map removed"),
+        phrase("launch files and users that name the file do not find it"),
+    ),
     KindRule(
         SubjectKind.PARAMETERS,
         compare_parameter_files,
         _YAML_SUFFIXES,
         phrase("parameter file added"),
         phrase("parameter file removed"),
+        phrase("launch files and users that name the file do not find it"),
         contents=parameter_contents,
     ),
     KindRule(
