@@ -55,7 +55,7 @@ def test_argument_without_default_that_is_not_declared_is_breaking(changes_with_
 
 def test_argument_of_included_file_is_declared(changes_with_reasons):
     new = READING.replace('executable="hand"', 'executable="hand", respawn=LaunchConfiguration("speed")')
-    assert changes_with_reasons(new) == {"node 'arm/hand': respawn - -> $(var speed)": None}
+    assert changes_with_reasons(new) == {"node 'arm/hand': respawn $(var speed) added": None}
 
 
 def test_removed_argument_that_is_still_used_fails(changes_with_reasons):
@@ -200,7 +200,7 @@ def generate_launch_description():
     [
         ("        hand,\n", "", ["node 'arm/hand' removed"], True),
         ('"a" + "/b", os.path.join("c", "d") + "/e"', '"a/b", "c/d/e"', [], False),
-        (', name="hand"', "", ["node 'arm/hand': name hand -> -"], False),
+        (', name="hand"', "", ["node 'arm/hand': name hand removed"], False),
         ("target_action=driver", "target_action=hand",
          ["event handler OnProcessExit of arm/hand added", "event handler OnProcessExit of arm/driver removed"], False),
         ("on_exit=[EmitEvent()]", "on_exit=[hand]",

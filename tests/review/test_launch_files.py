@@ -84,8 +84,8 @@ YAML = """launch:
         ('{"min": 1}', '{"min": 2}', "node 'lidar/filter': parameter range.min 1 -> 2", False),
         ('"filter.yaml"', '"other.yaml"', "node 'lidar/filter': parameters [filter.yaml] -> [other.yaml]", False),
         ('("joy", "arm/joy")', '("joy", "arm/joy"), ("cmd_vel", LaunchConfiguration("cmd_vel_out"))',
-         "node 'arm/teleop': remapping cmd_vel - -> $(var cmd_vel_out)", False),
-        ('("joy", "arm/joy")', '', "node 'arm/teleop': remapping joy arm/joy -> -", True),
+         "node 'arm/teleop': remapping cmd_vel $(var cmd_vel_out) added", False),
+        ('("joy", "arm/joy")', '', "node 'arm/teleop': remapping joy arm/joy removed", True),
         ('        Node(package="ros_gz_sim", executable="create", name="create"),\n', "",
          "node 'ros_gz_sim/create' removed", False),
         ('        Node(package="controller_manager", executable="spawner", arguments=["arm_controller", "-v"]),\n',
@@ -341,7 +341,7 @@ def test_action_under_a_new_name_is_replaced(changes_of, old, new, expected):
 
 def test_program_of_the_same_package_is_not_a_replacement(changes_of):
     changes, found_breaking = changes_of("arm.launch.py", PYTHON, 'executable="teleop"', 'executable="keyboard"')
-    assert changes == ["node 'arm/keyboard' added", "node 'arm/teleop' removed"]
+    assert changes == ["node 'arm/keyboard' added: remapping joy arm/joy", "node 'arm/teleop' removed"]
     assert found_breaking == changes[1:]
 
 
@@ -469,3 +469,44 @@ def test_other_message_of_an_exception_is_no_new_failure(changes_of):
     changes, found_breaking = changes_of("arm.launch.py", text, "no such model", "no model of this name")
     assert len(changes) == 1
     assert not found_breaking
+
+
+def test_removed_argument_of_ros_1_makes_callers_fail(repository, compare):
+    text = XML.replace('<arg name="ur" default="$(arg ur)"/>', "")
+    repository.commit({"arm/launch/arm.launch": text})
+    repository.write({"arm/launch/arm.launch": text.replace('  <arg name="ur" default="ur5"/>\n', "")})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.reason) == "launch files that pass 'ur' to the file fail"
+
+
+def test_default_of_an_environment_variable_is_its_value(changes_of):
+    text = XML.replace('name="real" default="true"', 'name="base_frame" default="base_link"')
+    changes, found_breaking = changes_of(
+        "arm.launch", text, 'default="base_link"', 'default="$(optenv ARM_FRAME base_link)"'
+    )
+    assert "argument 'base_frame': default base_link -> $(optenv ARM_FRAME base_link)" in changes
+    assert found_breaking == []
+
+
+def test_changed_value_is_quoted_and_not_the_statement_that_uses_it(changes_of):
+    text = PYTHON.replace("    return Launch", "    size = 3\n    print(size)\n    return Launch")
+    assert changes_of("arm.launch.py", text, "size = 3", "size = 4") == (["other code: size = 3 -> size = 4"], [])
+
+
+def test_node_whose_package_program_and_name_change_is_replaced(changes_of):
+    node = 'Node(package="arm_xs_driver", executable="xs_driver_node", name="xs_driver", output="screen"),'
+    text = PYTHON.replace("    return LaunchDescription([", f"    return LaunchDescription([\n        {node}")
+    changes, found_breaking = changes_of("arm.launch.py", text, node, node.replace("xs_", ""))
+    assert changes == [
+        "node 'arm_xs_driver/xs_driver_node' replaced by node 'arm_driver/driver_node'",
+        "node 'arm_driver/driver_node': name xs_driver -> driver",
+    ]
+    assert found_breaking == changes[1:]
+
+
+@pytest.mark.parametrize(("name", "is_breaking"), [("detection_overlay", False), ("front_camera", True)])
+def test_name_of_a_component_that_its_class_may_have_is_not_breaking(changes_of, name, is_breaking):
+    node = 'ComposableNode(package="cam", plugin="cam::Detection2DOverlay")'
+    text = PYTHON.replace("    return LaunchDescription([", f"    return LaunchDescription([\n        {node},")
+    _, found_breaking = changes_of("arm.launch.py", text, 'Overlay")', f'Overlay", name="{name}")')
+    assert bool(found_breaking) is is_breaking

@@ -44,7 +44,7 @@ XML_LAUNCH = """<launch>
         ('"false"', '"true"', "argument 'use_sim_time': default false -> true", False),
         ('        DeclareLaunchArgument("model"),\n', "", "argument 'model' removed", True),
         ('"use_sim_time", default_value="false"', '"use_sim_time"',
-         "argument 'use_sim_time': default false -> -", True),
+         "argument 'use_sim_time': default false removed", True),
         ('name="right"', 'name="rear"', "node 'arm/camera': name right -> rear", True),
         ('        Node(package="arm", executable="camera", name="left"),\n', "", "node 'arm/camera' removed", True),
         ("    return Launch", "    print('starting')\n    return Launch",
@@ -95,14 +95,14 @@ SPAWNER = '["arm", "--controller-ros-args", "-r /arm/cmd:=/cmd"]'
             [(LEFT, LEFT.replace('"0", "base"', '"2", "base"')), ("    return LaunchDescription([", ADDED)],
             [
                 "node 'tf2_ros/static_transform_publisher': arguments [0, 0, 0, base, left] -> [0, 0, 2, base, left]",
-                "node 'tf2_ros/static_transform_publisher' added",
+                "node 'tf2_ros/static_transform_publisher' added: arguments [5, 0, 0, base, top]",
             ],
         ),
         ([(RVIZ, "")], ["node 'rviz2/rviz2' removed"]),
         (
             [(', remappings=[("/arm/cmd", "/cmd")]', ""), ('["arm"]', SPAWNER)],
             [
-                "node 'controller_manager/ros2_control_node': remapping /arm/cmd /cmd -> -",
+                "node 'controller_manager/ros2_control_node': remapping /arm/cmd /cmd removed",
                 (
                     "node 'controller_manager/spawner' of 'arm': "
                     "arguments [arm] -> [arm, --controller-ros-args, -r /arm/cmd:=/cmd]"
@@ -130,7 +130,7 @@ def test_similar_launch_nodes_are_matched(repository, compare, changes, expected
         ('to="arm/cmd"', 'to="cmd"', "node 'arm/driver': remapping cmd arm/cmd -> cmd", True),
         ('name="a" value="1"', 'name="a" value="2"',
          "include of '$(find-pkg-share arm)/launch/other.launch.xml': a 1 -> 2", False),
-        ('name="driver">', 'name="driver" namespace="left">', "node 'arm/driver': namespace - -> left", True),
+        ('name="driver">', 'name="driver" namespace="left">', "node 'arm/driver': namespace left added", True),
     ],
 )  # fmt: skip
 def test_xml_launch_file_changes_are_reported(repository, compare, old, new, sentence, is_breaking):
@@ -207,7 +207,9 @@ arm_controller:
         ("stamped: true", "stamped: false", "arm_controller.ros__parameters.use_stamped true -> false", True),
         ("    arm_controller:\n      type: a/B\n", "",
          "controller_manager.ros__parameters.arm_controller.type a/B removed", True),
-        (PARAMETERS[PARAMETERS.index("arm_controller:\n  ros"):], "", "arm_controller with 5 values removed", True),
+        (PARAMETERS[PARAMETERS.index("arm_controller:\n  ros"):], "",
+         "arm_controller removed: joints [upper, lower], frame_id base_link, odom_topic odom, use_stamped true, plugins "
+         "[a, b, c, d, e]", True),
         ("    odom_topic: odom\n", "", "arm_controller.ros__parameters.odom_topic odom removed", False),
         ("    update_rate: 100\n", "", "controller_manager.ros__parameters.update_rate 100 removed", False),
     ],

@@ -132,7 +132,7 @@ global_costmap:
          ["planner_server.ros__parameters.plugins [GridBased, Smooth] -> [GridBased]"], True),
         ("base: base_footprint", "base: base_link",
          ["local_costmap.ros__parameters.base base_footprint -> base_link"], False),
-        (NODES[NODES.index("global"):], "", ["global_costmap with 2 values removed"], True),
+        (NODES[NODES.index("global"):], "", ["global_costmap removed: base base_footprint, size 3"], True),
     ],
 )  # fmt: skip
 def test_types_and_nodes_of_parameters_are_compared(changes_of, old, new, expected, is_breaking):
@@ -164,7 +164,7 @@ POINTS = "vertices:\n" + "".join(f"  - [{n}.0, 0.0, {{kind: [1, p{n}]}}]\n" for 
 def test_inserted_item_of_a_list_does_not_shift_the_others(changes_of):
     text = POINTS.replace("  - [3.0", "  - [7.5, 1.0, {kind: [1, q]}]\n  - [3.0")
     found, _ = changes_of(POINTS, text)
-    assert found == ["vertices[3] with 3 values added"]
+    assert found == ["vertices[3] added: [0] 7.5, [1] 1.0, [2].kind [1, q]"]
 
 
 def test_many_changes_of_a_list_are_one_line(changes_of):
@@ -188,3 +188,17 @@ def test_renamed_plugin_is_compared_with_the_old_one(changes_of):
     renamed = f"{part}.voxels renamed to {part}.cubes"
     assert found == [renamed, f"{part}.plugins [voxels] -> [cubes]", f"{part}.cubes.size 16 -> 10"]
     assert found_breaking == found[1:2]
+
+
+FRAMES = """odometry:
+  ros__parameters: {frame_id: map, tf.send: true}
+pose:
+  ros__parameters: {frame_id: map}
+"""
+
+
+def test_frame_that_others_still_offer_and_transform_that_is_switched_off(changes_of):
+    text = FRAMES.replace("{frame_id: map, tf", "{frame_id: odom, tf")
+    changes, found_breaking = changes_of(FRAMES, text.replace("send: true", "send: false"))
+    assert "odometry.ros__parameters.frame_id map -> odom" in changes
+    assert found_breaking == ["odometry.ros__parameters.tf.send true -> false"]

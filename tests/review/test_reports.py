@@ -11,7 +11,7 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, SourceText, phrase
-from linkwright.review import Change, Review, Subject, SubjectKind
+from linkwright.review import Change, Effect, Review, Subject, SubjectKind
 from linkwright.review.reports import as_data, as_diagnostics, as_html, as_markdown, as_text
 from tests.repositories import ARM, MACRO
 
@@ -248,3 +248,10 @@ def test_equal_findings_at_several_lines_are_one_line():
     lines = report.splitlines()
     assert lines[1:3] == ["  a.urdf:1: error[URDF999] wrong (3 times)", "  a.urdf:1: error[URDF999] odd"]
     assert "4 new findings" in lines[-1]
+
+
+def test_file_with_breaking_changes_only_has_no_heading_of_its_own():
+    change = Change(phrase("field removed"), Effect.BREAKING, phrase("programs fail"))
+    report = as_markdown(Review("a", "b", [Subject(SubjectKind.INTERFACE, "a.msg", "a.msg", "a.msg", [change])]))
+    assert report.count("a.msg") == 1
+    assert "field removed" in report

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
+from linkwright.review.list_changes import change_text
 from linkwright.review.versions import Version
 
+_MAX_RESTS = 3
+"""The number of other commands up to which their texts are shown."""
+_MAX_TEXT = 200
 _MAX_NAMES = 8
 """The number of names that a line lists."""
 
@@ -239,15 +243,28 @@ def _name(path: str) -> str:
 
 
 def _compare_rest(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
-    names = list(dict.fromkeys([*_lone_names(new.rest, old.rest), *_lone_names(old.rest, new.rest)]))
-    if names:
+    """Add the other commands that differ: a few with their texts, more with their names."""
+    gone, come = _lone_items(old.rest, new.rest), _lone_items(new.rest, old.rest)
+    names = list(dict.fromkeys(name for name, _ in (*come, *gone)))
+    if len(names) > _MAX_RESTS:
         pair.add(phrase("other build settings changed: {names}", names=_listed(names)), None)
+        return
+    for name in names:
+        old_text, new_text = ("; ".join(text for other, text in items if other == name) for items in (gone, come))
+        if old_text and new_text:
+            pair.add(change_text(name, old_text, new_text), None)
+        elif new_text:
+            pair.add(phrase("{parameter} added: {items}", parameter=name, items=new_text[:_MAX_TEXT]), None)
+        else:
+            pair.add(phrase("{parameter} removed: {items}", parameter=name, items=old_text[:_MAX_TEXT]), None)
 
 
-def _lone_names(items: Sequence[tuple[str, str]], others: Sequence[tuple[str, str]]) -> Iterator[str]:
+def _lone_items(items: Sequence[tuple[str, str]], others: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
     rest = list(others)
+    lone = []
     for item in items:
         if item in rest:
             rest.remove(item)
         else:
-            yield item[0]
+            lone.append(item)
+    return lone

@@ -20,7 +20,10 @@ _LIBRARIES = ("add_library", "ament_auto_add_library")
 _INSTALL_KEYWORDS = frozenset(
     {"EXPORT", "ARCHIVE", "LIBRARY", "RUNTIME", "OBJECTS", "INCLUDES", "DESTINATION", "COMPONENT", "OPTIONAL"}
 )
-_TEST_COMMANDS = ("add_test", "add_launch_test", "add_ros_test", "add_rostest", "add_rostest_gtest")
+_TEST_COMMANDS = (
+    *("add_test", "add_launch_test", "add_ros_test", "add_rostest", "add_rostest_gtest"),
+    *("catkin_add_nosetests", "catkin_add_gtest"),
+)
 _STANDARDS = ("CMAKE_CXX_STANDARD", "CMAKE_C_STANDARD", "CMAKE_BUILD_TYPE")
 _INTERFACE_SUFFIXES = (".msg", ".srv", ".action", ".idl")
 
@@ -63,7 +66,7 @@ def _is_variable(command: Command) -> bool:
     if command.name != "set":
         return False
     name = "".join(command.words[:1])
-    return not name.startswith("CMAKE_") or name in _STANDARDS
+    return not name.startswith("CMAKE_") or name in (*_STANDARDS, "CMAKE_EXPORT_COMPILE_COMMANDS")
 
 
 def _parent(path: str) -> str:
@@ -153,7 +156,13 @@ def _exports(commands: Sequence[Command]) -> Iterator[Fact]:
 def _packages(commands: Sequence[Command]) -> Iterator[Fact]:
     for command in commands:
         if command.name == "find_package" and command.arguments:
-            yield _fact(FactKind.PACKAGE, command.arguments[0])
+            package, *others = command.arguments
+            yield _fact(FactKind.PACKAGE, package)
+            start = command.words.index("COMPONENTS") if "COMPONENTS" in command.words else len(others)
+            for component in others[start:]:
+                if not component.text.isupper():  # a keyword, such as REQUIRED
+                    name = component.text if package.text == "catkin" else f"{package.text} {component.text}"
+                    yield _fact(FactKind.PACKAGE, component, name=name)
 
 
 def _tests(commands: Sequence[Command]) -> Iterator[Fact]:
@@ -187,6 +196,8 @@ _FACT_COMMANDS = frozenset(
         *("rclcpp_components_register_nodes", "pluginlib_export_plugin_description_file"),
         *("ament_export_dependencies", "find_package", "cmake_minimum_required", "option"),
         *("ament_python_install_package", "ament_python_install_module"),
+        *("add_executable", "add_library", "add_dependencies", "target_link_libraries", "target_include_directories"),
+        *("ament_target_dependencies", "include_directories", "target_sources"),
         *("message", "project", "list", "unset", "install", "ament_package", "file", "string"),
     }
 )

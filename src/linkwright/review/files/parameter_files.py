@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import yaml
@@ -90,14 +90,16 @@ def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | N
             shown = _shown_values(old_value, value)
             yield ValueChange(name, "changed", shown, location, rules.change_reason(name, old_value, value))
     for name, values_below in _lone_parts(new, old):
-        location = Location(pair.new_path, values_below[0].line, values_below[0].column)
-        yield ValueChange(name, "added", _lone_content(values_below), location)
+        first = next(iter(values_below.values()))
+        location = Location(pair.new_path, first.line, first.column)
+        yield ValueChange(name, "added", _lone_content(name, values_below), location)
     for name, values_below in _lone_parts(old, new):
-        location = Location(pair.old_path, values_below[0].line, values_below[0].column, is_old=True)
+        first = next(iter(values_below.values()))
+        location = Location(pair.old_path, first.line, first.column, is_old=True)
         below = [(each, old[each].text) for each in old if each not in new and _is_below(each, name)]
         reasons = (rules.removal_reason(parameter, value) for parameter, value in below)
         reason = next((reason for reason in reasons if reason is not None), None)
-        yield ValueChange(name, "removed", _lone_content(values_below), location, reason)
+        yield ValueChange(name, "removed", _lone_content(name, values_below), location, reason)
 
 
 def _shown_values(old: YamlValue, new: YamlValue) -> tuple[str, str]:
@@ -108,23 +110,26 @@ def _shown_values(old: YamlValue, new: YamlValue) -> tuple[str, str]:
     return old_text, new_text
 
 
-def _lone_content(values: Sequence[YamlValue]) -> tuple[str, ...]:
-    """Return the value of a part that one version has, or nothing for several values but their number."""
-    return (values[0].text,) if len(values) == 1 else ("",) * len(values)
+def _lone_content(part: str, values: Mapping[str, YamlValue]) -> tuple[str, ...]:
+    """Return the value of a part that one version has, or the names and values in a part with several."""
+    if len(values) == 1:
+        return tuple(value.text for value in values.values())
+    names = {name: name.removeprefix(part).lstrip(".").removeprefix("ros__parameters.") for name in values}
+    return tuple(f"{names[name]} {value.text}" for name, value in values.items())
 
 
 def _lone_parts(
     values: Mapping[str, YamlValue], others: Mapping[str, YamlValue]
-) -> Iterator[tuple[str, list[YamlValue]]]:
+) -> Iterator[tuple[str, dict[str, YamlValue]]]:
     """Yield the parts of a file that another version does not have, as large as possible, with their values."""
     other_parts = {part for name in others for part in part_names(name)}
-    parts: dict[str, list[tuple[str, YamlValue]]] = {}
+    parts: dict[str, dict[str, YamlValue]] = {}
     for name, value in values.items():
         if name not in others:
             part = next((part for part in part_names(name) if part not in other_parts), name)
-            parts.setdefault(part, []).append((name, value))
-    for part, named_values in parts.items():
-        yield named_values[0][0] if len(named_values) == 1 else part, [value for _, value in named_values]
+            parts.setdefault(part, {})[name] = value
+    for part, values_below in parts.items():
+        yield next(iter(values_below)) if len(values_below) == 1 else part, values_below
 
 
 def _is_below(name: str, part: str) -> bool:

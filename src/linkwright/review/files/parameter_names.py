@@ -15,6 +15,10 @@ _FRAMES = re.compile(r"(^|[._])frame_id$")
 """The parameters with frames that any node offers to other programs."""
 _USED_FRAMES = re.compile(r"(^|[._])(base|odom|map|global|world|target|reference)_frame_id$")
 """The parameters with frames that localization and navigation only use. Controllers publish them."""
+_TRANSFORMS = re.compile(
+    r"(^|[._])(publish_tf|tf[._]send|enable_odom_tf|broadcast_tf|publish_odom_tf|pub_tf|tf_broadcast)$"
+)
+"""The parameters that switch a transform of a node on and off."""
 _JOINTS = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
 """The parameters with joints that a controller offers. Other nodes only use them."""
 _CONTROLLER_TYPE = re.compile(r"(?:[^.]+\.)?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
@@ -46,6 +50,7 @@ class NameRules:
         self._new = new
         self._controllers = {*controllers(old), *controllers(new)}
         self._new_controllers = set(controllers(new))
+        self._new_frames = {value.text for name, value in new.items() if offers_frame(name)}
 
     def change_reason(self, parameter: str, old_value: YamlValue, new_value: YamlValue) -> Phrase | None:
         """Return why a changed value is breaking, or None if it is not."""
@@ -56,7 +61,11 @@ class NameRules:
         if controller is not None:
             return phrase("the controller '{name}' offers other topics and actions", name=controller["controller"])
         gone = _items(old) - _items(new)
+        if _TRANSFORMS.search(parameter) and (old.lower(), new.lower()) == ("true", "false"):
+            return phrase("the node does not publish its transform any more")
         is_offered = offers_frame(parameter)
+        if is_offered:
+            gone -= self._new_frames
         if self._is_controllers(parameter):
             is_offered = _FRAMES.search(parameter) is not None or _JOINTS.search(parameter) is not None
         if gone and is_offered:

@@ -58,7 +58,7 @@ def _read_call(facts: BuildFacts, setup: SetupFile, python: PythonFile) -> None:
         if keyword.arg in _SHOWN and text is not None:
             facts.facts.append(Fact(FactKind.SETTING, keyword.arg or "", text, python.span(keyword.value)))
         else:
-            facts.rest.append((keyword.arg or "**", ast.dump(keyword.value)))
+            facts.rest.append((keyword.arg or "**", " ".join(ast.unparse(keyword.value).split())))
 
 
 def _entry_points(python: PythonFile, node: ast.expr | None) -> Iterator[Fact]:

@@ -7,12 +7,14 @@ from collections.abc import Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from linkwright.diagnostics import Phrase, counted, joined, phrase
+from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.list_changes import change_text
 
 _ITEM = re.compile(r"(?P<list>[^\[]*)\[(?:old )?\d+\]")
 """The path of a list, and an item of it that has no name."""
+_MAX_VALUES = 6
+"""The number of values of a part that a line shows."""
 _MAX_ITEM_CHANGES = 6
 """The number of changes of the items of a list up to which all are shown."""
 
@@ -24,7 +26,7 @@ class ValueChange:
     Attributes:
         name: the path of the value or the part.
         kind: whether it is changed, or which version has it.
-        values: both values of a changed one; the values of another one, which are empty for several.
+        values: both values of a changed one; the value of another one; or the values of a part, with their names.
         location: the location.
         reason: why the change is breaking; None if it is not.
     """
@@ -40,13 +42,13 @@ class ValueChange:
         """The change in one line."""
         if self.kind == "changed":
             return change_text(self.name, *self.values)
-        count = len(self.values)
-        part = phrase("{parameter} {value}", parameter=self.name, value=self.values[0])
-        if count > 1:
-            part = counted(
-                "{parameter} with {count} value", "{parameter} with {count} values", count, parameter=self.name
-            )
-        return phrase("{part} added", part=part) if self.kind == "added" else phrase("{part} removed", part=part)
+        if len(self.values) == 1:
+            part = phrase("{parameter} {value}", parameter=self.name, value=self.values[0])
+            return phrase("{part} added", part=part) if self.kind == "added" else phrase("{part} removed", part=part)
+        items = joined_first(self.values, _MAX_VALUES)
+        if self.kind == "added":
+            return phrase("{parameter} added: {items}", parameter=self.name, items=items)
+        return phrase("{parameter} removed: {items}", parameter=self.name, items=items)
 
     @property
     def key(self) -> Hashable:

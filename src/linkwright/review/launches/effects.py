@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from difflib import SequenceMatcher
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
@@ -39,6 +40,8 @@ _NAME_ARGUMENT = re.compile(
     r"(^|_)(namespace|ns|robot_name|tf_prefix|frame_prefix|prefix|frame|frame_id|topic|controller|controller_name)$"
 )
 """The arguments whose values are, by their names, names that other programs use."""
+_SEPARATORS = re.compile(r"[\W_]+")
+_MIN_SIMILARITY_OF_NAMES = 0.75
 _TRUTH = ("true", "false")
 _CODE = re.compile(r"\w\(")
 """A call in a name, whose result is unknown."""
@@ -65,7 +68,7 @@ def removal_reason(entry: Entry, outline: LaunchOutline, new: LaunchOutline) -> 
         new: the new file.
     """
     if entry.kind == "argument" and "value" not in entry.settings:
-        return value_reason(entry.name)
+        return value_reason(entry.name, is_ros1=outline.is_ros1)
     if entry.kind == READING:
         return phrase("a value that a user sets for '{name}' has no effect", name=entry.name)
     if entry.kind == "remapping":
@@ -99,8 +102,10 @@ def _required_reason(argument: Entry) -> Phrase:
     return phrase("callers must pass '{name}'", name=argument.name)
 
 
-def value_reason(name: str) -> Phrase:
-    """Return why it is breaking that an argument is gone."""
+def value_reason(name: str, *, is_ros1: bool = False) -> Phrase:
+    """Return why it is breaking that an argument is gone. ROS 1 refuses arguments that a file does not declare."""
+    if is_ros1:
+        return phrase("launch files that pass '{name}' to the file fail", name=name)
     return phrase("a value that a caller passes for '{name}' has no effect", name=name)
 
 
@@ -269,9 +274,13 @@ def _renaming_reason(
 
 
 def _is_name_of_program(entry: Entry, name: str) -> bool:
-    """Return whether a node has a name without being given one, as far as the name of its program shows."""
-    program = entry.name.rpartition("/")[2].removesuffix(".py")
-    return name.removesuffix("_node") == program.removesuffix("_node")
+    """Return whether a node may have a name without being given one, as far as the name of its program shows.
+
+    The program is an executable or the class of a component, such as ``map_server`` and ``nav2::MapServer``.
+    """
+    program = entry.name.rpartition("/")[2].rpartition("::")[2].removesuffix(".py")
+    word, other = (_SEPARATORS.sub("", text.lower()).removesuffix("node") for text in (name, program))
+    return SequenceMatcher(None, word, other, autojunk=False).ratio() >= _MIN_SIMILARITY_OF_NAMES
 
 
 def _resolved_name(text: str | None, outline: LaunchOutline) -> str:

@@ -75,7 +75,7 @@ def compare_launch_files(pair: FilePair) -> None:
     if gone or come:
         _add_lone_entries(pair, gone, come, old, new)
     if pair.old_file.suffix == pair.new_file.suffix:
-        _compare_code(pair, old.code, new.code)
+        _compare_code(pair, old, new)
 
 
 def _add_lone_entries(
@@ -127,7 +127,7 @@ def _add_unused_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline
     for name, entry in used.items():
         if name not in declared and not re.search(rf"\b{re.escape(name)}\b", text):
             location = pair.location(entry.span, is_old=True)
-            pair.add(phrase("argument '{name}' removed", name=name), location, value_reason(name))
+            pair.add(phrase("argument '{name}' removed", name=name), location, value_reason(name, is_ros1=old.is_ros1))
 
 
 def _names_with_default(entry: Entry) -> list[str]:
@@ -139,13 +139,22 @@ def _keeps_name(entry: Entry) -> bool:
     return entry.is_same_name("to", None, entry.settings.get("to"))
 
 
-def _compare_code(pair: FilePair, old: Sequence[CodePart], new: Sequence[CodePart]) -> None:
-    """Compare what is not an action: one changed statement as it is written, others in one sentence."""
-    if [part.text for part in old] == [part.text for part in new]:
+def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
+    """Compare what is not an action: one changed statement as it is written, others in one sentence.
+
+    A statement that uses a name with another value differs although it is written as before. The value is reported.
+    """
+    if [part.text for part in old.code] == [part.text for part in new.code]:
         return
-    gone, come = _without_common(old, new), _without_common(new, old)
+    gone, come = _without_common(old.code, new.code), _without_common(new.code, old.code)
     if _differ_in_names(gone, come):
         return
+    same = {part.source for part in gone} & {part.source for part in come}
+    if same:
+        gone, come = ([part for part in parts if part.source not in same] for parts in (gone, come))
+        old_sources, new_sources = ({part.source for part in outline.definitions} for outline in (old, new))
+        gone += [part for part in old.definitions if part.source not in new_sources]
+        come += [part for part in new.definitions if part.source not in old_sources]
     come = _without_failures(pair, gone, come)
     if not gone and not come:
         return

@@ -60,7 +60,20 @@ def read_markup_outline(root: LaunchTag) -> LaunchOutline:
     """Return the outline of a launch file in XML or YAML."""
     rest: list[CodePart] = []
     entries = list(_entries(root, Scope(), rest))
-    return LaunchOutline([*entries, *markup_readings(_values(root))], rest)
+    all_entries = [*entries, *markup_readings(_values(root))]
+    return LaunchOutline(all_entries, rest, is_ros1=any(map(_is_ros1, _tags(root))))
+
+
+def _is_ros1(tag: LaunchTag) -> bool:
+    """Return whether only ROS 1 has an action: a node of a ``type``, parameters of the server, a path with ``find``."""
+    is_node = tag.name == "node" and "type" in tag.attributes
+    return is_node or tag.name == "rosparam" or any("$(find " in value for value in tag.attributes.values())
+
+
+def _tags(tag: LaunchTag) -> Iterator[LaunchTag]:
+    yield tag
+    for child in tag.children:
+        yield from _tags(child)
 
 
 def _values(tag: LaunchTag) -> Iterator[tuple[str, Span]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from linkwright.diagnostics import Span
@@ -17,6 +17,7 @@ REMAPPING = "remapping "
 READING = "reading"
 PARAMETER = "parameter "
 _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*))?\)")
+_ENVIRONMENT = re.compile(r"\$\((?:opt)?env [^() ]+ (?P<default>[^()]*)\)")
 _MAX_DEPTH = 5
 """The number of variables whose values may contain variables."""
 _MAX_LENGTH = 10_000
@@ -82,15 +83,19 @@ class LaunchOutline:
     Attributes:
         entries: the entries in the order of the text.
         code: the rest of the file.
+        definitions: the statements that give a value to a name, which is compared where it is used.
+        is_ros1: whether the file is one of ROS 1.
     """
 
     entries: list[Entry]
     code: list[CodePart]
+    definitions: list[CodePart] = field(default_factory=list)
+    is_ros1: bool = False
 
     def resolved(self, text: str) -> str:
-        """Return a text with the defaults of arguments in place of ``$(var NAME)``."""
+        """Return a text with the defaults of arguments and environment variables in place of ``$(var NAME)``."""
         for _ in range(_MAX_DEPTH):
-            resolved = _VARIABLE.sub(self._value, text)
+            resolved = _ENVIRONMENT.sub(r"\g<default>", _VARIABLE.sub(self._value, text))
             if resolved == text or len(resolved) > _MAX_LENGTH:
                 break
             text = resolved

@@ -16,7 +16,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     Scope,
 )
-from linkwright.review.launches.rest import rest_of
+from linkwright.review.launches.rest import definitions_of, rest_of
 from linkwright.review.launches.text import BoundExpression, ExpressionTexts
 
 _NODES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
@@ -52,7 +52,7 @@ def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchO
     reader = _Reader(python, helpers, ExpressionTexts(python))
     reader.visit(python.tree)
     entries = sorted(reader.entries(), key=lambda entry: (entry.span.line, entry.span.column))
-    return LaunchOutline(entries, rest_of(python, reader.covered))
+    return LaunchOutline(entries, rest_of(python, reader.covered), definitions_of(python))
 
 
 @dataclass

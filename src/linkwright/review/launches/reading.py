@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText, foreign, phrase
@@ -39,4 +40,4 @@ def read_outline(path: Path, root: Path) -> LaunchOutline:
         message = phrase("line {line} is not valid Python: {reason}", line=line, reason=reason)
         raise UnreadableFileError(message) from None
     outline = read_python_outline(python, HelperFunctions(root, ACTIONS))
-    return LaunchOutline([*outline.entries, *python_readings(python)], outline.code)
+    return replace(outline, entries=[*outline.entries, *python_readings(python)])

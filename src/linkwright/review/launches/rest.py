@@ -25,6 +25,16 @@ _BODIES = ("body", "orelse", "finalbody", "handlers", "cases")
 _UNCOMPARED_FIELDS = frozenset({"ctx", "returns", "annotation", "type_comment", "type_params", "kind"})
 
 
+def definitions_of(python: PythonFile) -> list[CodePart]:
+    """Return the statements that give a value to a name that has no other value."""
+    rest = _Rest(python, ())
+    return [
+        CodePart("", _source(node), python.span(node))
+        for node in _statements(python.tree)
+        if isinstance(node, (ast.Assign, ast.AnnAssign)) and rest.is_definition(node)
+    ]
+
+
 def rest_of(python: PythonFile, covered: Collection[int]) -> list[CodePart]:
     """Return the statements besides the actions, without names of variables, imports, comments and layout.
 
@@ -107,7 +117,7 @@ class _Rest:
         if isinstance(node, ast.Name):
             assigned = self._python.assigned_expression(node.id)
             return f"name {node.id}" if assigned is None else self.text(assigned)
-        if isinstance(node, (ast.Assign, ast.AnnAssign)) and self._is_definition(node):
+        if isinstance(node, (ast.Assign, ast.AnnAssign)) and self.is_definition(node):
             return ""
         if isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _TRANSPARENT:
             return self._group(node)
@@ -120,7 +130,7 @@ class _Rest:
             return f"return {value}" if value else ""
         return self._other(node)
 
-    def _is_definition(self, node: ast.Assign | ast.AnnAssign) -> bool:
+    def is_definition(self, node: ast.Assign | ast.AnnAssign) -> bool:
         """Return whether a statement gives a value to a name that has no other value, which its uses show."""
         targets = node.targets if isinstance(node, ast.Assign) else [node.target]
         return all(

@@ -39,8 +39,12 @@ class _Setting:
     @property
     def text(self) -> Phrase:
         """The change in one line."""
-        values = ("-" if value is None else value or "''" for value in (self.old, self.new))
-        return change_text(self.name, *values)
+        old, new = (None if value is None else value or "''" for value in (self.old, self.new))
+        if old is None:
+            return phrase("{parameter} {value} added", parameter=self.name, value=new or "")
+        if new is None:
+            return phrase("{parameter} {value} removed", parameter=self.name, value=old)
+        return change_text(self.name, old, new)
 
 
 class SettingChanges:
@@ -64,7 +68,11 @@ class SettingChanges:
             entry = next(entry for entry in self._new.entries if entry.name == new_name and entry.has_value)
             is_argument = entry.kind == "argument" and "value" not in entry.settings
             text = phrase("{entry} renamed to '{name}'", entry=title(replace(entry, name=old_name)), name=new_name)
-            self._pair.add(text, self._pair.location(entry.span), value_reason(old_name) if is_argument else None)
+            self._pair.add(
+                text,
+                self._pair.location(entry.span),
+                value_reason(old_name, is_ros1=self._old.is_ros1) if is_argument else None,
+            )
 
     def compare(self, old: Entry, new: Entry) -> None:
         """Add the changed settings of an action."""

@@ -10,6 +10,9 @@ from linkwright.review.launches.outlines import CONDITION, READING, Entry
 from linkwright.review.list_changes import list_items
 
 _MAX_TITLES = 4
+_MAX_SETTINGS = 5
+"""The number of settings that the line about an added action shows."""
+_MAX_SETTING = 80
 _MAX_NAME = 160
 TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
 _CHILD = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")
@@ -95,14 +98,20 @@ def joined_titles(entries: Sequence[Entry]) -> Phrase:
 
 
 def added_entry(entry: Entry) -> Phrase:
-    """Return that an action was added, with its value if it has only one, or its condition."""
+    """Return that an action was added, with its value if it has only one, or with its settings."""
     value = entry.settings.get("to") or entry.settings.get("value") or entry.settings.get("appended value")
     if entry.kind in ("remapping", "parameter", "environment", "variable") and value:
         return phrase("{entry} added: {new}", entry=title(entry), new=value[:_MAX_NAME])
     if entry.kind == "argument" and "default" in entry.settings:
         default = entry.settings["default"][:_MAX_NAME] or "''"
         return phrase("{entry} added: default {new}", entry=title(entry), new=default)
-    condition = entry.settings.get(CONDITION)
-    if entry.kind in ("node", "include", "process", "action") and condition:
-        return phrase("{entry} added: {condition}", entry=title(entry), condition=condition[:_MAX_NAME])
-    return phrase("{entry} added", entry=title(entry))
+    if entry.kind not in ("node", "include", "process", "action") or not entry.settings:
+        return phrase("{entry} added", entry=title(entry))
+    names = sorted(entry.settings, key=lambda name: name != CONDITION)
+    items = joined_first([_setting_text(name, entry.settings[name]) for name in names], _MAX_SETTINGS)
+    return phrase("{entry} added: {items}", entry=title(entry), items=items)
+
+
+def _setting_text(name: str, value: str) -> str:
+    text = value if name == CONDITION else f"{name} {value}"
+    return text if len(text) <= _MAX_SETTING else f"{text[:_MAX_SETTING]}..."

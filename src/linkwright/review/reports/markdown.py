@@ -67,8 +67,7 @@ def _parts(review: Review) -> Iterator[str]:
     if breaking:
         title = _escape(phrase("Breaking changes"))
         yield "\n".join([f"#### {title}", "", *(_breaking_line(paths, change) for paths, change in breaking)])
-    for section in sections_of(review):
-        yield _section(section)
+    yield from filter(None, map(_section, sections_of(review)))
     for title, findings in (
         (phrase("New findings"), review.new_findings),
         (phrase("Fixed findings"), review.fixed_findings),
@@ -99,8 +98,9 @@ def _breaking_line(paths: Sequence[str], change: Change) -> str:
 
 
 def _section(section: Section) -> str:
+    """Return the part about a file; empty if all its changes are breaking, which are listed first."""
     subject = section.subject
-    lines = [f"#### {_code(subject.path)}", ""]
+    lines: list[str] = []
     if subject.figures:
         lines += [*_figures(subject.figures), ""]
     changes = [_change(change, subject) for change in section.changes if change.effect is not Effect.BREAKING]
@@ -113,7 +113,7 @@ def _section(section: Section) -> str:
     alike = alike_text(section)
     lines += [] if alike is None else [f"- {_escape(alike)}"]
     lines += [f"> {_escape(problem.text)}" for problem in subject.problems]
-    return "\n".join(lines).rstrip()
+    return "\n".join([f"#### {_code(subject.path)}", "", *lines]).rstrip() if lines else ""
 
 
 def _change(change: Change, subject: Subject) -> str:
