@@ -9,6 +9,7 @@ import re
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import wait
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -303,12 +304,22 @@ class LaunchCheck:
         return [name for name, _ in self._call(self._checker.get_topic_names_and_types)]
 
     def _call(self, function: Callable[[], T]) -> T:
-        """Call a function on the event loop of the launch."""
+        """Call a function on the event loop of the launch.
+
+        Raises:
+            TimeoutError: the loop did not call it in time; the load of the machine does not count.
+        """
 
         async def call() -> T:
             return function()
 
-        return asyncio.run_coroutine_threadsafe(call(), self._loop).result(_WAIT_SECONDS)
+        future = asyncio.run_coroutine_threadsafe(call(), self._loop)
+        if not wait([future], _PERIOD_SECONDS).done:
+            clock = PatientClock()
+            while not wait([future], _PERIOD_SECONDS).done:
+                if clock.read() > _WAIT_SECONDS:
+                    raise TimeoutError
+        return future.result()
 
     def _wait_until(self, condition: Callable[[], bool], problem: Phrase | Callable[[], Phrase]) -> None:
         """Wait for a condition.
