@@ -220,6 +220,28 @@ CASES = [
     ),
     wrong(
         "search",
+        "the empty target starts a search",
+        Edit(NODE, "'searching' if message.data else 'waiting'", "'searching'"),
+        says="in 'searching'",
+    ),
+    wrong(
+        "search",
+        "the empty target is ignored",
+        Edit(
+            NODE,
+            "        self.state = 'searching' if message.data else 'waiting'\n",
+            "        if message.data:\n            self.state = 'searching'\n",
+        ),
+        says="which came in 'searching'",
+    ),
+    wrong(
+        "search",
+        "the ball of the last target",
+        Edit(NODE, "'waiting'\n        self.ball = None\n\n    def on_ball", "'waiting'\n\n    def on_ball"),
+        says="does on_target forget the ball",
+    ),
+    wrong(
+        "search",
         "it follows the ball",
         Edit(NODE, "self.state in ('searching', 'driving')", "self.state != 'waiting'"),
         says="it moves again",

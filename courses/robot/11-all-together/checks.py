@@ -220,6 +220,39 @@ def tells_state(work):
         expect_state(driver, "arrived", "with the ball 0.4 m away", "球在 0.4 m 远处时")
 
 
+@check(
+    "search",
+    en="An empty target leads to waiting, any other to searching.",
+    zh="空目标使它进入 waiting，其他目标使它进入 searching。",
+)
+def obeys_targets(work):
+    with Driver(work) as driver:
+        for state, forward in (("searching", None), ("driving", 2.0), ("arrived", 0.4)):
+            driver.set_target("red")
+            if forward is None:
+                driver.wait(0.3)
+            else:
+                driver.show(forward, 0.0)
+            expect_state(driver, state, "shortly before the empty target", "在空目标之前")
+            driver.set_target("")
+            velocity = driver.wait(0.3)
+            expect_state(
+                driver, "waiting", f"after the empty target, which came in '{state}'", f"在“{state}”中收到空目标后"
+            )
+            if any(velocity):
+                raise NotYet(en="It drives on after the empty target.", zh="收到空目标后，它仍在行驶。")
+        driver.set_target("red")
+        driver.show(0.4, 0.0)
+        driver.set_target("green")
+        driver.wait(0.3)
+    if driver.state != "searching":
+        raise NotYet(
+            en=f"The next target comes in 'arrived', and the state is '{driver.state}' and not 'searching'; does "
+            "on_target forget the ball of the last target?",
+            zh=f"在“arrived”中收到下一个目标后，状态是“{driver.state}”，不是“searching”；on_target 忘记上一个目标的球了吗？",
+        )
+
+
 def expect_state(driver, state, en, zh):
     if driver.state != state:
         raise NotYet(
