@@ -249,7 +249,8 @@ def obeys_targets(work):
         raise NotYet(
             en=f"The next target comes in 'arrived', and the state is '{driver.state}' and not 'searching'; does "
             "on_target forget the ball of the last target?",
-            zh=f"在“arrived”中收到下一个目标后，状态是“{driver.state}”，不是“searching”；on_target 忘记上一个目标的球了吗？",
+            zh=f"在“arrived”中收到下一个目标后，状态是“{driver.state}”，不是“searching”；"
+            "on_target 忘记上一个目标的球了吗？",
         )
 
 
