@@ -23,6 +23,7 @@ from linkwright.graph.faults import InvalidHandleError
 from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.rviz_arguments import require_rviz_configuration
+from linkwright.learning.local_text import LocalText
 from linkwright.process.patience import PatientClock
 
 if TYPE_CHECKING:
@@ -380,12 +381,17 @@ class LaunchCheck:
         described = describe_finding(finding)
         return described if finding.span else phrase("{file}: {message}", file=self._file, message=described)
 
+    def problems(self) -> list[LocalText]:
+        """Return the problems that the launch has reported: its findings, then the errors of its nodes."""
+        return [LocalText.from_phrase(problem) for problem in self._problems()]
+
+    def _problems(self) -> list[Phrase]:
+        errors = [phrase("{file}: {message}", file=self._file, message=error) for error in self._errors()]
+        return [*map(self._located, self._findings), *errors]
+
     def _problem(self) -> Phrase | None:
-        """Return the first problem that the launch reported, or None."""
-        if self._findings:
-            return self._located(self._findings[0])
-        errors = self._errors()
-        return phrase("{file}: {message}", file=self._file, message=errors[0]) if errors else None
+        """Return the first problem that the launch has reported, or None."""
+        return next(iter(self._problems()), None)
 
     def _missing_topic(self, topic: str) -> Phrase:
         """Return the message for a topic without publishers, with the first error of the launch."""
