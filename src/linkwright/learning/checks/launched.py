@@ -47,6 +47,8 @@ _QUIET_SECONDS_OF_PROCESSES = 6.0
 
 _PERIOD_SECONDS = 0.02
 _NODE = "lesson_check"
+_PROCESS_LINE = re.compile(r"^\[([^\]\s]+-\d+)\] (.*)$")
+_DEATH = re.compile(r"^\[ERROR\] \[([^\]\s]+)-\d+\]: process has died")
 _LOG_PREFIX = re.compile(r"^\[[^\]]+\] \[\w+\] \[[\d.]+\] \[([^\]]+)\]: ")
 
 
@@ -422,10 +424,23 @@ class LaunchCheck:
         return phrase("there is no node '{name}'; the running nodes are {nodes}", name=name, nodes=others)
 
     def _errors(self) -> list[str]:
-        """Return the lines of the launch's output that report errors."""
-        severities = ("error", "fatal")
-        lines = self._output.getvalue().splitlines()
-        return [_LOG_PREFIX.sub(r"\1: ", line) for line in lines if any(name in line.casefold() for name in severities)]
+        """Return the lines of the launch's output that report errors.
+
+        The last line of a process that has died stands for its traceback.
+        """
+        errors: list[str] = []
+        last_lines: dict[str, str] = {}
+        for line in self._output.getvalue().splitlines():
+            if match := _PROCESS_LINE.match(line):
+                if not match[2].strip() or match[2].startswith(" "):
+                    continue
+                last_lines[match[1].rpartition("-")[0]] = match[2]
+            death = _DEATH.match(line)
+            if death and death[1] in last_lines:
+                errors.append(f"{death[1]}: {last_lines[death[1]]}")
+            elif any(name in line.casefold() for name in ("error", "fatal")):
+                errors.append(_LOG_PREFIX.sub(r"\1: ", line))
+        return errors
 
 
 def _offered_profile(node: Node, topic: str) -> QoSProfile:
