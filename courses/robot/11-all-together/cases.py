@@ -278,6 +278,12 @@ CASES = [
     ),
     wrong(
         "launch",
+        "a text for a number",
+        Edit(CONFIG, "stop_distance: 0.6", "stop_distance: '0.6'"),
+        says="to '0.6' of type 'STRING'",
+    ),
+    wrong(
+        "launch",
         "one underscore",
         Edit(CONFIG, "go_to_ball:\n  ros__parameters", "go_to_ball:\n  ros_parameters"),
         says="ros__parameters",
@@ -323,6 +329,16 @@ CASES = [
         ),
         Edit(SYSTEM_TEST, "timeout=10.0", "timeout=3.0"),
         says="it did not happen in time",
+    ),
+    wrong(
+        "system-test",
+        "the stop is not awaited",
+        Edit(
+            SYSTEM_TEST,
+            "        self.wait_for(lambda: self.velocity.linear.x == 0.0 and self.velocity.angular.z == 0.0)\n",
+            "",
+        ),
+        says="that never stops",
     ),
     wrong(
         "system-test",

@@ -396,29 +396,51 @@ def main():
 """
 
 
+RESTLESS_NODE = IDLE_NODE.replace("(Twist())", "(Twist(linear=Vector3(x=0.2), angular=Vector3(z=0.5)))").replace(
+    "import PointStamped, Twist", "import PointStamped, Twist, Vector3"
+)
+"""A node that always drives."""
+
+
+@cache
 def run_system_test(work):
-    """Return the result of the learner's test with the learner's node, and with a node that never drives."""
+    """Return the results of the learner's test with the learner's node, and with two wrong ones, by name."""
     work.package(PACKAGE).file(SYSTEM_TEST)
     domain = int(os.environ.get("ROS_DOMAIN_ID", "0"))
     words = ["-m", "linkwright", "test", SYSTEM_TEST]
     with Copies(work) as copies:
-        right = copies.start(words, copies.make("right"))
-        idle = copies.start(words, copies.make("idle", go_to_ball=IDLE_NODE), ROS_DOMAIN_ID=str(domain % 100 + 1))
-        return finish(right, 50.0, SYSTEM_TEST), finish(idle, 50.0, SYSTEM_TEST)
+        result = finish(copies.start(words, copies.make("right")), 50.0, SYSTEM_TEST)
+        if "did not happen in time" in result[1]:  # the test waits 10 s, which a busy machine can take
+            result = finish(copies.start(words, copies.make("again")), 50.0, SYSTEM_TEST)
+        if result[0]:
+            return {"": result}
+        processes = {
+            name: copies.start(
+                words, copies.make(name, go_to_ball=node), ROS_DOMAIN_ID=str((domain + number) % 100 + 1)
+            )
+            for number, (name, node) in enumerate({"idle": IDLE_NODE, "restless": RESTLESS_NODE}.items())
+        }
+        return {"": result} | {name: finish(process, 50.0, SYSTEM_TEST) for name, process in processes.items()}
 
 
 @check("system-test", en="linkwright test passes.", zh="linkwright test 通过。")
 def system_test_passes(work):
-    (status, output), (idle_status, _) = run_system_test(work)
+    results = run_system_test(work)
+    status, output = results[""]
     if status:
         line = last_error(output)
         raise NotYet(en=f"The test fails: {line}", zh=f"测试没有通过：{line}")
     if "Ran 0 tests" in output and "Ran 1 test" not in output:
         raise NotYet(en="test_mission.py has no test.", zh="test_mission.py 中没有测试。")
-    if not idle_status:
+    if not results["idle"][0]:
         raise NotYet(
             en="The test also passes with a go_to_ball that never drives.",
             zh="go_to_ball 从不行驶时，测试也通过。",
+        )
+    if not results["restless"][0]:
+        raise NotYet(
+            en="The test also passes with a go_to_ball that never stops; wait until the velocity is zero.",
+            zh="go_to_ball 从不停下时，测试也通过；请等到速度为零。",
         )
 
 
