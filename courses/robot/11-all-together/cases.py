@@ -220,6 +220,12 @@ CASES = [
     ),
     wrong(
         "search",
+        "an old ball",
+        Edit(NODE, "Duration(seconds=0.5)", "Duration(seconds=5)"),
+        says="1 s after the last ball",
+    ),
+    wrong(
+        "search",
         "the empty target starts a search",
         Edit(NODE, "'searching' if message.data else 'waiting'", "'searching'"),
         says="in 'searching'",

@@ -216,6 +216,8 @@ def tells_state(work):
         expect_state(driver, "searching", "with a target and no ball", "有目标而看不到球时")
         driver.show(2.0, 0.2)
         expect_state(driver, "driving", "with the ball 2 m away", "球在 2 m 远处时")
+        driver.wait(1.0)
+        expect_state(driver, "searching", "1 s after the last ball", "最后一次看到球 1 s 之后")
         driver.show(0.4, 0.0)
         expect_state(driver, "arrived", "with the ball 0.4 m away", "球在 0.4 m 远处时")
 
