@@ -3,12 +3,14 @@
 import os
 import subprocess
 import sys
+import threading
+import time
 from pathlib import PurePosixPath
 from types import SimpleNamespace
 
 import pytest
 
-from linkwright.learning.checks import running
+from linkwright.learning.checks import launched, running
 from linkwright.learning.checks.installed import files_of_setup
 from linkwright.learning.course import load_course
 from linkwright.learning.new_course import create_course
@@ -24,6 +26,85 @@ def test_windows_process_is_ended_with_children(monkeypatch):
         assert process.wait() != 0
         running._end_group(process)
     assert len(commands) == 1
+
+
+BUSY = "import os\nos.sched_setaffinity(0, [{processor}])\nwhile True: pass"
+
+
+@pytest.fixture
+def busy_processor():
+    """Yield the number of a processor that four other programs occupy."""
+    processor = min(os.sched_getaffinity(0))
+    program = [sys.executable, "-c", BUSY.format(processor=processor)]
+    processes = [subprocess.Popen(program, start_new_session=True) for _ in range(4)]
+    yield processor
+    for process in processes:
+        process.kill()
+        process.wait()
+
+
+@pytest.fixture(scope="module")
+def check_server():
+    with running.create_check_server() as server:
+        yield server
+
+
+def run_statement(server, folder, statement, processor, time_limit):
+    """Run a check that executes one statement on a processor, and return its message."""
+    course = folder / "course"
+    create_course(course)
+    (course / "01-one-link" / "checks.py").write_text(
+        f"import os, time\nfrom linkwright.learning import check\n\nos.sched_setaffinity(0, [{processor}])\n"
+        '@check("mass", en="It ends.", zh="它会结束。")\n'
+        f"def run(work):\n    {statement}\n",
+        encoding="utf-8",
+    )
+    step = load_course(course).find_step("mass")
+    (result,) = running.check_in_process(step, folder, time_limit=time_limit, server=server).checks
+    return str(result.message)
+
+
+ON_LINUX = pytest.mark.skipif(sys.platform != "linux", reason="only Linux reports the waiting of processes")
+
+
+@ON_LINUX
+def test_load_of_machine_does_not_end_check(check_server, tmp_path, busy_processor):
+    compute = "while time.process_time() < 1.2: pass"
+    statement = f"begin = time.monotonic()\n    {compute}\n    assert time.monotonic() > begin + 3.0"
+    assert run_statement(check_server, tmp_path, statement, busy_processor, 3.0) == "None"
+
+
+@ON_LINUX
+@pytest.mark.parametrize("statement", ["while True: pass", "time.sleep(1000)"])
+def test_endless_loop_and_sleep_end_on_busy_machine(check_server, tmp_path, busy_processor, statement):
+    message = run_statement(check_server, tmp_path, statement, busy_processor, 1.0)
+    assert message == "the check took longer than 1 s and was ended"
+
+
+@ON_LINUX
+def test_processes_that_hinder_one_another_are_ended(check_server, tmp_path):
+    processor = min(os.sched_getaffinity(0))
+    statement = "[os.fork() for _ in range(4)]\n    while True: pass"
+    message = run_statement(check_server, tmp_path, statement, processor, 1.0)
+    assert message == "the check took longer than 1 s and was ended"
+
+
+def test_call_of_launch_waits_without_load_only(monkeypatch):
+    """The event loop of the launch is blocked longer than the wait, in which the clock stands still."""
+    check = launched.LaunchCheck("package", "file", {}, None)
+    loop = check._loop
+    thread = threading.Thread(target=loop.run_forever)
+    thread.start()
+    monkeypatch.setattr(launched, "_WAIT_SECONDS", 0.05)
+    loop.call_soon_threadsafe(time.sleep, 0.3)
+    with pytest.raises(TimeoutError):
+        check._call(lambda: 1)
+    monkeypatch.setattr(launched, "PatientClock", lambda: SimpleNamespace(read=lambda: 0.0))
+    loop.call_soon_threadsafe(time.sleep, 0.3)
+    assert check._call(lambda: 1) == 1
+    loop.call_soon_threadsafe(loop.stop)
+    thread.join()
+    loop.close()
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no niceness")

@@ -5,6 +5,7 @@ import errno
 import json
 import os
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
@@ -241,6 +242,46 @@ def test_check_without_memory_or_library_is_not_graded(folder):
     status, students, _ = grade(folder)
     assert status == 1
     assert [step["graded"] for step in students["good"]["steps"]] == [False, False]
+
+
+@pytest.mark.parametrize(
+    ("words", "addresses"),
+    [
+        (["--lesson", "01-program"], ["01-program/run", "01-program/read"]),
+        (["--step", "02-other/run", "--step", "read"], ["01-program/read", "02-other/run"]),
+        (["--lesson", "02-other", "--step", "run"], ["02-other/run"]),
+        (["--lesson", "02-other", "--lesson", "01-program", "--step", "read"], ["01-program/read"]),
+    ],
+)
+def test_lessons_and_steps_are_selected(folder, words, addresses):
+    add_lesson(folder)
+    write_student(folder, "good", "print(42)")
+    _, students, _ = grade(folder, *words)
+    assert [step["step"] for step in students["good"]["steps"]] == addresses
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--lesson", "02-other", "--step", "read"], "there is no step 'read' in '02-other'"),
+        (["--lesson", "02-other", "--step", "01-program/run"], "there is no step '01-program/run' in '02-other'"),
+        (["--step", "run"], "several lessons have a step 'run'"),
+        (["--step", "reed"], "the course 'course' has no step 'reed'"),
+    ],
+)
+def test_step_that_lesson_lacks_is_refused(folder, capsys, words, message):
+    add_lesson(folder)
+    student = write_student(folder, "good", "print(42)")
+    assert main(["learn", "grade", "--course", str(folder / "course"), *words, str(student)]) == 1
+    assert message in capsys.readouterr().err
+
+
+def add_lesson(folder):
+    """Add the lesson 02-other with the step run."""
+    lesson = folder / "course" / "02-other"
+    shutil.copytree(folder / "course" / "01-program", lesson)
+    (lesson / "lesson.en.md").write_text("# Another\n\n## Run {#run}\n\nWrite it.\n")
+    (folder / "course/course.toml").write_text('lessons = ["01-program", "02-other"]\ntitle.en = "Programs"\n')
 
 
 def test_extras_of_lessons_are_required(folder, monkeypatch, capsys):

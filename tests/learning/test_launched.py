@@ -118,6 +118,23 @@ def test_unpublished_topic_and_launch_error_are_reported(package):
         running.wait_for_message("/voice/text")
 
 
+DYING = """from launch import LaunchDescription
+from launch.actions import ExecuteProcess
+import sys
+
+def generate_launch_description():
+    return LaunchDescription([ExecuteProcess(cmd=[sys.executable, {program!r}], name='talker')])
+"""
+
+
+def test_last_line_of_traceback_stands_for_process_that_has_died(package):
+    program = package.folder / "talker.py"
+    program.write_text("raise Exception('the value is a text')")
+    (package.folder / "launch" / "dying.launch.py").write_text(DYING.format(program=str(program)))
+    with pytest.raises(NotYet, match="Exception: the value is a text"), package.launch("dying.launch.py") as running:
+        running.expect_node("/talker")
+
+
 @pytest.mark.slow
 def test_node_of_learner_is_discovered_over_network(package, tmp_path):
     program = tmp_path / "talker.py"

@@ -125,6 +125,11 @@ CASES = [
         Edit(MAPPING, "'slam_params_file': str(config), ", ""),
         says="'minimum_travel_distance' of /slam_toolbox is 0.5",
     ),
+    wrong("mapping", "another topic", Edit(SLAM, "scan_topic: /scan", "scan_topic: /laser"), says="mbot has 'scan'"),
+    wrong("mapping", "another map frame", Edit(SLAM, "map_frame: map", "map_frame: world"), says="mbot has 'map'"),
+    wrong("mapping", "large cells", Edit(SLAM, "resolution: 0.05", "resolution: 0.5"), says="should be 0.05 m wide"),
+    wrong("mapping", "too short a range", Edit(SLAM, "range: 10.0", "range: 0.1"), says="draws no wall"),
+    wrong("mapping", "another name", Edit(SLAM, "slam_toolbox:", "slam:"), says="it has: slam"),
     wrong("mapping", "the time of the computer", Edit(MAPPING, "'true'", "'false'"), says="use_sim_time"),
     wrong("mapping", "one underscore", Edit(SLAM, "ros__parameters", "ros_parameters"), says="two underscores"),
     wrong(
@@ -185,6 +190,16 @@ CASES = [
     ),
     wrong("localize", "no pose", Edit(CONFIG, "set_initial_pose: true", "set_initial_pose: false"), says="'map'"),
     wrong("localize", "another frame", Edit(CONFIG, "odom_frame_id: odom", "odom_frame_id: odometry"), says="'map'"),
+    wrong("localize", "not set", Edit(CONFIG, "    set_initial_pose: true\n", ""), says="set_initial_pose to true"),
+    wrong(
+        "localize", "another topic", Edit(CONFIG, "scan_topic: scan", "scan_topic: laser"), says="scan_topic of amcl"
+    ),
+    wrong(
+        "localize",
+        "a misspelled model",
+        Edit(CONFIG, "likelihood_field", "likelyhood_field"),
+        says="cannot be 'likelyhood_field'",
+    ),
     wrong("localize", "degrees", Edit(CONFIG, "yaw: 0.0}", "yaw: 90.0}"), says="the pose of amcl is wrong"),
     wrong("localize", "another map", Edit(LAUNCH, "'flat.yaml'", "'house.yaml'"), says="yaml_filename"),
     right("navigate", "faster", Edit(CONFIG, "desired_linear_vel: 0.3", "desired_linear_vel: 0.4")),
@@ -226,6 +241,38 @@ CASES = [
     ),
     wrong(
         "navigate",
+        "no obstacles",
+        Edit(CONFIG, "plugins: [obstacle_layer, inflation_layer]", "plugins: [inflation_layer]"),
+        says="local_costmap has no ObstacleLayer",
+    ),
+    wrong(
+        "navigate",
+        "a misspelled layer",
+        Edit(CONFIG, "plugins: [obstacle_layer, inflation_layer]", "plugins: [obstacle_layers, inflation_layer]"),
+        says="list 'obstacle_layers'",
+    ),
+    wrong(
+        "navigate",
+        "another topic",
+        Edit(
+            CONFIG,
+            "width: 3\n      height: 3\n      resolution: 0.05\n      robot_radius: 0.2\n      plugins: [obstacle_layer, "
+            "inflation_layer]\n      obstacle_layer:\n        plugin: nav2_costmap_2d::ObstacleLayer\n"
+            "        observation_sources: scan\n        scan: {topic: /scan",
+            "width: 3\n      height: 3\n      resolution: 0.05\n      robot_radius: 0.2\n      plugins: [obstacle_layer, "
+            "inflation_layer]\n      obstacle_layer:\n        plugin: nav2_costmap_2d::ObstacleLayer\n"
+            "        observation_sources: scan\n        scan: {topic: /lidar",
+        ),
+        says="laser publishes /scan",
+    ),
+    wrong(
+        "navigate",
+        "the manager does not have the servers",
+        Edit(LAUNCH, "        manager('lifecycle_manager_navigation', NAVIGATION),\n", ""),
+        says="in node_names of a lifecycle_manager",
+    ),
+    wrong(
+        "navigate",
         "a missing server",
         Edit(LAUNCH, "    'behavior_server': 'nav2_behaviors',\n", ""),
         says="/behavior_server",
@@ -253,5 +300,23 @@ CASES = [
         Edit(NODE, "        rclpy.spin_until_future_complete(self, result)\n", ""),
         says="go_to_room.py, line",
     ),
+    wrong("send", "another frame", Edit(NODE, "'map'", "'odom'"), says="header.frame_id of the goal is 'odom'"),
+    wrong(
+        "send",
+        "the yaw for its sine",
+        Edit(NODE, "orientation.z = math.sin(yaw / 2)", "orientation.z = yaw"),
+        says="With hall:=[0.5, -0.4, 1.2], the goal is",
+    ),
+    wrong(
+        "send",
+        "the rooms in the code",
+        Edit(
+            NODE,
+            "self.get_parameter(room).value\n        goal",
+            "{'kitchen': (3.8, -0.8, 3.14), 'hall': (0.0, 0.0, 0.0)}[room]\n        goal",
+        ),
+        says="With hall:=[0.5, -0.4, 1.2], the goal is",
+    ),
+    wrong("send", "a misspelled room", Edit(ROOMS, "hall:", "Hall:"), says="rooms.yaml has no 'hall'"),
     wrong("send", "no rooms", {ROOMS: None}, says="config/rooms.yaml"),
 ]

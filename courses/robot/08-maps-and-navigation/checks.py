@@ -3,11 +3,12 @@ import math
 import numpy as np
 from flat import BODY, CONFIG, MAP, PACKAGE, Flat, free_points, read_map, read_parameters, wall_points
 
-from linkwright.graph import ActionClient
+from linkwright.graph import ActionClient, ActionServer
 from linkwright.learning import NotYet, check
 from linkwright.messages import get_action
 from linkwright.navigation.grids.grid import FREE, OCCUPIED
 from linkwright.navigation.maps.map_yaml import read_map_yaml
+from linkwright.testing import SteppedGraph
 
 MAPPING, NAVIGATION = "mapping.launch.py", "navigation.launch.py"
 ROOMS = {"kitchen": (3.8, -0.8, math.pi), "hall": (0.0, 0.0, 0.0)}
@@ -49,6 +50,23 @@ def slam_has_frames(work):
             en=f"base_frame is '{parameters.get('base_frame')}'; mbot's frame on the ground is base_footprint.",
             zh=f"base_frame 是“{parameters.get('base_frame')}”；mbot 在地面上的坐标系是 base_footprint。",
         )
+    expect_names(parameters, "slam.yaml", {"map_frame": "map", "odom_frame": "odom", "scan_topic": "scan"})
+    if parameters.get("resolution", 0.05) != 0.05:
+        raise NotYet(
+            en=f"resolution is {parameters['resolution']}, but a cell should be 0.05 m wide.",
+            zh=f"resolution 是 {parameters['resolution']}，一个格子应当宽 0.05 m。",
+        )
+
+
+def expect_names(parameters, file, names):
+    """Require parameters, if they are set, to be names of mbot's frames and topics."""
+    for name, expected in names.items():
+        value = parameters.get(name, expected)
+        if str(value).removeprefix("/") != expected:
+            raise NotYet(
+                en=f"{name} in {file} is '{value}', but mbot has '{expected}'.",
+                zh=f"{file} 中的 {name} 是“{value}”，而 mbot 的是“{expected}”。",
+            )
 
 
 @check(
@@ -62,7 +80,14 @@ def slam_draws_map(work):
         running.expect_node("/slam_toolbox")
         expect_parameters(running, "/slam_toolbox", parameters, ["base_frame", "minimum_travel_distance"])
         running.expect_node("/gazebo")
-        running.wait_for_message("/map", lambda message: OCCUPIED in message.data)
+        try:
+            running.wait_for_message("/map", lambda message: OCCUPIED in message.data)
+        except NotYet:
+            raise NotYet(
+                en="slam_toolbox draws no wall; are scan_topic, odom_frame and max_laser_range in slam.yaml those of "
+                "the lesson?",
+                zh="slam_toolbox 没有画出墙；slam.yaml 中的 scan_topic、odom_frame 和 max_laser_range 与课文一致吗？",
+            ) from None
         running.expect_transform("map", "base_footprint")
 
 
@@ -97,9 +122,12 @@ def map_has_rooms(work):
         share = float((grid.cells[tuple(cells[inside].T)] == FREE).sum() / len(room))
         if share < 0.9:
             side = "<" if name == "hall" else ">"
+            hint_en, hint_zh = ("Is flat.yaml as map_saver_cli wrote it?", "flat.yaml 与 map_saver_cli 写的一样吗？")
+            if (grid.cells == FREE).any():
+                hint_en = hint_zh = ""
             raise NotYet(
-                en=f"The map shows only {share:.0%} of the {name}, the room with x {side} 1.5.",
-                zh=f"地图只显示了{chinese}（x {side} 1.5 的房间）的 {share:.0%}。",
+                en=f"The map shows only {share:.0%} of the {name}, the room with x {side} 1.5. {hint_en}",
+                zh=f"地图只显示了{chinese}（x {side} 1.5 的房间）的 {share:.0%}。{hint_zh}",
             )
 
 
@@ -149,18 +177,44 @@ def launch_localizes(work):
             running.expect_node(name)
         expect_parameters(running, "/amcl", parameters, ["base_frame_id", "max_particles"])
         expect_map(running)
-        running.expect_transform("map", "base_footprint")
+        expect_map_frame(running, parameters)
 
 
 def expect_map(running):
     try:
         running.wait_for_message("/map", lambda message: OCCUPIED in message.data)
     except NotYet:
+        en, zh = ([problem.get(language) for problem in running.problems()] for language in ("en", "zh"))
         raise NotYet(
             en="map_server publishes no map; does a lifecycle_manager activate it, and is yaml_filename the path of "
-            "your map?",
-            zh="map_server 没有发布地图；lifecycle_manager 激活它了吗？yaml_filename 是你的地图的路径吗？",
+            f"your map? {''.join(en[:1])}",
+            zh="map_server 没有发布地图；lifecycle_manager 激活它了吗？yaml_filename 是你的地图的路径吗？"
+            f"{''.join(zh[:1])}",
         ) from None
+
+
+def expect_map_frame(running, parameters):
+    """Require the transform that amcl publishes, or tell which of its parameters prevents it."""
+    try:
+        running.expect_transform("map", "base_footprint")
+    except NotYet:
+        names = {"global_frame_id": "map", "odom_frame_id": "odom", "scan_topic": "scan"}
+        for name, expected in names.items():
+            value = parameters.get(name, expected)
+            if str(value).removeprefix("/") != expected:
+                raise NotYet(
+                    en=f"There is no transform from 'map' to 'base_footprint': {name} of amcl is '{value}', but mbot "
+                    f"has '{expected}'.",
+                    zh=f"没有从“map”到“base_footprint”的变换：amcl 的 {name} 是“{value}”，而 mbot 的是“{expected}”。",
+                ) from None
+        if parameters.get("set_initial_pose") is not True:
+            raise NotYet(
+                en="There is no transform from 'map' to 'base_footprint': amcl does not know where mbot begins; set "
+                "set_initial_pose to true.",
+                zh="没有从“map”到“base_footprint”的变换：amcl 不知道 mbot 从哪里出发；"
+                "请把 set_initial_pose 设为 true。",
+            ) from None
+        raise
 
 
 @check("localize", en="amcl corrects a wrong starting pose.", zh="amcl 修正不准的出发位姿。")
@@ -210,6 +264,46 @@ def costmaps_have_radius(work):
             raise NotYet(
                 en=f"robot_radius of {name} is {radius}; the body of mbot has a radius of 0.2 m.",
                 zh=f"{name} 的 robot_radius 是 {radius}；mbot 的车身半径是 0.2 m。",
+            )
+
+
+LAYERS = {
+    "global_costmap": ("StaticLayer", "ObstacleLayer", "InflationLayer"),
+    "local_costmap": ("ObstacleLayer", "InflationLayer"),
+}
+
+
+@check("navigate", en="The costmaps have their layers.", zh="代价地图的各层齐全。")
+def costmaps_have_layers(work):
+    for costmap, layers in LAYERS.items():
+        parameters = read_parameters(work, CONFIG, costmap, costmap)
+        names = parameters.get("plugins")
+        names = names if isinstance(names, list) else []
+        for name in names:
+            if f"{name}.plugin" not in parameters:
+                raise NotYet(
+                    en=f"The plugins of {costmap} list '{name}', but there is no plugin below '{name}:'.",
+                    zh=f"{costmap} 的 plugins 中有“{name}”，但“{name}:”下面没有 plugin。",
+                )
+        found = [str(parameters[f"{name}.plugin"]) for name in names]
+        for layer in layers:
+            accepted = (layer, "VoxelLayer") if layer == "ObstacleLayer" else layer
+            if not any(kind.endswith(accepted) for kind in found):
+                raise NotYet(
+                    en=f"{costmap} has no {layer} among its plugins.", zh=f"{costmap} 的 plugins 中没有 {layer}。"
+                )
+        for name in names:
+            expect_source(costmap, name, parameters)
+
+
+def expect_source(costmap, layer, parameters):
+    """Require the sources of an obstacle layer to be the scans of mbot."""
+    for source in str(parameters.get(f"{layer}.observation_sources", "")).split():
+        topic = parameters.get(f"{layer}.{source}.topic")
+        if str(topic).removeprefix("/") != "scan":
+            raise NotYet(
+                en=f"The topic of {layer} of {costmap} is {topic}, but mbot's laser publishes /scan.",
+                zh=f"{costmap} 的 {layer} 的 topic 是 {topic}，而 mbot 的激光发布 /scan。",
             )
 
 
@@ -268,7 +362,17 @@ def launch_navigates(work):
     with work.package(PACKAGE).launch(NAVIGATION) as running:
         for name in ("/planner_server", "/controller_server", "/behavior_server", "/bt_navigator"):
             running.expect_node(name)
-        expect_parameters(running, "/controller_server", controller, ["FollowPath.plugin"])
+        try:
+            expect_parameters(running, "/controller_server", controller, ["FollowPath.plugin"])
+        except NotYet as reason:
+            if "FollowPath.plugin" not in controller:
+                raise
+            raise NotYet(
+                en=f"{reason}; is controller_server in node_names of a lifecycle_manager, and FollowPath in "
+                "controller_plugins?",
+                zh=f"{reason.text.get('zh')}；controller_server 在 lifecycle_manager 的 node_names 中吗？"
+                "controller_plugins 中有 FollowPath 吗？",
+            ) from None
         running.expect_node("/global_costmap/global_costmap")
         running.wait_for_message("/global_costmap/costmap")
         running.expect_transform("map", "base_footprint")
@@ -288,7 +392,10 @@ def navigation_is_packaged(work):
 def goes_to_rooms(work):
     package = work.package(PACKAGE)
     main, rooms = package.program("go_to_room"), package.file("config/rooms.yaml")
-    read_parameters(work, "config/rooms.yaml", "go_to_room")
+    parameters = read_parameters(work, "config/rooms.yaml", "go_to_room")
+    for room in ROOMS:
+        if room not in parameters:
+            raise NotYet(en=f"rooms.yaml has no '{room}'.", zh=f"rooms.yaml 中没有“{room}”。")
     with Flat(work) as test:
         for room in ("kitchen", "hall"):
             words = ["--params-file", str(rooms), "-p", f"room:={room}", "-p", "use_sim_time:=true"]
@@ -308,6 +415,53 @@ def goes_to_rooms(work):
                     en=f"mbot is in the {room}, but go_to_room does not end.",
                     zh=f"mbot 已在 {room}，但 go_to_room 没有结束。",
                 )
+
+
+POSES = {"kitchen": (3.8, -0.8, 3.14), "hall": (0.5, -0.4, 1.2)}
+"""The rooms that the check gives as parameters."""
+
+
+@check(
+    "send",
+    en="The goal is the pose of the room in the frame map.",
+    zh="目标是房间在 map 坐标系中的位姿。",
+)
+def goal_is_room(work):
+    main = work.package(PACKAGE).program("go_to_room")
+    for room, (x, y, yaw) in POSES.items():
+        pose = sent_goal(main, room, (x, y, yaw)).pose
+        if pose.header.frame_id != "map":
+            raise NotYet(
+                en=f"header.frame_id of the goal is '{pose.header.frame_id}', but the rooms are in the frame 'map'.",
+                zh=f"目标的 header.frame_id 是“{pose.header.frame_id}”，而房间的坐标系是“map”。",
+            )
+        place, turn = pose.pose.position, pose.pose.orientation
+        actual = place.x, place.y, 2 * math.atan2(turn.z, turn.w)
+        if math.dist(actual[:2], (x, y)) > 0.01 or abs(math.remainder(actual[2] - yaw, math.tau)) > 0.01:
+            raise NotYet(
+                en=f"With {room}:=[{x}, {y}, {yaw}], the goal is {place_text(*actual)}.",
+                zh=f"{room}:=[{x}, {y}, {yaw}] 时，目标是 {place_text(*actual)}。",
+            )
+
+
+def sent_goal(main, room, pose):
+    """Return the goal that go_to_room sends for a room."""
+    kind = get_action("nav2_msgs/action/NavigateToPose")
+    goals = []
+
+    def execute(handle):
+        goals.append(handle.request)
+        handle.succeed()
+        return kind.Result()
+
+    with SteppedGraph() as test:
+        ActionServer(test.node, kind, "navigate_to_pose", execute)
+        words = ["-p", f"room:={room}", "-p", f"{room}:=[{', '.join(map(str, pose))}]"]
+        test.start_program(main, ["--ros-args", *words])
+        test.advance(5.0)
+    if not goals:
+        raise NotYet(en="No goal arrives at the action navigate_to_pose.", zh="动作 navigate_to_pose 没有收到目标。")
+    return goals[0]
 
 
 @check(

@@ -43,18 +43,26 @@ def read_parameters(work, file, *names):
     """
     path = work.package(PACKAGE).file(file)
     found = work.package(PACKAGE).yaml(file)
-    for name in (*names, "ros__parameters"):
-        if not isinstance(found, dict) or not isinstance(found.get(name), dict):
-            place = " / ".join(names)
-            if name != "ros__parameters":
-                raise NotYet(
-                    en=f"{path.name} has no '{name}' for {place}.", zh=f"{path.name} 中，{place} 缺少“{name}”。"
-                )
+    place = " / ".join(names)
+    for level, name in enumerate((*names, "ros__parameters")):
+        if isinstance(found, dict) and isinstance(found.get(name), dict):
+            found = found[name]
+            continue
+        if name == "ros__parameters":
             raise NotYet(
                 en=f"In {path.name}, ros__parameters, with two underscores, is missing below {place}.",
                 zh=f"{path.name} 中，{place} 的下一层缺少 ros__parameters（有两个下划线）。",
             )
-        found = found[name]
+        if level:
+            raise NotYet(
+                en=f"{path.name} needs the name '{name}' twice: once at the left margin, and below it, indented.",
+                zh=f"{path.name} 中，“{name}”要写两次：一次在最左边，一次在它的下一层（缩进）。",
+            )
+        others = ", ".join(map(str, found)) if isinstance(found, dict) else "-"
+        raise NotYet(
+            en=f"{path.name} has no '{name}' at the left margin; it has: {others}.",
+            zh=f"{path.name} 的最左边没有“{name}”；它有：{others}。",
+        )
     return flatten(found)
 
 
@@ -110,6 +118,7 @@ class Flat(SteppedSimulation):
             BehaviorServer(self.graph, self._options["behavior_server"])
             BtNavigator(self.graph, self._options["bt_navigator"])
         self.watch(3.0)
+        self._begin = len(self.log)
         return self
 
     @property
@@ -125,8 +134,12 @@ class Flat(SteppedSimulation):
             self.smallest_gap = min(self.smallest_gap, gap(self.place[:2]))
 
     def last_warning(self):
-        """Return the last warning or error of a node, with its name; empty if there is none."""
-        found = [record for record in self.log if record.level >= LogLevel.WARN]
+        """Return the last warning or error of a node, with its name; empty if there is none.
+
+        While the nodes start, they warn of what is not there yet; then only errors count.
+        """
+        late = [record for record in self.log[self._begin :] if record.level >= LogLevel.WARN]
+        found = late or [record for record in self.log[: self._begin] if record.level >= LogLevel.ERROR]
         return f"{found[-1].node}: {found[-1].text}" if found else ""
 
     def has_goal(self):

@@ -220,6 +220,34 @@ CASES = [
     ),
     wrong(
         "search",
+        "an old ball",
+        Edit(NODE, "Duration(seconds=0.5)", "Duration(seconds=5)"),
+        says="1 s after the last ball",
+    ),
+    wrong(
+        "search",
+        "the empty target starts a search",
+        Edit(NODE, "'searching' if message.data else 'waiting'", "'searching'"),
+        says="in 'searching'",
+    ),
+    wrong(
+        "search",
+        "the empty target is ignored",
+        Edit(
+            NODE,
+            "        self.state = 'searching' if message.data else 'waiting'\n",
+            "        if message.data:\n            self.state = 'searching'\n",
+        ),
+        says="which came in 'searching'",
+    ),
+    wrong(
+        "search",
+        "the ball of the last target",
+        Edit(NODE, "'waiting'\n        self.ball = None\n\n    def on_ball", "'waiting'\n\n    def on_ball"),
+        says="does on_target forget the ball",
+    ),
+    wrong(
+        "search",
         "it follows the ball",
         Edit(NODE, "self.state in ('searching', 'driving')", "self.state != 'waiting'"),
         says="it moves again",
@@ -253,6 +281,12 @@ CASES = [
         "no file",
         Edit(LAUNCH, "parameters = [str(config), {", "parameters = [{"),
         says="does not hand mission.yaml to the node",
+    ),
+    wrong(
+        "launch",
+        "a text for a number",
+        Edit(CONFIG, "stop_distance: 0.6", "stop_distance: '0.6'"),
+        says="to '0.6' of type 'STRING'",
     ),
     wrong(
         "launch",
@@ -301,6 +335,16 @@ CASES = [
         ),
         Edit(SYSTEM_TEST, "timeout=10.0", "timeout=3.0"),
         says="it did not happen in time",
+    ),
+    wrong(
+        "system-test",
+        "the stop is not awaited",
+        Edit(
+            SYSTEM_TEST,
+            "        self.wait_for(lambda: self.velocity.linear.x == 0.0 and self.velocity.angular.z == 0.0)\n",
+            "",
+        ),
+        says="that never stops",
     ),
     wrong(
         "system-test",

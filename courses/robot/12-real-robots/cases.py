@@ -4,6 +4,7 @@ FINDER = "src/my_senses/my_senses/color_finder.py"
 DRIVER = "src/my_mission/my_mission/go_to_ball.py"
 BRINGUP = "src/my_robot_bringup/"
 MODEL, LAUNCH = BRINGUP + "urdf/mbot_hardware.xacro", BRINGUP + "launch/robot.launch.py"
+CONTROLLERS = BRINGUP + "config/controllers.yaml"
 CMAKE, MANIFEST = BRINGUP + "CMakeLists.txt", BRINGUP + "package.xml"
 
 CHANNELS = "CHANNELS[message.encoding][COLORS.index(self.target)]"
@@ -17,6 +18,13 @@ TWO_SYSTEMS = """<?xml version="1.0"?>
     <hardware>
       <plugin>$(arg hardware)</plugin>
       <param name="device">$(arg device)</param>
+      <param name="left_wheel_name">left_wheel_joint</param>
+      <param name="right_wheel_name">right_wheel_joint</param>
+      <param name="baud_rate">115200</param>
+      <param name="timeout_ms">500</param>
+      <param name="loop_rate">50</param>
+      <param name="enc_counts_per_rev">400</param>
+      <param name="calculate_dynamics">true</param>
     </hardware>
     <joint name="left_wheel_joint">
       <command_interface name="velocity"><param name="min">-10</param></command_interface>
@@ -72,6 +80,28 @@ CASES = [
         Edit(FINDER, "'bgr8'", "'brg8'"),
         says="of encoding bgr8, color_finder publishes nothing",
     ),
+    wrong(
+        "camera",
+        "green and blue exchanged",
+        Edit(FINDER, "(2, 1, 0)", "(2, 0, 1)"),
+        says="For a green ball in an image of encoding bgr8",
+    ),
+    wrong(
+        "camera",
+        "an error for each image",
+        Edit(FINDER, ", throttle_duration_sec=5.0", ""),
+        says="It logs 5 errors",
+    ),
+    wrong(
+        "camera",
+        "no error",
+        Edit(
+            FINDER,
+            "self.get_logger().error(f'no colors in {message.encoding}', throttle_duration_sec=5.0)\n            return",
+            "return",
+        ),
+        says="It logs no error",
+    ),
     right(
         "qos",
         "a profile of one's own",
@@ -102,6 +132,12 @@ CASES = [
         "no import",
         Edit(FINDER, "from rclpy.qos import qos_profile_sensor_data\n", ""),
         says="color_finder.py, line",
+    ),
+    wrong(
+        "qos",
+        "also the publisher",
+        Edit(FINDER, "'ball', 10)", "'ball', qos_profile_sensor_data)"),
+        says="go_to_ball asks for reliable",
     ),
     right(
         "give-up",
@@ -148,6 +184,17 @@ CASES = [
         ),
         says="does not search for another 5 s",
     ),
+    wrong(
+        "give-up",
+        "the first search only",
+        Edit(
+            DRIVER,
+            "        if message.data:\n            self.search()",
+            "        if message.data:\n            self.state = 'searching'\n"
+            "            self.search_start = self.search_start or self.get_clock().now()",
+        ),
+        says="after the next target",
+    ),
     right("hardware", "without macros, with limits", {MODEL: TWO_SYSTEMS}),
     wrong(
         "hardware",
@@ -172,6 +219,67 @@ CASES = [
         "the device is constant",
         Edit(MODEL, "$(arg device)", "/dev/ttyUSB0"),
         says="With device:=/dev/ttyACM1",
+    ),
+    wrong(
+        "hardware",
+        "wheels exchanged",
+        Edit(MODEL, '"left_wheel_name">left', '"left_wheel_name">right'),
+        says="'left_wheel_name' is 'right_wheel_joint'",
+    ),
+    wrong(
+        "hardware",
+        "a forgotten parameter",
+        Edit(MODEL, '      <param name="baud_rate">57600</param>\n', ""),
+        says="has no parameter 'baud_rate'",
+    ),
+    wrong("hardware", "a letter for a digit", Edit(MODEL, ">30<", ">3o<"), says="'loop_rate' is '3o'"),
+    wrong("hardware", "an actuator", Edit(MODEL, 'type="system"', 'type="actuator"'), says="should be 'system'"),
+    wrong(
+        "bringup",
+        "wheels exchanged",
+        Edit(CONTROLLERS, "left_wheel_names: [left", "left_wheel_names: [right"),
+        Edit(CONTROLLERS, "\n    right_wheel_names: [right", "\n    right_wheel_names: [left"),
+        says="left_wheel_names of /base_controller is",
+    ),
+    wrong(
+        "bringup",
+        "no radius",
+        Edit(CONTROLLERS, "    wheel_radius: 0.06\n", ""),
+        says="wheel_radius of /base_controller is",
+    ),
+    wrong(
+        "bringup",
+        "stamped velocities",
+        Edit(CONTROLLERS, "use_stamped_vel: false", "use_stamped_vel: true"),
+        says="is use_stamped_vel false?",
+    ),
+    wrong(
+        "bringup",
+        "hardware is not handed to xacro",
+        Edit(LAUNCH, ", ' hardware:=', hardware]", "]"),
+        says="With hardware:=mock_components/GenericSystem",
+    ),
+    wrong(
+        "bringup",
+        "another default",
+        Edit(
+            LAUNCH,
+            "default_value='diffdrive_arduino/DiffDriveArduinoHardware'",
+            "default_value='mock_components/GenericSystem'",
+        ),
+        says="With no arguments",
+    ),
+    wrong(
+        "bringup",
+        "always the camera",
+        Edit(LAUNCH, ",\n             condition=IfCondition(LaunchConfiguration('camera'))", ""),
+        says="With camera:=false",
+    ),
+    wrong(
+        "bringup",
+        "never the camera",
+        Edit(LAUNCH, "default_value='true'", "default_value='false'"),
+        says="does not start the driver of the camera",
     ),
     wrong(
         "bringup",
@@ -224,6 +332,38 @@ CASES = [
     ),
     wrong(
         "install",
+        "parentheses for braces",
+        Edit(CMAKE, "DESTINATION share/${PROJECT_NAME}", "DESTINATION share/$(PROJECT_NAME)"),
+        says="with braces",
+    ),
+    wrong(
+        "install",
+        "no ament_cmake",
+        Edit(CMAKE, "find_package(ament_cmake REQUIRED)\n", ""),
+        says="does not call find_package(ament_cmake REQUIRED)",
+    ),
+    wrong(
+        "install",
+        "after ament_package",
+        Edit(CMAKE, "install(DIRECTORY config launch urdf DESTINATION share/${PROJECT_NAME})\n", ""),
+        Edit(
+            CMAKE,
+            "ament_package()",
+            "ament_package()\ninstall(DIRECTORY config launch urdf DESTINATION share/${PROJECT_NAME})",
+        ),
+        says="must be the last command",
+    ),
+    wrong(
+        "install",
+        "before the project",
+        Edit(CMAKE, "install(DIRECTORY config launch urdf DESTINATION share/${PROJECT_NAME})\n", ""),
+        Edit(
+            CMAKE, "project(my", "install(DIRECTORY config launch urdf DESTINATION share/${PROJECT_NAME})\nproject(my"
+        ),
+        says="below project(...)",
+    ),
+    wrong(
+        "install",
         "a misspelled folder",
         Edit(CMAKE, "config launch urdf", "confg launch urdf"),
         says="which does not exist",
@@ -242,4 +382,6 @@ CASES = [
     ),
     wrong("domain", "one port a domain", says="250 ports", answer="7442"),
     wrong("domain", "without the first port", says="Add the 7400", answer="10500"),
+    wrong("domain", "a comma", says="without a comma", answer="17,900"),
+    wrong("domain", "the domain before", says="domain 41", answer="17650"),
 ]

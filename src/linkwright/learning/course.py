@@ -174,13 +174,18 @@ class Course:
                 raise LinkwrightError(Diagnostic("LEARN106", message, hint=hint))
         return tuple(known[name] for name in names) or self.lessons
 
-    def find_step(self, name: str) -> Step:
+    def find_step(self, name: str, lessons: Sequence[Lesson] = ()) -> Step:
         """Return the step with a name: ``LESSON/STEP``, or ``STEP`` if only one lesson has such a step.
+
+        Args:
+            name: the name.
+            lessons: the lessons to search; all if there are none.
 
         Raises:
             LinkwrightError: LEARN106, there is no such step, or there are several.
         """
-        found = [step for step in self.steps if name in {step.address, step.id}]
+        steps = [step for lesson in lessons or self.lessons for step in lesson.steps]
+        found = [step for step in steps if name in {step.address, step.id}]
         if len(found) == 1:
             return found[0]
         if found:
@@ -191,14 +196,14 @@ class Course:
                     hint=phrase("write {names}", names=quoted_names((step.address for step in found), " or ")),
                 )
             )
-        names = [*(step.address for step in self.steps), *(step.id for step in self.steps)]
-        raise LinkwrightError(
-            Diagnostic(
-                "LEARN106",
-                phrase("the course '{course}' has no step '{name}'", course=self.id, name=name),
-                hint=did_you_mean(name, names) or phrase("list the steps with `linkwright learn list`"),
-            )
-        )
+        names = [*(step.address for step in steps), *(step.id for step in steps)]
+        message = phrase("the course '{course}' has no step '{name}'", course=self.id, name=name)
+        hint = did_you_mean(name, names) or phrase("list the steps with `linkwright learn list`")
+        if lessons:
+            places = quoted_names([lesson.id for lesson in lessons], " or ")
+            message = phrase("there is no step '{name}' in {lessons}", name=name, lessons=places)
+            hint = did_you_mean(name, names) or phrase("write {names}", names=quoted_names(names[len(steps) :], " or "))
+        raise LinkwrightError(Diagnostic("LEARN106", message, hint=hint))
 
 
 def files_below(folder: Path) -> Iterator[tuple[Path, Path]]:

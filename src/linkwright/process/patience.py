@@ -17,17 +17,26 @@ class PatientClock:
 
     On a busy machine, the clock is slower than real time. If the system does not report waiting times (Linux reports
     them in schedstat), the clock follows real time. Call `read` every few milliseconds to seconds.
+
+    Attributes:
+        cpu_seconds: the processor time that the processes used until the last call of `read`, without the last
+            moments of processes that have ended.
+
+    Args:
+        process: the ID of the process; None for this process.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, process: int | None = None) -> None:
+        self._process = os.getpid() if process is None else process
         self._start = self._last = time.monotonic()
         self._hindered = 0.0
-        self._usages = dict(_usages_below(os.getpid()))
+        self._usages = dict(_usages_below(self._process))
+        self.cpu_seconds = 0.0
 
     def read(self) -> float:
         """Return the seconds on this clock since its creation."""
         now = time.monotonic()
-        usages = dict(_usages_below(os.getpid()))
+        usages = dict(_usages_below(self._process))
         running = waiting = 0.0
         for thread, (run, wait) in usages.items():
             run_before, wait_before = self._usages.get(thread, (0.0, 0.0))
@@ -35,6 +44,7 @@ class PatientClock:
             waiting += wait - wait_before
         if waiting > 0.0:  # the sum for sequential threads, the share for parallel ones
             self._hindered += min(now - self._last, running + waiting) * waiting / (running + waiting)
+        self.cpu_seconds += running
         self._usages, self._last = usages, now
         elapsed = now - self._start
         return max(elapsed - self._hindered, elapsed / _MOST_DELAY)

@@ -36,7 +36,13 @@ def configure_grade(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--lesson", metavar="LESSON", action="append", default=[], help="check the steps of this lesson only"
     )
-    parser.add_argument("--step", metavar="STEP", action="append", default=[], help="check this step only")
+    parser.add_argument(
+        "--step",
+        metavar="STEP",
+        action="append",
+        default=[],
+        help="check this step only; with --lesson, a step of that lesson",
+    )
     parser.add_argument(
         "--workers",
         metavar="N",
@@ -149,15 +155,16 @@ def _choose_workers(arguments: argparse.Namespace) -> AbstractContextManager[Run
 
 
 def _select_steps(course: Course, arguments: argparse.Namespace) -> list[Step]:
-    """Return the selected steps in the order of the course, or all steps if none is selected.
+    """Return the selected steps in the order of the course: those of the lessons, or individual steps in them.
 
-    The options select lessons and individual steps.
+    Raises:
+        LinkwrightError: LEARN106, the course has no such lesson, or the lessons have no such step.
     """
-    if not arguments.lesson and not arguments.step:
-        return list(course.steps)
-    lessons = {lesson.id for lesson in course.find_lessons(arguments.lesson)} if arguments.lesson else set()
-    selected_addresses = {course.find_step(name).address for name in arguments.step}
-    return [step for step in course.steps if step.lesson.id in lessons or step.address in selected_addresses]
+    lessons = course.find_lessons(arguments.lesson)
+    given = lessons if arguments.lesson else ()
+    named = {course.find_step(name, given).address for name in arguments.step}
+    ids = {lesson.id for lesson in lessons}
+    return [step for step in course.steps if step.lesson.id in ids and (not named or step.address in named)]
 
 
 def _check_outputs(outputs: Sequence[Path]) -> None:

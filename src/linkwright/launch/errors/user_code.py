@@ -176,14 +176,23 @@ def _class_hint(error: AttributeError) -> Phrase | None:
         return phrase("a class is used where its instance is required; write its name with parentheses: NAME()")
     if name.startswith("_Node__"):
         return phrase("call super().__init__('NAME') first in __init__")
-    if hasattr(owner, "TYPE_NAME"):
-        inner = next((field for field in _public_names(owner) if hasattr(getattr(owner, field, None), name)), None)
-        if name and inner is not None:
-            return phrase("did you mean '{name}'?", name=f".{inner}.{name}")
+    if hasattr(owner, "TYPE_NAME") and name and (hint := _field_hint(name, owner)):
+        return hint
     frame = _innermost_frame(error)
     if frame is not None and callable(frame.f_globals.get(name)) and "self" in frame.f_locals:
         return phrase("'{name}' is a function outside the class; indent it like the other methods", name=name)
     return None
+
+
+def _field_hint(name: str, message: object) -> Phrase | None:
+    """Return a hint about a field of a message: one of an inner message, a similar one, or one of a field's value."""
+    fields = [field for field in _public_names(message) if field.islower()]
+    having = [field for field in fields if hasattr(getattr(message, field), name)]
+    inner = [field for field in having if hasattr(getattr(message, field), "TYPE_NAME")]
+    if not inner and (hint := did_you_mean(name, fields)):
+        return hint
+    names = [f".{field}.{name}" for field in inner or having[:1]]
+    return phrase("did you mean {names}?", names=quoted_names(names, " or ")) if names else None
 
 
 def _unset_hint(name: str, owner: object, error: AttributeError) -> Phrase | None:

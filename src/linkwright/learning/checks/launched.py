@@ -9,6 +9,7 @@ import re
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import wait
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -22,6 +23,7 @@ from linkwright.graph.faults import InvalidHandleError
 from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.rviz_arguments import require_rviz_configuration
+from linkwright.learning.local_text import LocalText
 from linkwright.process.patience import PatientClock
 
 if TYPE_CHECKING:
@@ -45,6 +47,8 @@ _QUIET_SECONDS_OF_PROCESSES = 6.0
 
 _PERIOD_SECONDS = 0.02
 _NODE = "lesson_check"
+_PROCESS_LINE = re.compile(r"^\[([^\]\s]+-\d+)\] (.*)$")
+_DEATH = re.compile(r"^\[ERROR\] \[([^\]\s]+)-\d+\]: process has died")
 _LOG_PREFIX = re.compile(r"^\[[^\]]+\] \[\w+\] \[[\d.]+\] \[([^\]]+)\]: ")
 
 
@@ -303,12 +307,22 @@ class LaunchCheck:
         return [name for name, _ in self._call(self._checker.get_topic_names_and_types)]
 
     def _call(self, function: Callable[[], T]) -> T:
-        """Call a function on the event loop of the launch."""
+        """Call a function on the event loop of the launch.
+
+        Raises:
+            TimeoutError: the loop did not call it in time; the load of the machine does not count.
+        """
 
         async def call() -> T:
             return function()
 
-        return asyncio.run_coroutine_threadsafe(call(), self._loop).result(_WAIT_SECONDS)
+        future = asyncio.run_coroutine_threadsafe(call(), self._loop)
+        if not wait([future], _PERIOD_SECONDS).done:
+            clock = PatientClock()
+            while not wait([future], _PERIOD_SECONDS).done:
+                if clock.read() > _WAIT_SECONDS:
+                    raise TimeoutError
+        return future.result()
 
     def _wait_until(self, condition: Callable[[], bool], problem: Phrase | Callable[[], Phrase]) -> None:
         """Wait for a condition.
@@ -369,12 +383,17 @@ class LaunchCheck:
         described = describe_finding(finding)
         return described if finding.span else phrase("{file}: {message}", file=self._file, message=described)
 
+    def problems(self) -> list[LocalText]:
+        """Return the problems that the launch has reported: its findings, then the errors of its nodes."""
+        return [LocalText.from_phrase(problem) for problem in self._problems()]
+
+    def _problems(self) -> list[Phrase]:
+        errors = [phrase("{file}: {message}", file=self._file, message=error) for error in self._errors()]
+        return [*map(self._located, self._findings), *errors]
+
     def _problem(self) -> Phrase | None:
-        """Return the first problem that the launch reported, or None."""
-        if self._findings:
-            return self._located(self._findings[0])
-        errors = self._errors()
-        return phrase("{file}: {message}", file=self._file, message=errors[0]) if errors else None
+        """Return the first problem that the launch has reported, or None."""
+        return next(iter(self._problems()), None)
 
     def _missing_topic(self, topic: str) -> Phrase:
         """Return the message for a topic without publishers, with the first error of the launch."""
@@ -405,10 +424,23 @@ class LaunchCheck:
         return phrase("there is no node '{name}'; the running nodes are {nodes}", name=name, nodes=others)
 
     def _errors(self) -> list[str]:
-        """Return the lines of the launch's output that report errors."""
-        severities = ("error", "fatal")
-        lines = self._output.getvalue().splitlines()
-        return [_LOG_PREFIX.sub(r"\1: ", line) for line in lines if any(name in line.casefold() for name in severities)]
+        """Return the lines of the launch's output that report errors.
+
+        The last line of a process that has died stands for its traceback.
+        """
+        errors: list[str] = []
+        last_lines: dict[str, str] = {}
+        for line in self._output.getvalue().splitlines():
+            if match := _PROCESS_LINE.match(line):
+                if not match[2].strip() or match[2].startswith(" "):
+                    continue
+                last_lines[match[1].rpartition("-")[0]] = match[2]
+            death = _DEATH.match(line)
+            if death and death[1] in last_lines:
+                errors.append(f"{death[1]}: {last_lines[death[1]]}")
+            elif any(name in line.casefold() for name in ("error", "fatal")):
+                errors.append(_LOG_PREFIX.sub(r"\1: ", line))
+        return errors
 
 
 def _offered_profile(node: Node, topic: str) -> QoSProfile:

@@ -172,6 +172,8 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
     from linkwright.launch.errors.user_code import hint_about
 
     text = _ADDRESS.sub("", f"{type(error).__name__}: {error}")
+    if isinstance(error, ImportError):
+        text = text.removesuffix(f" ({error.path})")  # of the module, which is none of the learner's files
     frames = traceback.extract_tb(error.__traceback__)
     own = [frame for frame in frames if Path(frame.filename).is_relative_to(workspace)]
     if isinstance(error, LinkwrightError) and (error.diagnostics[0].span is not None or not own):

@@ -29,9 +29,16 @@ from linkwright.learning.checks.work import Work
 from linkwright.learning.course import CHECKS_FILE, Step, load_lesson
 from linkwright.learning.local_text import LocalText
 from linkwright.process.forked import ForkServer, Program, start_fresh
+from linkwright.process.patience import PatientClock
+from linkwright.process.processors import usable_processors
 
 TIME_LIMIT = 120.0
-"""The seconds after which the process of a step's checks is ended. Checks with simulated worlds take the longest."""
+"""The seconds after which the process of a step's checks is ended, without the time in which it waits for a processor.
+
+Checks with simulated worlds take the longest.
+"""
+
+_PERIOD_SECONDS = 0.25
 
 PYTHON = [sys.executable]
 """The command that runs Python for checks. Tests measure the coverage of its processes."""
@@ -173,14 +180,16 @@ class CheckProcess:
     """A process that runs the checks of a step.
 
     All processes that it started end with it. If it takes longer than `time_limit`, or dies, the result of the
-    step is a failure with a message.
+    step is a failure with a message. The load of the machine does not count: the limit applies to the time on a
+    `PatientClock`, and to the processor time of all processes divided by the number of processors.
 
     Args:
         step: the step.
         workspace: the learner's workspace.
         answer: the learner's answer, a number as text.
         stop_at_failure: whether the first failed check is the last one to run.
-        time_limit: the time after which the process is killed, in seconds.
+        time_limit: the time after which the process is killed, in seconds, without the time in which its processes
+            wait for a processor.
         server: starts the process; see `create_check_server`. None to start an ordinary process.
         niceness: the increase of the process's nice value, 0 to 19; ignored on Windows.
     """
@@ -239,9 +248,8 @@ class CheckProcess:
             if self._is_canceled:
                 _end_group(process)
             try:
-                process.wait(self._time_limit)
-            except subprocess.TimeoutExpired:
-                return phrase("the check took longer than {seconds:g} s and was ended", seconds=self._time_limit)
+                if not self._ends_in_time(process):
+                    return phrase("the check took longer than {seconds:g} s and was ended", seconds=self._time_limit)
             finally:
                 self._process = None
                 _end_group(process)
@@ -250,6 +258,16 @@ class CheckProcess:
             last = (errors.decode(errors="replace").strip().splitlines() or [""])[-1]
             return phrase("the process of the check ended early: {error}", error=foreign(last))
         return None
+
+    def _ends_in_time(self, process: Program) -> bool:
+        """Wait for the end of the process, and return whether it came within the limit."""
+        clock = PatientClock(process.pid)
+        processors = usable_processors()
+        while max(clock.read(), clock.cpu_seconds / processors) < self._time_limit:
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(min(_PERIOD_SECONDS, self._time_limit))
+                return True
+        return False
 
 
 @contextmanager
