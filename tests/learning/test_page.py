@@ -218,6 +218,15 @@ def test_lesson_text_becomes_safe_html_with_own_images_only(tmp_path):
     assert step_html("[a](javascript:alert)", lesson) == "<p>[a](javascript:alert)</p>\n"
 
 
+def test_lines_of_chinese_text_join_without_space(tmp_path):
+    assert step_html("形状、位置都相同的\n碰撞体：\n机身。", tmp_path) == "<p>形状、位置都相同的碰撞体：机身。</p>\n"
+    assert step_html("这是**粗体**\n文字", tmp_path) == "<p>这是<strong>粗体</strong>文字</p>\n"
+    assert step_html("写\n`mbot.xacro`\n文件", tmp_path) == "<p>写\n<code>mbot.xacro</code>\n文件</p>\n"
+    assert step_html("“左转”\n是命令", tmp_path) == "<p>“左转”是命令</p>\n"
+    assert step_html("“left”\n“right”", tmp_path) == "<p>“left”\n“right”</p>\n"
+    assert step_html("two\nlines", tmp_path) == "<p>two\nlines</p>\n"
+
+
 def test_workspace_is_current_folder_or_new_folder(tmp_path):
     assert workspace_at(tmp_path) == tmp_path
     (tmp_path / "file").touch()

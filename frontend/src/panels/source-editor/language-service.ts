@@ -14,6 +14,8 @@ import { sanitizeHtml } from "./safe-html";
 import type { SourceDocument } from "./source-document";
 
 const TIMEOUT_MS = 20_000;
+/** A server has this time to start, ms: on a busy computer it takes longer than an answer. */
+const START_MS = 600_000;
 /** Changes are sent this time after the last key, ms. */
 const SYNC_MS = 120;
 
@@ -22,17 +24,38 @@ const OUTDATED: readonly unknown[] = [-32800, -32801];
 /** Requests that the next key or movement of the mouse repeats. */
 const REPEATED = ["textDocument/completion", "textDocument/hover"];
 
-/** A client for which an outdated answer is none, and no error. */
+class TimeoutError extends Error {
+  constructor() {
+    super("Request timed out");
+  }
+}
+
+/** A client that waits for the start of its server, and for which an outdated answer is none, and no error. */
 class PatientClient extends LSPClient {
   // eslint-disable-next-line @typescript-eslint/no-unnecessary-type-parameters -- the type of the overridden method
   override request<Params, Result>(method: string, params: Params): Promise<Result> {
-    const answer = super.request<Params, Result>(method, params);
+    const answer = this.limitTime(super.request<Params, Result>(method, params));
     if (!REPEATED.includes(method)) return answer;
     return answer.catch((error: unknown) => {
-      if (typeof error === "object" && error !== null && "code" in error && OUTDATED.includes(error.code)) return null as Result;
+      if (isOutdated(error)) return null as Result;
       throw error;
     });
   }
+
+  /** Rejects if an answer takes too long, counted from the start of the server. */
+  private limitTime<Result>(answer: Promise<Result>): Promise<Result> {
+    return new Promise((resolve, reject) => {
+      let timer: ReturnType<typeof setTimeout> | undefined;
+      const startTimer = (): void => void (timer = setTimeout(() => reject(new TimeoutError()), TIMEOUT_MS));
+      this.initializing.then(startTimer, () => undefined); // the answer is rejected, too
+      answer.then(resolve, reject).finally(() => clearTimeout(timer));
+    });
+  }
+}
+
+function isOutdated(error: unknown): boolean {
+  if (error instanceof TimeoutError) return true;
+  return typeof error === "object" && error !== null && "code" in error && OUTDATED.includes(error.code);
 }
 
 class DocumentFile implements WorkspaceFile {
@@ -136,7 +159,7 @@ export class LanguageService {
   ) {
     let workspace: DocumentWorkspace | undefined;
     this.config = {
-      timeout: TIMEOUT_MS,
+      timeout: START_MS,
       sanitizeHTML: sanitizeHtml,
       workspace: (client) => (workspace = new DocumentWorkspace(client, documents)),
       notificationHandlers: {

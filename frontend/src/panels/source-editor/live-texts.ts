@@ -19,8 +19,8 @@ interface LiveDocuments {
 export class LiveTexts {
   private timer: ReturnType<typeof setTimeout> | undefined;
   private number = 0;
-  /** The files whose unsaved texts the server has, with the newest of their numbers. */
-  private readonly sentVersions = new Map<string, number>();
+  /** The newest request about each file whose unsaved text the server has, or has not yet removed. */
+  private readonly newestRequests = new Map<string, { readonly number: number; readonly isRemoval: boolean }>();
   private readonly outcomes = new Map<string, UnsavedTextShown["outcome"]>();
 
   /** @param onOutcome - called when the server has shown a text, or could not. */
@@ -47,7 +47,7 @@ export class LiveTexts {
 
   /** Sends all unsaved texts to a program that has none of them. */
   restart(): void {
-    this.sentVersions.clear();
+    this.newestRequests.clear();
     this.outcomes.clear();
     for (const document of this.documents.open) document.described = null;
     this.send();
@@ -56,7 +56,7 @@ export class LiveTexts {
   private send(): void {
     for (const document of this.documents.open) {
       const { path } = document;
-      const wasSent = this.sentVersions.has(path);
+      const hasServerText = this.newestRequests.get(path)?.isRemoval === false;
       if (document.isUnsaved && this.documents.isShownInScene(path)) {
         if (document.newestSent?.changes.empty === true) continue;
         const text = document.state.doc.toString();
@@ -64,7 +64,7 @@ export class LiveTexts {
         this.number += 1;
         document.beginShowing(this.number);
         this.request(path, text);
-      } else if (wasSent && !document.isUnsaved) {
+      } else if (hasServerText && !document.isUnsaved) {
         this.number += 1;
         document.beginShowing(this.number);
         this.request(path, null);
@@ -73,7 +73,7 @@ export class LiveTexts {
   }
 
   private request(path: string, text: string | null): void {
-    this.sentVersions.set(path, this.number);
+    this.newestRequests.set(path, { number: this.number, isRemoval: text === null });
     this.connection.send({ type: "show_unsaved_text", number: this.number, path, text });
   }
 
@@ -81,13 +81,13 @@ export class LiveTexts {
     const document = this.documents.open.find((candidate) => candidate.path === path);
     if (!document) return;
     document.endShowing(number, outcome === "shown");
-    if (this.sentVersions.get(path) !== number) return;
-    if (document.isUnsaved) this.outcomes.set(path, outcome);
-    else {
+    const newest = this.newestRequests.get(path);
+    if (newest?.number !== number) return;
+    if (newest.isRemoval) {
       this.outcomes.delete(path);
-      this.sentVersions.delete(path);
+      this.newestRequests.delete(path);
       document.described = null;
-    }
+    } else this.outcomes.set(path, outcome);
     this.onOutcome();
   }
 }

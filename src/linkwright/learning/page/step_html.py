@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from base64 import b64encode
 from functools import lru_cache
 from pathlib import Path
@@ -18,12 +19,16 @@ if TYPE_CHECKING:
 MAX_IMAGE_BYTES = 400_000
 """The maximum size of an image in the text of a lesson, because pages receive images as part of the text."""
 
+_CHINESE = "\u3000-\u303f\u3400-\u9fff\uff00-\uffef"
+_CHINESE_PAIR = re.compile(f"[{_CHINESE}][{_CHINESE}“”‘’…—]|[“”‘’…—][{_CHINESE}]")
+"""Two characters between which Chinese text has no space; quotation marks and dashes are those of English, too."""
+
 
 def step_html(text: str, folder: Path) -> str:
     """Return the HTML of a Markdown text.
 
     HTML in the text is escaped. An image is embedded if it is a file below the lesson's folder; other
-    images are replaced with their descriptions.
+    images are replaced with their descriptions. The end of a line is a space, except between Chinese characters.
 
     Args:
         text: the Markdown.
@@ -38,7 +43,14 @@ def _renderer() -> MarkdownIt:
 
     renderer = MarkdownIt("commonmark", {"html": False}).enable("table")
     renderer.add_render_rule("image", _render_image)
+    renderer.add_render_rule("softbreak", _render_line_end)
     return renderer
+
+
+def _render_line_end(_renderer: Any, tokens: Sequence[Token], index: int, _options: Any, _env: Any) -> str:
+    before = next((token.content[-1] for token in reversed(tokens[:index]) if token.content), "")
+    after = next((token.content[0] for token in tokens[index + 1 :] if token.content), "")
+    return "" if _CHINESE_PAIR.match(before + after) else "\n"
 
 
 def _render_image(renderer: Any, tokens: Sequence[Token], index: int, options: Any, env: Any) -> str:
