@@ -192,8 +192,10 @@ def house() -> list[Model | Include]:
 
 
 def maze(size: int = 9, cell: float = 1.1, seed: int = 7) -> list[Model | Include]:
-    """Return a maze of square cells with one path between any two; the robot starts in one corner and leaves at the
-    opposite one."""
+    """Return a maze of square cells with one path between any two.
+
+    The robot starts in one corner and leaves at the opposite one.
+    """
     chance = random.Random(seed)
     here, seen = (0, 0), {(0, 0)}
     way, open_between = [here], set()
@@ -223,8 +225,10 @@ def maze(size: int = 9, cell: float = 1.1, seed: int = 7) -> list[Model | Includ
 
 
 def _runs(line: int, closed: Sequence[bool], cell: float) -> Iterator[tuple[float, float, float]]:
-    """Yield the position of a grid line, and the start and end of each of its walls, in meters; cell 0 is centered at
-    0."""
+    """Yield the position of a grid line, and the start and end of each of its walls, in meters.
+
+    Cell 0 is centered at 0.
+    """
     start = None
     for at, wanted in enumerate([*closed, False]):
         if wanted:

@@ -151,10 +151,8 @@ def _recording(found: Declarations, given: Mapping[str, Any]) -> Iterator[None]:
             known = found.setdefault(owner, {}).setdefault(name, record)
             if name.startswith(f"{_ITEM}.") and listing:
                 known["keys"] = sorted({*known.get("keys", ()), *listing})
-    for (
-        owner,
-        name,
-    ), entry in tables.items():  # parameters of one distribution, which are not declared in the other one
+    # parameters of one distribution, which are not declared in the other one
+    for (owner, name), entry in tables.items():
         if "*" not in name:
             found.setdefault(owner, {}).setdefault(name, _record(entry.default, None, entry))
 
