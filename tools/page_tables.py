@@ -204,7 +204,7 @@ def gallery(chinese: bool) -> str:
 
 
 def pack(chinese: bool) -> str:
-    """Return the table of packages that packs lack on some systems, with the Python versions that have them."""
+    """Return the table of a course's parts that some packs lack, with the Python versions that have them by system."""
     language = "zh" if chinese else "en"
     labels = [system.label for system in targets.SYSTEMS.values()]
     rows = [f"| {'部分' if chinese else 'part'} | {' | '.join(labels)} |", f"| --- |{' --- |' * len(labels)}"]
