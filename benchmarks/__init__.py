@@ -1,1 +1,1 @@
-"""Measurements of what the project promises; none of them is a test."""
+"""Measurements of the project's promised figures, which are not tests."""

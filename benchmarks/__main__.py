@@ -1,7 +1,7 @@
 """``python -m benchmarks [--list] [--write] [NAME ...]``: run all measurements, or those named (`xacro`, `dds`, ...).
 
-With ``--list`` only their names and what they measure are printed. With ``--write`` the figures go to
-``docs/benchmarks.md`` and its Chinese sister too.
+With ``--list``, only their names and subjects are printed. With ``--write``, the figures are also written to
+``docs/benchmarks.md`` and its Chinese version.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from benchmarks.robots import has_corpus
 
 
 def main() -> int:
-    """Run them one after another, each in this process, each printing its table."""
+    """Run the measurements in this process, one after another, and print a table for each."""
     here = Path(__file__).parent
     known = sorted(path.stem.removeprefix("bench_") for path in here.glob("bench_*.py"))
     names = [word for word in sys.argv[1:] if word not in ("--write", "--list")] or known

@@ -1,4 +1,4 @@
-"""What the first test of a new contributor takes: a fresh clone, its environment, the tests of one room."""
+"""Measure the first test of a new contributor: a fresh clone, its environment, the tests of one room."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ TESTS = "tests/urdf"
 
 
 def rows() -> list[Row]:
-    """Measure. Packages come from uv's cache where they are in it: how fast a network is, is not measured."""
+    """Measure with packages from uv's cache if possible, because the network's speed is not of interest."""
     with tempfile.TemporaryDirectory() as folder:
         clone = Path(folder) / "clone"
         before = _processor()

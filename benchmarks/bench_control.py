@@ -1,4 +1,4 @@
-"""ros2_control_node at 1 kHz: updates a second, how even they are, and what they cost of one processor.
+"""Measure ros2_control_node at 1 kHz: updates per second, jitter, and processor load.
 
 Run it with ``python -m benchmarks control``. Twelve joints of ``mock_components``, a joint_trajectory_controller that
 holds them and a joint_state_broadcaster, asked for 1,000 updates a second; once nobody listens, once somebody in this
@@ -34,13 +34,13 @@ _BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
 
 @dataclass(frozen=True)
 class Beats:
-    """What a turn gave.
+    """The result of a turn.
 
     Attributes:
-        rate: updates a second.
-        load: percent of a processor.
-        late_us: how far one period in a hundred, at least, is longer than it should be.
-        longest_us: how far the longest is.
+        rate: the number of updates per second.
+        load: the load of a processor, in percent.
+        late_us: the delay that one period in a hundred exceeds, in microseconds.
+        longest_us: the delay of the longest period, in microseconds.
     """
 
     rate: float
@@ -50,7 +50,7 @@ class Beats:
 
 
 def robot() -> str:
-    """A chain of joints with position commands, positions and velocities."""
+    """Return a chain of joints with position commands, positions and velocities."""
     links = '<link name="base"/>' + "".join(f'<link name="{joint}_link"/>' for joint in JOINTS)
     parents = ["base", *(f"{joint}_link" for joint in JOINTS)]
     joints = "".join(
@@ -69,7 +69,7 @@ def robot() -> str:
 
 
 def started(graph: Graph) -> Ros2ControlNode:
-    """The node with both controllers active."""
+    """Return the node with both controllers active."""
     parameters = {
         "robot_description": robot(),
         "update_rate": RATE,
@@ -94,14 +94,14 @@ def started(graph: Graph) -> Ros2ControlNode:
 
 
 async def controlled(*, listened: bool) -> tuple[Beats, float]:
-    """A turn of the node; and the microseconds of a cycle, one after another without pause."""
+    """Return the result of a turn, and the microseconds of a cycle without pauses."""
     graph = Graph()
     node = started(graph)
     if listened:
         graph.create_node("audience").create_subscription("sensor_msgs/msg/JointState", "/joint_states", nothing, 10)
     manager, times = node._manager, list[int]()
     cycle = manager.cycle
-    node._timer.cancel()  # its updates would be earlier, and time that begins anew is another matter
+    node._timer.cancel()  # the clock restarts, so its first updates would be early
     begin_ns, start = time.time_ns(), time.process_time()
     for number in range(_CYCLES):
         cycle(begin_ns + number * 1_000_000, 0.001)
@@ -127,11 +127,11 @@ async def controlled(*, listened: bool) -> tuple[Beats, float]:
 
 
 def nothing(message: object) -> None:
-    """A callback that does nothing."""
+    """Do nothing with a message."""
 
 
 def bare() -> Beats:
-    """A turn of a loop that only sleeps."""
+    """Return the result of a loop that only sleeps."""
     times = list[int]()
     begun, start = time.monotonic(), time.process_time()
     due = begun
@@ -145,13 +145,13 @@ def bare() -> Beats:
 
 
 def judged(times: list[int], cpu_s: float, real_s: float) -> Beats:
-    """What the points in time of the updates say."""
+    """Return the result for the times of updates."""
     over = sorted((after - before) / 1e3 - 1e6 / RATE for before, after in pairwise(times))
     return Beats(len(times) / real_s, 100.0 * cpu_s / real_s, over[len(over) * 99 // 100], over[-1])
 
 
 def rows() -> list[Row]:
-    """The table."""
+    """Measure, and return the rows of the table."""
     turns: dict[str, list[Beats]] = {"nobody": [], "somebody": [], "bare": []}
     cycles: dict[str, list[float]] = {"nobody": [], "somebody": []}
     for _ in range(TURNS):

@@ -1,4 +1,4 @@
-"""What the wires cost: two processes on this machine, joint states, transforms and images, over DDS and over Zenoh.
+"""Measure the transports between two processes: joint states, transforms and images over DDS and Zenoh.
 
 Beside us over DDS: us over Zenoh, `cyclonedds` alone with its IdlStructs, and zenoh-ros2-sdk, which goes over Zenoh.
 Run it with ``python -m benchmarks dds``. Messages are received as objects, ours in an event loop as the launcher's.
@@ -20,11 +20,11 @@ DOMAIN = "67"
 ROUNDS = 3
 SECONDS = 2.0
 LIBRARIES = {"ours": "", "ours over Zenoh": "ours over Zenoh", "plain": "cyclonedds alone", "zenoh": "zenoh-ros2-sdk"}
-"""What stands for a library -> what a reader calls it."""
+"""Maps the key of a library to its name in the table."""
 
 
 def measured(library: str, kind: str, rate: float) -> dict[str, float] | None:
-    """What the two sides found; None for a library that does not run here."""
+    """Return the results of both sides, or None for a library that does not run here."""
     name, _, over = library.partition(" over ")
     words = (name, kind, str(SECONDS), str(rate))
     middleware = "rmw_zenoh_cpp" if over == "Zenoh" else "rmw_cyclonedds_cpp"
@@ -54,7 +54,7 @@ def measured(library: str, kind: str, rate: float) -> dict[str, float] | None:
 
 
 def medians(kind: str, rate: float) -> dict[str, dict[str, float]]:
-    """The medians of several runs of each library, in turns."""
+    """Return the medians of several runs of each library, in turns."""
     libraries = [name for name in LIBRARIES if name != "zenoh" or peers.version("zenoh_ros2_sdk") is not None]
     runs: dict[str, list[dict[str, float]]] = {library: [] for library in libraries}
     for _ in range(ROUNDS):
@@ -70,15 +70,15 @@ def medians(kind: str, rate: float) -> dict[str, dict[str, float]]:
 
 
 def table(what: str, kind: str, rate: float, promised: str, share: str = "", *, aged: bool = False) -> list[Row]:
-    """The rows of one kind of message.
+    """Return the rows of one kind of message.
 
     Args:
-        what: the kind in words.
+        what: the name of the kind in the table.
         kind: see `dds_sides`.
-        rate: messages a second; 0 for as many as it goes.
+        rate: messages per second; 0 for as many as possible.
         promised: the rate.
-        share: how much of a core each side may take.
-        aged: whether it matters how old messages are that come.
+        share: the share of a core that each side may use.
+        aged: whether the age of received messages is measured.
     """
     found = medians(kind, rate)
 
@@ -102,7 +102,7 @@ def table(what: str, kind: str, rate: float, promised: str, share: str = "", *, 
 
 
 def rows() -> list[Row]:
-    """The table."""
+    """Measure, and return the rows of the table."""
     return [
         *table("JointState of 12 joints, unpaced", "joints", 0.0, "30000"),
         *table("JointState of 12 joints at 1 kHz", "joints", 1000.0, "1000", aged=True),

@@ -1,4 +1,4 @@
-"""Controllers of drives: what an update costs, and those of a hundred robots.
+"""Measure the controllers of drives: the cost of an update, and of a hundred robots.
 
 Run it with ``python -m benchmarks drives``. The processor's time of updates alone, in one process: wheels tell what
 they do, limits hold, and for a hundred robots the figure is the time of a simulated second at 100 Hz, of which 1000 ms
@@ -73,7 +73,7 @@ class _Fleet:
         return controller
 
     def update(self, count: int) -> float:
-        """The processor's seconds of so many updates of each, and of what they publish."""
+        """Return the processor time of a number of updates of each controller and of their publications, in seconds."""
         gc.collect()
         begin = time.process_time()
         for _ in range(count):
@@ -91,7 +91,7 @@ def _parts(name: str) -> tuple[str, str]:
 
 
 def rows() -> list[Row]:
-    """Measure."""
+    """Measure, and return the rows of the table."""
     return asyncio.run(_rows())
 
 
@@ -116,7 +116,7 @@ async def _rows() -> list[Row]:
 async def _seconds(
     type_name: str, parameters: Mapping[str, Any], robots: int, updates: int, topics: Mapping[str, str]
 ) -> float:
-    """The processor's seconds of updates of some robots whose topics somebody hears: the median turn."""
+    """Return the processor time of updates of robots whose topics have subscribers, in s: the median turn."""
     graph = Graph(on_log=lambda _: None)
     fleet = _Fleet(graph, type_name, parameters, robots)
     listener = graph.create_node("listener")

@@ -1,4 +1,4 @@
-"""How fast the executors deliver: messages from publish to callback in one process, and how soon a callback begins.
+"""Measure the executors: messages per second in one process, and the latency from publish to callback.
 
 Run it with ``python -m benchmarks executors``. "Copied" is what the nodes of rclpy's stand-in pay for being able to
 fill the same message again after it was published.
@@ -25,7 +25,7 @@ ROUNDS = 3
 
 
 def messages_per_second(executor: SingleThreadedExecutor | MultiThreadedExecutor, *, reentrant: bool = False) -> float:
-    """Publish in batches that the queue holds, run their callbacks, and count."""
+    """Return the rate of messages that are published in batches of the queue's size."""
     graph = Graph(threads=True)
     node = graph.create_node("bench", start_parameter_services=False, enable_rosout=False)
     received = 0
@@ -60,10 +60,10 @@ def messages_per_second(executor: SingleThreadedExecutor | MultiThreadedExecutor
 
 
 def spinning_messages_per_second(*, copies: bool = False) -> float:
-    """Each callback publishes the next message: publish to callback, without pause, inside of one ``spin``.
+    """Return the rate inside one ``spin`` if each callback publishes the next message.
 
     Args:
-        copies: whether messages are copied, as those of rclpy's nodes are.
+        copies: whether messages are copied, as in rclpy's nodes.
     """
     graph = Graph(threads=True)
     node = graph.create_node("bench", start_parameter_services=False, enable_rosout=False)
@@ -92,7 +92,7 @@ def spinning_messages_per_second(*, copies: bool = False) -> float:
 
 
 def latencies_us() -> list[float]:
-    """From publish in one thread to the beginning of the callback in another that waits."""
+    """Return the latencies from publish in one thread to the callback in a waiting thread."""
     graph = Graph(threads=True)
     node = graph.create_node("bench", start_parameter_services=False, enable_rosout=False)
     executor = SingleThreadedExecutor()
@@ -118,7 +118,7 @@ def latencies_us() -> list[float]:
 
 
 def in_same_thread_us() -> float:
-    """From publish to the callback that one ``spin_once`` runs; what a program that spins by itself meets."""
+    """Return the time from publish to the callback in one ``spin_once`` of the same thread."""
     graph = Graph(threads=True)
     node = graph.create_node("bench", start_parameter_services=False, enable_rosout=False)
     executor = SingleThreadedExecutor()
@@ -139,7 +139,7 @@ def in_same_thread_us() -> float:
 
 
 def as_users_write_it() -> tuple[float, float]:
-    """Messages a second and microseconds from publish to callback, of a program over rclpy (here its stand-in)."""
+    """Return messages per second, and the latency in microseconds, of a program that uses rclpy's stand-in."""
     from linkwright.standins import activate
 
     activate()
@@ -179,7 +179,7 @@ def as_users_write_it() -> tuple[float, float]:
 
 
 def rows() -> list[Row]:
-    """The table."""
+    """Measure, and return the rows of the table."""
 
     def rate(what: str, messages: Callable[[], float], target: str = "") -> Row:
         return Row(what, statistics.median(messages() for _ in range(ROUNDS)) / 1000, "1000/s", target)

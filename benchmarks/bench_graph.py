@@ -1,4 +1,4 @@
-"""What the computation graph costs: messages, timers, nodes, and the chain from the sliders to the tf buffer.
+"""Measure the graph: messages, timers, nodes, and the chain from the sliders to the tf buffer.
 
 Run it with ``python -m benchmarks graph``. Everything is in one process, with nobody outside.
 """
@@ -35,7 +35,7 @@ NODES = 500
 
 
 def rows() -> list[Row]:
-    """The table."""
+    """Measure, and return the rows of the table."""
     rate, latency = asyncio.run(_messages())
     creation, memory = asyncio.run(_many_nodes())
     table = [
@@ -61,7 +61,7 @@ def rows() -> list[Row]:
 
 
 async def _messages() -> tuple[float, float]:
-    """Messages a second in bursts, and microseconds from `publish` to the callback of a single one."""
+    """Return messages per second in bursts, and the latency of a single message in microseconds."""
     graph = Graph(on_log=lambda _record: None)
     node = graph.create_node("node")
     received = 0
@@ -96,7 +96,7 @@ async def _messages() -> tuple[float, float]:
 
 
 async def _round_trip() -> float:
-    """Microseconds from `publish` until a task that waits for the message goes on."""
+    """Return the microseconds from `publish` until a task that waits for the message continues."""
     graph = Graph(on_log=lambda _record: None)
     node = graph.create_node("node")
     came = asyncio.Event()
@@ -114,7 +114,7 @@ async def _round_trip() -> float:
 
 
 async def _many_nodes() -> tuple[float, float]:
-    """Milliseconds and kilobytes that a node costs among many."""
+    """Return the milliseconds and kilobytes per node among many nodes."""
     graph = Graph(on_log=lambda _record: None)
     graph.create_node("first")
     before, begin = _resident_kb(), time.perf_counter()
@@ -141,7 +141,7 @@ def _stepped_hour() -> float:
 
 
 async def _state_publisher() -> float:
-    """Percent of a core for joint states in, transforms out, all joints moving; the making of the states counts."""
+    """Return the load in percent of a core for publishing transforms of moving joints, including the joint states."""
     graph = Graph(on_log=lambda _record: None)
     described = {"robot_description": tree_robot(101), "publish_frequency": 1000.0}
     publisher = RobotStatePublisher(graph, NodeOptions(parameters=described, library=DescriptionLibrary()))
@@ -187,7 +187,7 @@ class _Chain:
 
 
 async def _chain(text: str) -> float:
-    """Share of a core with all joints moving, and a snapshot of all transforms for each picture."""
+    """Return the share of a core with all joints moving, and a snapshot of all transforms for each picture."""
     chain = _Chain(text, publish_frequency=1000.0, rate=RATE, delta=0.01)
     clock = chain.graph.clock
     chain.node.create_timer(1.0 / RATE, lambda: chain.buffer.snapshot("link_0", clock.now_ns()))
@@ -197,7 +197,7 @@ async def _chain(text: str) -> float:
 
 
 async def _move_latencies(text: str, pause: Callable[[], float]) -> list[float]:
-    """Milliseconds from each slider move until the tf buffer knows of it or of a later one."""
+    """Return the milliseconds from each slider move until the tf buffer has this or a later move."""
     chain = _Chain(text, publish_frequency=20.0)
     await asyncio.sleep(0.3)
     waiting: list[float] = []

@@ -1,4 +1,4 @@
-"""Forward kinematics of all links, for many configurations and for one, beside other libraries.
+"""Measure forward kinematics of all links, for many configurations and for one, and in other libraries.
 
 Run it with ``python -m benchmarks kinematics``. Every figure is the time of one configuration until the frames of all
 links are arrays in Python. "numpy" is the loop over joints that one would write oneself.
@@ -22,12 +22,12 @@ from linkwright.urdf import Robot, parent_joints
 
 CONFIGURATIONS = 10_000
 FEW = 200
-"""For the peers that take configurations one by one."""
+"""The number of configurations for libraries that process them one by one."""
 ROUNDS = 9
 
 
 def rows() -> list[Row]:
-    """Measure."""
+    """Measure, and return the rows of the table."""
     found = []
     for links, moving, target in ((23, 12, "2 us, aiming at 1"), (88, 45, "10 us, aiming at 5")):
         text = detailed_robot(links, moving)
@@ -50,7 +50,7 @@ def rows() -> list[Row]:
 
 
 class _Plain:
-    """The loop over joints, each with all configurations at once."""
+    """A loop over joints, each with all configurations at once."""
 
     def __init__(self, robot: Robot, tree: KinematicTree) -> None:
         above = parent_joints(robot)

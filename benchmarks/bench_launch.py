@@ -1,4 +1,4 @@
-"""Launching: from the command to the last node started, in the launcher's process and isolated, and many at once.
+"""Measure launches: from the command to the last started node, in one process, isolated, and many at once.
 
 Times are wall times of the whole program as a user meets it, `linkwright` started anew each time with a warm file
 cache.
@@ -49,7 +49,7 @@ _ISOLATED = ("Spinning until stopped",)
 
 
 def rows() -> list[Row]:
-    """The measurements."""
+    """Measure, and return the rows of the table."""
     with tempfile.TemporaryDirectory(prefix="linkwright-bench-") as folder:
         four = _file(folder, "four", "FOUR")
         alike = _file(folder, "alike", "[frames(number) for number in range(4)]")
@@ -77,7 +77,7 @@ def _ended(signs: tuple[str, ...], count: int, *words: str) -> float:
 
 
 def _measured(signs: tuple[str, ...], count: int, *words: str) -> tuple[float, float]:
-    """Seconds from the command until lines with the signs have come `count` times, and from Ctrl-C to the end."""
+    """Return the seconds from the command to `count` lines with the signs, and from Ctrl-C to the end."""
     environment = {**os.environ, "ROS_DOMAIN_ID": "89"}
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
     begin = time.perf_counter()

@@ -1,4 +1,4 @@
-"""Mapping our house with odometry of several qualities: how far off pose and walls are, and what a scan costs.
+"""Measure mapping of a house with odometry of several qualities: errors of pose and walls, and cost of a scan.
 
 Run it with ``python -m benchmarks mapping``. mbot drives through all rooms in lock-step with the mapper, the tour of
 ``tests/navigation/nodes/house.py``. Odometry is made worse by a scale, a turn that comes with the way, and noise. Where
@@ -28,12 +28,12 @@ QUALITIES = {
     "10 %, 0.1 rad/m": (1.1, 0.1, 0.2),
     "-10 %, -0.15 rad/m": (0.9, -0.15, 0.3),
 }
-"""Names, and scale, radians a meter, and noise of `house.Drift`."""
+"""Maps a name to the scale, the radians per meter and the noise of `house.Drift`."""
 
 
 @dataclass
 class _Tour:
-    """What a tour gave: meters, radians, and seconds of each step of the mapper and of each scan."""
+    """The result of a tour: errors in m and rad, and the seconds of each step of the mapper and of each scan."""
 
     odometry_off: float
     pose_off: float
@@ -44,7 +44,7 @@ class _Tour:
 
 
 def toured(scale: float, yaw_per_meter: float, noise: float) -> _Tour:
-    """Drive and map."""
+    """Drive through the house and map it, and return the result."""
     walls, solid = house.faces(), house.faces(("walls", "furniture"))
     steps: list[float] = []
     os.environ.pop("ROS_DISTRO", None)
@@ -79,7 +79,7 @@ def toured(scale: float, yaw_per_meter: float, noise: float) -> _Tour:
 
 
 def rows() -> list[Row]:
-    """The table."""
+    """Measure, and return the rows of the table."""
     found = []
     for name, quality in QUALITIES.items():
         tour = toured(*quality)

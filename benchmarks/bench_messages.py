@@ -1,4 +1,4 @@
-"""What writing and reading messages costs, beside rosbags and Cyclone DDS's own Python structures.
+"""Measure writing and reading of messages, compared with rosbags and Cyclone DDS's Python structures.
 
 Run it with ``python -m benchmarks messages``. "Written" is a message object to the bytes that go onto the wire, "read"
 is bytes to an object of which every field can be read at once; of TFMessage also to and from the arrays that the
@@ -38,7 +38,7 @@ MICROSECONDS = 1e6
 
 
 def joint_state() -> Any:
-    """Twelve joints."""
+    """Return the states of twelve joints."""
     values = np.linspace(-1.0, 1.0, 12)
     names = [f"arm_{number}_joint" for number in range(12)]
     return JointState(
@@ -51,7 +51,7 @@ def joint_state() -> Any:
 
 
 def transforms(count: int) -> Any:
-    """That many links of one robot."""
+    """Return the transforms of a number of links."""
     header = Header(stamp=Time(sec=1_700_000_000, nanosec=5), frame_id="base_link")
     return TFMessage(
         transforms=[
@@ -62,7 +62,7 @@ def transforms(count: int) -> Any:
 
 
 def messages() -> dict[str, Any]:
-    """What is measured, by what a reader calls it."""
+    """Return the measured messages, by their names in the table."""
     header = Header(stamp=Time(sec=1_700_000_000, nanosec=5), frame_id="camera")
     pixels = np.arange(640 * 480 * 3, dtype=np.uint8)
     laser = np.linspace(0.0, 10.0, 720, dtype=np.float32)
@@ -87,7 +87,7 @@ def messages() -> dict[str, Any]:
 
 
 def rosbags_object(store: Any, message: Any) -> Any:
-    """The same message as an object of rosbags."""
+    """Return the same message as an object of rosbags."""
 
     def value(kind: FieldType, given: Any) -> Any:
         if kind.primitive is None:
@@ -100,7 +100,7 @@ def rosbags_object(store: Any, message: Any) -> Any:
 
 
 def cyclone_types() -> tuple[type[Any], type[Any]]:
-    """JointState and TFMessage as cyclonedds would have a user write them."""
+    """Return JointState and TFMessage as users of cyclonedds define them."""
     from dataclasses import make_dataclass
 
     from cyclonedds.idl import IdlStruct, types
@@ -122,7 +122,7 @@ def cyclone_types() -> tuple[type[Any], type[Any]]:
 
 
 def cyclone_object(cls: type[Any], message: Any) -> Any:
-    """The same message as a structure of cyclonedds."""
+    """Return the same message as a structure of cyclonedds."""
     from dataclasses import fields
 
     values = {}
@@ -140,7 +140,7 @@ def cyclone_object(cls: type[Any], message: Any) -> Any:
 
 
 def rows() -> list[Row]:
-    """Measure."""
+    """Measure, and return the rows of the table."""
     store = get_typestore(Stores.ROS2_HUMBLE)
     found: list[Row] = []
     state, tf = cyclone_types()
@@ -177,7 +177,7 @@ def rows() -> list[Row]:
 
 
 def _all_of(message: Any) -> Any:
-    """Make a TFMessage's objects, which it would make when they are asked for."""
+    """Create the objects of a TFMessage, which otherwise are created on demand."""
     return message.transforms if type(message) is TFMessage else message
 
 
@@ -204,7 +204,7 @@ def _plain(value: Any) -> Any:
 
 
 def _start() -> Row:
-    """What the messages add to the start of a program that has numpy already."""
+    """Measure the additional start-up time of the messages in a program that imports numpy."""
     known = "from linkwright.messages import JointState, TFMessage, String"
     times = commands(
         {
@@ -227,6 +227,6 @@ def _row(what: str, ours: Callable[[], object], rounds: int = ROUNDS, **peers: C
 
 
 def _repeat(call: Callable[[], object]) -> int:
-    """So many calls that a turn takes some milliseconds."""
+    """Return the number of calls with which a turn takes some milliseconds."""
     seconds = min(timeit.repeat(call, number=1, repeat=7))
     return max(1, min(2000, int(0.01 / max(seconds, 1e-7))))

@@ -1,4 +1,4 @@
-"""Costmaps and plans: what an update and a plan take of one processor, in a house and in a large hall of rooms.
+"""Measure costmaps and plans: the processor time of an update and a plan, in a house and a large hall.
 
 Run it with ``python -m benchmarks navigation``. The maps are 25 rooms with doors, of cells of 5 cm; plans lead from one
 corner to the opposite one, and to the middle. It is the time of the processor that counts, and the best of some turns.
@@ -36,7 +36,7 @@ _INFLATION = Inflation(cost_scaling_factor=3.0)
 
 
 def rooms(size: int) -> NDArray[np.int8]:
-    """An occupancy grid of rooms with doors, of shape (size, size)."""
+    """Return an occupancy grid of rooms with doors, shape (size, size)."""
     rng = np.random.default_rng(1)
     cells = np.zeros((size, size), np.int8)
     cells[[0, -1]] = 100
@@ -55,7 +55,7 @@ def rooms(size: int) -> NDArray[np.int8]:
 
 
 def milliseconds(work: Callable[..., object], *arguments: object, turns: int = _TURNS) -> float:
-    """What a call takes of one processor, the best of some turns."""
+    """Return the processor time of a call in ms, the minimum of several turns."""
     best = float("inf")
     for _ in range(turns):
         begin = time.thread_time()
@@ -65,18 +65,18 @@ def milliseconds(work: Callable[..., object], *arguments: object, turns: int = _
 
 
 def scan(x: float, y: float) -> NDArray[np.float64]:
-    """Points all around a place, of shape (rays, 3)."""
+    """Return points around a position, shape (rays, 3)."""
     angles = np.linspace(0.0, 2.0 * np.pi, _RAYS, endpoint=False)
     return np.stack((x + 2.3 * np.cos(angles), y + 2.3 * np.sin(angles), np.full(_RAYS, 0.2)), axis=-1)
 
 
 def rows() -> list[Row]:
-    """The measurements."""
+    """Measure, and return the rows of the table."""
     return [*_in_rooms(400, "50 ms"), *_in_rooms(2000, "2000 ms"), _local()]
 
 
 def _in_rooms(size: int, promised: str) -> list[Row]:
-    """A fixed costmap with a map, and plans from corner to corner and to the middle."""
+    """Measure a fixed costmap with a map, and plans from corner to corner and to the middle."""
     what = f"{size} x {size} cells"
     buffer = ObservationBuffer(Source(clearing=True, max_obstacle_height=2.0))
     static = StaticLayer(Interpretation())
@@ -97,7 +97,7 @@ def _in_rooms(size: int, promised: str) -> list[Row]:
 
 
 def _local() -> Row:
-    """A costmap that moves with the robot."""
+    """Measure a costmap that moves with the robot."""
     buffer = ObservationBuffer(Source(clearing=True, max_obstacle_height=2.0))
     layers = [VoxelLayer([buffer], HeightRange(), Voxels(z_voxels=16, z_resolution=0.05)), InflationLayer(_INFLATION)]
     local = LayeredCostmap(_blank(60), layers, circle(_RADIUS), is_rolling=True)

@@ -1,4 +1,4 @@
-"""From the command to the page: start-up, latencies, frames a second, and what pages cost the server.
+"""Measure the page: start-up, latencies, frames per second, and the load of the server.
 
 Needs a Chromium (LINKWRIGHT_CHROMIUM, or one on the PATH). Times are wall times of the whole program as a user meets
 it, `linkwright` started anew each time with a warm file cache.
@@ -58,17 +58,17 @@ SECONDS = 10.0
 PAGES = 4
 STAMP = "() => window.linkwright.stamp"
 SETTLES = 3.0
-"""Until a page has found how finely it can draw."""
+"""The seconds until a page has determined its drawing resolution."""
 CORE = "% of a core"
 
 
 def row(what: str, values: list[float], unit: str, target: str = "") -> Row:
-    """One row: the median, with the lowest and the highest."""
+    """Return a row with the median, the minimum and the maximum."""
     return Row(f"{what} ({min(values):.3g} to {max(values):.3g})", statistics.median(values), unit, target)
 
 
 def start_up(browser: Browser, *words: str, answer: str = "0.7 s", drawn: str = "2.5 s") -> list[Row]:
-    """From the command to the first answer and to the drawn robot, and from opening to the drawn robot."""
+    """Measure the time from the command to the first response and to the drawn robot, and from opening a page."""
     answers, robots, openings = [], [], []
     size = 0.0
     for _ in range(RUNS):
@@ -90,7 +90,7 @@ def start_up(browser: Browser, *words: str, answer: str = "0.7 s", drawn: str = 
 
 
 def latencies(browser: Browser, package: Path) -> list[Row]:
-    """From a slider, and from a saved file."""
+    """Measure the latency from a slider, and from a saved file."""
     with tempfile.TemporaryDirectory() as folder:
         model = Path(folder) / "model.urdf"
         shutil.copy(package / "urdf" / "mbot_base.urdf", model)
@@ -105,14 +105,14 @@ def latencies(browser: Browser, package: Path) -> list[Row]:
 
 
 def robots(browser: PlainBrowser, links: int, *, server: str, page_rate: str) -> list[Row]:
-    """While every joint of a robot of boxes moves at 30 Hz."""
+    """Measure a robot of boxes, all of whose joints move at 30 Hz."""
     with tempfile.TemporaryDirectory() as folder:
         launch = write_sweep(Path(folder), links, 30)
         return moving(browser, launch, f"{links} links moving at 30 Hz", server=server, page_rate=page_rate)
 
 
 def meshes(browser: PlainBrowser) -> list[Row]:
-    """The same of an arm whose shapes are meshes."""
+    """Measure a moving arm whose shapes are meshes."""
     with tempfile.TemporaryDirectory() as folder:
         launch = write_arm_sweep(Path(folder), 30)
         what = "an arm of 96 000 triangles moving at 30 Hz"
@@ -120,7 +120,7 @@ def meshes(browser: PlainBrowser) -> list[Row]:
 
 
 def viser(browser: PlainBrowser, scene: str) -> tuple[dict[str, float | None], dict[str, float | None]]:
-    """What viser's server uses and how often its page draws, for one of `viser_scenes` in the same browser."""
+    """Return the load of viser's server and its page's frame rate, for one of `viser_scenes` in the same browser."""
     if not scene:
         return {}, {}
     if peers.version("viser") is None:
@@ -136,7 +136,7 @@ def viser(browser: PlainBrowser, scene: str) -> tuple[dict[str, float | None], d
 
 
 def moving(browser: PlainBrowser, launch: Path, what: str, *, server: str, page_rate: str, peer: str = "") -> list[Row]:
-    """While the joints of a launch file move: what the server uses, and how often the page draws."""
+    """Measure the load of the server and the frame rate while the joints of a launch file move."""
     shares, rates = viser(browser, peer)
     with ExitStack() as stack:
         process, _, _ = stack.enter_context(started("launch", str(launch)))
@@ -152,7 +152,7 @@ def moving(browser: PlainBrowser, launch: Path, what: str, *, server: str, page_
 
 
 def many_pages(browser: PlainBrowser, links: int) -> list[Row]:
-    """Several pages at once: each gets the newest transforms, however few frames it can draw."""
+    """Measure several pages at once, each of which receives the newest transforms at any frame rate."""
     what = f"{PAGES} browsers at once, {links} links at 30 Hz"
     with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
         launch = write_sweep(Path(folder), links, 30)
@@ -174,7 +174,7 @@ def many_pages(browser: PlainBrowser, links: int) -> list[Row]:
 def data(
     browser: PlainBrowser, scene: str, what: str, *, server: str = "", page_rate: str = "", peer: str = ""
 ) -> list[Row]:
-    """A display of data: the server's cost, how often the page draws, and how soon it heeds the mouse."""
+    """Measure a display of data: the load of the server, the frame rate, and the latency of the mouse."""
     shares, rates = viser(browser, peer)
     with showing(scene) as process, watched(browser, viewer_url(process), "window.linkwright?.framesDrawn > 5") as page:
         time.sleep(2)
@@ -190,7 +190,7 @@ def data(
 
 
 def images(browser: PlainBrowser) -> list[Row]:
-    """Images are shown in a panel; the scene beside it is not drawn for them."""
+    """Measure images in a panel, for which the scene is not drawn."""
     what = "image 640x480 at 30 Hz"
     shown = "window.linkwright?.displays[0]?.drawn?.images > 5"
     with showing("image") as process, watched(browser, viewer_url(process), shown) as page:
@@ -202,7 +202,7 @@ def images(browser: PlainBrowser) -> list[Row]:
 
 
 def demo(browser: PlainBrowser, description: Path) -> list[Row]:
-    """`make demo`: a robot with laser and camera in a simulated world; how fast both the world and the page go."""
+    """Measure the speed of world and page in `make demo`: a robot with laser and camera in a simulated world."""
     words = ("sim", "playground", str(description / "urdf" / "mbot_gazebo.xacro"), "laser:=true", "camera:=true")
     with started(*words) as (process, _, _), watched(browser, viewer_url(process)) as page:
         time.sleep(SETTLES)
@@ -216,7 +216,7 @@ def demo(browser: PlainBrowser, description: Path) -> list[Row]:
 
 
 def many_displays(browser: Browser, model: Path, count: int = 240) -> Row:
-    """The processor time of the server until the page has drawn a file of many displays, to which nobody publishes."""
+    """Measure the server's processor time until the page has drawn many displays without publishers."""
     kinds = ("MarkerArray", "PointCloud2", "Path", "Marker", "Pose", "Image", "LaserScan", "Map")
     displays = [
         {
@@ -241,7 +241,7 @@ def many_displays(browser: Browser, model: Path, count: int = 240) -> Row:
 
 
 def nothing(browser: Browser, model: Path) -> list[Row]:
-    """A robot that stands still: its nodes publish on, the page draws nothing, and no panel costs anything."""
+    """Measure a robot at rest, whose nodes continue to publish while the page draws nothing."""
     with started("view", str(model)) as (process, _, _), ExitStack() as stack:
         url = viewer_url(process)
         time.sleep(3)
@@ -263,7 +263,7 @@ def nothing(browser: Browser, model: Path) -> list[Row]:
 
 
 def recordings(browser: PlainBrowser) -> list[Row]:
-    """A click on the timeline of a large recording, until its frames, scan and image are drawn."""
+    """Measure a click on the timeline of a large recording, until frames, scan and image are drawn."""
     made = []
     for storage in STORAGES:
         size, times = seeks(browser, storage)
@@ -272,7 +272,7 @@ def recordings(browser: PlainBrowser) -> list[Row]:
 
 
 def rows() -> list[Row]:
-    """Measure everything."""
+    """Measure, and return the rows of the table."""
     package = PackageFinder().share("my_robot_description")
     with chromium() as browser:
         model = package / "urdf" / "mbot_base.urdf"

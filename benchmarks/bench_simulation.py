@@ -1,4 +1,4 @@
-"""Simulated worlds: how many simulated seconds pass in one of the processor's, beside MuJoCo alone.
+"""Measure simulated worlds: the processor time of a simulated second, compared with MuJoCo alone.
 
 Run it with ``python -m benchmarks simulation``. Most figures are the processor's time (ms) of a simulated second at
 steps of 1 ms, with everything that is published and received in this process; 1000 ms is real time on one processor.
@@ -39,14 +39,14 @@ from linkwright.xacro import expand
 WORLDS = REPOSITORY / "robots" / "my_robot_gazebo" / "worlds"
 MBOT = SHIPPED / "urdf" / "mbot_gazebo.xacro"
 OTHERS = REPOSITORY.parent / "shared" / "worlds"
-"""Worlds of others, where they are."""
+"""The folder of other projects' worlds, which may be missing."""
 TURNS = 60
 _LEAST = 5
 _LONGEST = 10.0
 """At most so many turns are measured of each, at least so many, and no more after so many seconds."""
 _SLICE = NANOSECONDS_PER_SECOND // 10
 _BESIDE = 1.5
-"""Meters from one robot to the next."""
+"""The distance between adjacent robots in meters."""
 _LISTENED = {
     "/scan": "sensor_msgs/msg/LaserScan",
     "/imu": "sensor_msgs/msg/Imu",
@@ -62,20 +62,20 @@ _BOX = """<sdf version="1.7"><model name="box"><link name="link">
 
 @dataclass(frozen=True)
 class Case:
-    """What is simulated.
+    """A measured simulation.
 
     Attributes:
-        what: in words.
-        target: what was promised.
-        world: the name of one of ours, or a path below `OTHERS`.
-        robots: how many robots.
-        boxes: how many boxes.
-        arguments: of the robot's xacro.
-        topics: what somebody listens to, with its type.
-        pixels: width and height of pictures.
-        way: how pictures are made, as ``MUJOCO_GL`` says it.
+        what: the description for the table.
+        target: the promised figure.
+        world: the name of one of our worlds, or a path below `OTHERS`.
+        robots: the number of robots.
+        boxes: the number of boxes.
+        arguments: the xacro arguments of the robot.
+        topics: the subscribed topics, each with its type.
+        pixels: the width and height of images.
+        way: the renderer of images, a value of ``MUJOCO_GL``.
         bullet: whether pybullet has the same world.
-        drives: whether the robots drive in circles, and somebody listens to their odometry and transforms.
+        drives: whether the robots drive in circles, with subscriptions to their odometry and transforms.
     """
 
     what: str
@@ -92,7 +92,7 @@ class Case:
 
     @property
     def is_here(self) -> bool:
-        """Whether its world is."""
+        """Return whether the world exists."""
         return not self.world.endswith(".world") or (OTHERS / self.world).is_file()
 
 
@@ -136,13 +136,13 @@ CASES = (
 
 
 def rows() -> list[Row]:
-    """Measure."""
+    """Measure, and return the rows of the table."""
     cases = (asyncio.run(_row(case)) for case in CASES if case.is_here)
     return [*cases, *(asyncio.run(_coming_row(count)) for count in (10, 100)), *_command_rows()]
 
 
 async def _coming_row(count: int) -> Row:
-    """Robots that come to a running simulator one after the other: the processor's seconds until the last is there."""
+    """Measure the processor time of adding robots to a running simulator, one after another."""
     graph = Graph(on_log=lambda _: None)
     simulator = Simulator(graph, NodeOptions(parameters={"world": str(WORLDS / "empty.world"), "usual_names": True}))
     text, here = _robot(_LASER), asyncio.Event()
@@ -162,7 +162,7 @@ async def _coming_row(count: int) -> Row:
 
 
 def _command_rows() -> Iterator[Row]:
-    """The whole command, without a page: from its start until a tenth of a second is simulated, and its memory."""
+    """Measure the command without a page: the time until a tenth of a second is simulated, and the memory."""
     words = [LINKWRIGHT, "sim", "playground", str(MBOT), "laser:=true", "camera:=true", "--headless", "--rate", "max"]
     begun = [*words, "--seconds", "0.1"]
     yield Row("linkwright sim, until 0.1 s is simulated", commands({"it": begun}, 3)["it"], "s", "3 s")
@@ -180,7 +180,7 @@ async def _row(case: Case) -> Row:
         _drive(listener, case.robots)
     try:
         with _made_by(case.way):
-            for _ in range(NANOSECONDS_PER_SECOND // _SLICE):  # things fall to the ground
+            for _ in range(NANOSECONDS_PER_SECOND // _SLICE):  # objects fall to the ground
                 await _pass(graph, server)
                 _advance(bullet)
             turns = await _take_turns(graph, server, bullet)
@@ -198,7 +198,7 @@ async def _row(case: Case) -> Row:
 async def _take_turns(
     graph: Graph, server: SimulationServer, bullet: BulletWorld | None
 ) -> tuple[list[float], list[float], list[float]]:
-    """The processor's seconds of each turn of ours, of MuJoCo and of Bullet."""
+    """Return the processor times of each turn of ours, of MuJoCo and of Bullet, in seconds."""
     ours, alone, there = [], [], []
     begin = time.monotonic()
     for number in range(TURNS):
@@ -215,7 +215,7 @@ async def _take_turns(
 
 @contextmanager
 def _made_by(way: str) -> Iterator[None]:
-    """Have pictures made some way."""
+    """Render images with a given renderer in the context."""
     before = os.environ.get("MUJOCO_GL")
     if way:
         os.environ["MUJOCO_GL"] = way
@@ -229,7 +229,7 @@ def _made_by(way: str) -> Iterator[None]:
 
 
 def _robot(arguments: Mapping[str, str], pixels: tuple[int, int] = (640, 480)) -> str:
-    """The description of mbot."""
+    """Return the description of mbot."""
     text = str(expand(MBOT, arguments, packages={"my_robot_description": SHIPPED}))
     for name, usual, wanted in zip(("width", "height"), (640, 480), pixels, strict=True):
         text = text.replace(f"<{name}>{usual}<", f"<{name}>{wanted}<")
@@ -257,7 +257,7 @@ def _server(graph: Graph, case: Case) -> SimulationServer:
 
 
 def _drive(node: Node, robots: int) -> None:
-    """Have robots drive in circles, and listen to where they are."""
+    """Make robots drive in circles, and subscribe to their odometry and transforms."""
     twist, listened = get_message("geometry_msgs/msg/Twist"), {"odom": _LISTENED["/odom"], "tf": _LISTENED["/tf"]}
     for number in range(robots):
         begin = f"/mbot{number}/" if number else "/"
@@ -269,7 +269,7 @@ def _drive(node: Node, robots: int) -> None:
 
 
 async def _pass(graph: Graph, server: SimulationServer) -> float:
-    """The processor's seconds that a turn of ours takes, receiving what is published among them."""
+    """Return the processor time of one of our turns in seconds, including the reception of messages."""
     begin = time.process_time()
     server.advance(_SLICE)
     await graph.settle()
@@ -277,7 +277,7 @@ async def _pass(graph: Graph, server: SimulationServer) -> float:
 
 
 def _mujoco_alone(simulation: Simulation) -> float:
-    """The processor's seconds that MuJoCo takes for a turn from the same state on."""
+    """Return the processor time of MuJoCo for a turn from the same state, in seconds."""
     mujoco, model = load_mujoco(), simulation.model
     simulation.refresh()
     data = mujoco.MjData(model)

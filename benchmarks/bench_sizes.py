@@ -1,4 +1,4 @@
-"""How time and memory of commands grow with what they are given: 1 000, 10 000 and 100 000 of each thing.
+"""Measure how time and memory of commands grow with their input: 1 000, 10 000 and 100 000 objects.
 
 Run it with ``python -m benchmarks sizes``. Each figure is a process of its own: the time of the processor that it took,
 and the most memory that it had at once. What a command takes for a single thing is taken off before the ratios, so that
@@ -28,11 +28,11 @@ from linkwright.bag import BagWriter
 SIZES = (1_000, 10_000, 100_000)
 _BARE = 1
 _MOST_SECONDS = 240
-"""Of the processor; a run that takes more is ended."""
+"""The maximum processor time of a run in seconds. A longer run is ended."""
 _LEAST_SECONDS = 0.1
-"""Less than this is lost in what starting a command takes now and then."""
+"""Times below this, in seconds, are within the variation of a command's start."""
 _LIKELY_SECONDS = 24.0
-"""Where a size took more, ten times as many are not tried."""
+"""If a size takes more seconds than this, ten times as many objects are not tried."""
 
 _XACRO = '<robot name="made" xmlns:xacro="http://ros.org/wiki/xacro">\n'
 _LINK = (
@@ -48,12 +48,12 @@ _JOINT = (
 
 
 class Figure(NamedTuple):
-    """What one run took.
+    """The cost of one run.
 
     Attributes:
-        seconds: of the processor.
-        megabytes: the most memory at once.
-        refused: whether a bound of the program ended it.
+        seconds: the processor time.
+        megabytes: the peak memory.
+        refused: whether a limit of the program ended the run.
     """
 
     seconds: float
@@ -66,13 +66,13 @@ class Figure(NamedTuple):
 
 @dataclass(frozen=True)
 class SizeRow:
-    """A command and a thing of which there are more and more.
+    """A command with increasing numbers of one kind of object.
 
     Attributes:
-        command: as it is typed.
-        thing: what there are many of.
-        bare: what one of them takes.
-        figures: what each of `SIZES` takes; None for what was left out.
+        command: the command line.
+        thing: the kind of object.
+        bare: the cost of a single object.
+        figures: the cost of each of `SIZES`; None for omitted sizes.
     """
 
     command: str
@@ -81,11 +81,11 @@ class SizeRow:
     figures: Sequence[Figure | None]
 
     def cells(self) -> tuple[str, ...]:
-        """Command, thing, a figure for each size, and how many times as much the last tenfold takes."""
+        """Return the command, the object, a figure for each size, and the ratio of the last two sizes."""
         return (f"`{self.command}`", self.thing, *(str(figure or "-") for figure in self.figures), self._growth())
 
     def line(self) -> str:
-        """The row on a terminal."""
+        """Return the row as a line for a terminal."""
         figures = "".join(f"{figure or '-'!s:>20}" for figure in self.figures)
         return f"{self.command:20} {self.thing:32}{figures}   {self._growth()}"
 
@@ -103,8 +103,8 @@ class Case(NamedTuple):
     """What is measured.
 
     Attributes:
-        command: as the table says it.
-        thing: what there are many of.
+        command: the name of the command in the table.
+        thing: the kind of object.
         make: writes the input with so many into a folder, and returns the command line.
     """
 
@@ -114,7 +114,7 @@ class Case(NamedTuple):
 
 
 def cases() -> Iterator[Case]:
-    """All that is measured."""
+    """Yield all cases."""
     for command, thing in (
         ("check", "links in a chain"),
         ("check", "links in a star"),
@@ -138,7 +138,7 @@ def cases() -> Iterator[Case]:
 
 
 def rows(names: Sequence[str] = ()) -> list[SizeRow]:
-    """Measure; each row is printed to standard error when it is there."""
+    """Measure, and print each row to standard error as soon as it is complete."""
     wanted = [case for case in cases() if not names or any(name in f"{case.command}: {case.thing}" for name in names)]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(_row, wanted))
@@ -185,7 +185,7 @@ print(json.dumps([done.returncode, used.ru_utime + used.ru_stime, used.ru_maxrss
 """A small process in between: what a command has at the most would else be no less than what this one has."""
 
 _BOUND = "error[XAC60"
-"""How the message of a bound begins."""
+"""The beginning of a message about a limit."""
 
 
 def _description(command: str, thing: str, text: Callable[[int], str], ending: str = "urdf") -> Case:

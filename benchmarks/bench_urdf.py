@@ -1,4 +1,4 @@
-"""How long URDF text takes to become a validated robot, beside other readers in Python, and a check of a robot.
+"""Measure reading and checking of URDF texts, compared with other readers in Python.
 
 Run it with ``python -m benchmarks urdf``. "Cold" forgets the values that the reader remembers from earlier texts. The
 other readers check less: they name no place, and accept much that urdfdom refuses. Beside ``linkwright check``, whole
@@ -27,13 +27,13 @@ RUFF = Path(sys.executable).with_name("ruff")
 
 
 def forget() -> None:
-    """Empty what the reader remembers of values it has seen."""
+    """Clear the reader's caches of values."""
     reading.forget()
     values.vector3.cache_clear()
 
 
 def rows() -> list[Row]:
-    """Measure."""
+    """Measure, and return the rows of the table."""
     found = []
     for links, moving, target in ((23, 12, ""), (88, 45, "1.6 ms")):
         text = detailed_robot(links, moving)

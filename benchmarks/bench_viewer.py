@@ -1,4 +1,4 @@
-"""What the viewer costs the server, and how fast a slider reaches a page.
+"""Measure the load of the viewer, and the latency from a slider to a page.
 
 Run it with ``python -m benchmarks viewer``. The page is a WebSocket client in a process of its own, which answers as a
 browser's socket does but draws nothing. "Viewer" is the cost with the viewer less that of the same publishers alone.
@@ -46,7 +46,7 @@ MOVES = 60
 
 @asynccontextmanager
 async def viewer_of(graph: Graph, library: DescriptionLibrary) -> AsyncIterator[Viewer]:
-    """A started viewer of a robot with the root ``link_0``."""
+    """Yield a started viewer of a robot with the root ``link_0``."""
     config = RvizConfig.for_model("link_0")
     viewer = Viewer(graph, library=library, finder=PackageFinder(), config=config, port=0)
     await viewer.start()
@@ -58,7 +58,7 @@ async def viewer_of(graph: Graph, library: DescriptionLibrary) -> AsyncIterator[
 
 @dataclass
 class Heard:
-    """What a page was sent: how often a second, and how old it was when it came (milliseconds)."""
+    """The transforms that a page received: the rate in Hz, and their age at reception in milliseconds."""
 
     rate: float
     ages: list[float]
@@ -66,14 +66,14 @@ class Heard:
 
 @dataclass
 class Cost:
-    """Share of a core, in percent, and what each page heard."""
+    """The load in percent of a core, and the transforms that each page received."""
 
     share: float
     pages: list[Heard]
 
 
 def listen(url: str, ready: Any, stop: Any, told: Any) -> None:
-    """In another process: be a page, and note the transforms that come."""
+    """Act as a page in another process, and record the received transforms."""
 
     async def be_a_page() -> None:
         ages = []
@@ -94,7 +94,7 @@ def listen(url: str, ready: Any, stop: Any, told: Any) -> None:
 
 
 async def cost(links: int, pages: int | None) -> Cost:
-    """What moving frames cost with so many pages open; None pages for no viewer at all."""
+    """Return the cost of moving frames with a number of open pages, or without a viewer for None."""
     graph = Graph(on_log=lambda _: None)
     publish = Frames(graph, links).publish
     if pages is None:
@@ -130,7 +130,7 @@ async def _measured(publish: Callable[[int], None]) -> float:
 
 
 async def slider_latencies(joints: int) -> list[float]:
-    """Milliseconds from a page's slider move to the transforms in the page, through all nodes, one process."""
+    """Return the milliseconds from a slider move to the transforms in the page, with all nodes in one process."""
     graph, library = Graph(on_log=lambda _: None), DescriptionLibrary()
     text = tree_robot(joints)
     async with viewer_of(graph, library) as viewer:
@@ -156,7 +156,7 @@ async def slider_latencies(joints: int) -> list[float]:
 
 
 async def opening(joints: int) -> tuple[float, int]:
-    """Milliseconds from connecting to the last opening message, and their size in bytes."""
+    """Return the milliseconds until the last opening message, and the size of these messages in bytes."""
     graph, library = Graph(on_log=lambda _: None), DescriptionLibrary()
     async with viewer_of(graph, library) as viewer:
         JointStatePublisherGui(graph, NodeOptions(library=library))
@@ -185,7 +185,7 @@ async def _drained(socket: aiohttp.ClientWebSocketResponse) -> None:
 
 
 def growth() -> float:
-    """The MB that a process grows by in an hour of a simulated robot at rest, which trembles by rounding."""
+    """Return the growth of the process in MB in an hour of a simulated robot at rest."""
     now_ns = 0
     history = History(256_000_000, lambda: now_ns)
 
@@ -209,21 +209,21 @@ def growth() -> float:
             if tick % every == 0:
                 poses = np.array([pose] * len(parts))
                 keep(topic, TFMessage(batch=TransformBatch(("odom",) * len(parts), tuple(parts), now_ns, poses)))
-        if tick == 60 * 100:  # the first minute fills what is kept once
+        if tick == 60 * 100:  # the first minute fills caches
             before = process.memory_info().rss
     history.close()
     return (process.memory_info().rss - before) / 1e6
 
 
 def standing() -> Row:
-    """Measure `growth` in a process of its own: in this one, memory of earlier measurements is free again."""
+    """Measure `growth` in a new process, because this process can reuse memory of earlier measurements."""
     program = "from benchmarks.bench_viewer import growth; print(growth())"
     done = subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT, capture_output=True, text=True)
     return Row("growth in an hour of a simulated robot at rest", float(done.stdout), "MB", "2")
 
 
 def moving(links: int, target: str, pages: tuple[tuple[int, str], ...]) -> list[Row]:
-    """What frames that move cost with nobody, one or many watching, and how old they are when they come."""
+    """Measure the cost and the age of moving frames with no page, one page and many pages."""
     what = f"{links} links at {RATE} Hz"
     alone = asyncio.run(cost(links, None)).share
     table = [Row(f"publisher alone, {what}", alone, "% of a core")]
@@ -238,7 +238,7 @@ def moving(links: int, target: str, pages: tuple[tuple[int, str], ...]) -> list[
 
 
 def rows() -> list[Row]:
-    """The table."""
+    """Measure, and return the rows of the table."""
     table = moving(12, "3", ((1, "one page"),))
     table += moving(LINKS, "5", ((0, "nobody watches"), (1, "one page"), (4, "four pages")))
     for joints in (5, LINKS):

@@ -1,4 +1,4 @@
-"""Detectors and their node: the processor's time for an image of 640x480, and images a second beside the simulation.
+"""Measure detectors and their node: the processor time for a 640x480 image, and images per second.
 
 Run it with ``python -m benchmarks vision``. Times are the processor's, of all threads, so that other programs change
 them little; images a second are counted where they come out, at ``/yolo/detections`` of
@@ -44,7 +44,7 @@ _SIZE = (480, 640)
 
 
 def rows() -> list[Row]:
-    """One image in this process, then the launch file as a process of its own."""
+    """Measure one image in this process, then the launch file in a separate process."""
     return [*_one_image(), *(row for model in MODELS for row in _beside_the_simulation(model))]
 
 
@@ -69,7 +69,7 @@ def _one_image() -> Iterator[Row]:
 
 
 def _scene() -> NDArray[np.uint8]:
-    """Things of plain colors on a floor, with noise as cameras have it; the same each time."""
+    """Return a constant image of plain objects on a floor, with camera noise."""
     cv2 = load_opencv()
     image = np.full((*_SIZE, 3), 150, np.uint8)
     image[: _SIZE[0] // 2] = (150, 175, 205)
@@ -82,7 +82,7 @@ def _scene() -> NDArray[np.uint8]:
 
 
 def _milliseconds(call: Callable[[], object]) -> float:
-    """The processor's time of one call, the median of many."""
+    """Return the processor time of one call in ms, the median of many."""
     call()
     times = []
     for _ in range(_PICTURES):
@@ -118,9 +118,9 @@ def _launched(model: str) -> Iterator[subprocess.Popen[bytes]]:
 
 
 async def _counted(pid: int) -> tuple[int, float, float, float]:
-    """Detections that come, in how many seconds, with how much of the processor, and for which share of the images.
+    """Return the count of detections, the seconds, the processor time, and the share of images with detections.
 
-    How many images the camera made is told by their stamps, which are a period apart.
+    The number of images follows from their stamps, which are one period apart.
     """
     stamps: list[int] = []
     os.environ["ROS_DOMAIN_ID"] = _DOMAIN
@@ -150,6 +150,6 @@ async def _counted(pid: int) -> tuple[int, float, float, float]:
 
 
 def _processor_seconds(pid: int) -> float:
-    """User's and system's time of a process, all threads."""
+    """Return the user and system time of all threads of a process."""
     fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

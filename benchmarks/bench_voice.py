@@ -1,4 +1,4 @@
-"""Enrolled words on synthetic speech: right, confused, false; noise, music, reading; how soon and at what cost.
+"""Measure enrolled words on synthetic speech: errors, noise, music and reading, latency and cost.
 
 Run it with ``python -m benchmarks voice``. The voices are those of espeak-ng, flite and festival that are installed.
 Each speaker enrolls eight commands, three times each at speeds and pitches some percent apart; it says them again
@@ -28,10 +28,10 @@ from linkwright.speech.sound.samples import BLOCK, RATE, Samples
 
 ENROLLED = ((0.95, 0.95), (1.0, 1.0), (1.06, 1.05))
 SAID = ((0.85, 1.1), (0.93, 0.85), (1.1, 1.15), (1.18, 0.92))
-"""Speeds and pitches, relative to the speaker's own."""
+"""Speeds and pitches relative to those of the speaker."""
 
 CONDITIONS = {"clean": None, "15 dB": 15.0, "5 dB": 5.0}
-"""Noise so far below the speech, white and pink in turn."""
+"""The level of noise below the speech, alternately white and pink."""
 
 _PROMISED = ("clean", "15 dB")
 _OTHER_VOICE = "clean, another voice than enrolled"
@@ -42,7 +42,7 @@ _SEED = 7
 
 @dataclass
 class _Tally:
-    """What became of clips."""
+    """The results of clips."""
 
     commands: int = 0
     right: int = 0
@@ -68,7 +68,7 @@ class _Tally:
 
 
 def engine(speaker: voices.Speaker, folder: Path) -> EnrolledEngine:
-    """One that knows the commands as this speaker says them."""
+    """Return an engine with the commands that a speaker enrolled."""
     words, rng = Words(), np.random.default_rng(1)
     for name in voices.COMMANDS[speaker.language]:
         for speed, pitch in ENROLLED:
@@ -88,7 +88,7 @@ def _made(speaker: voices.Speaker, folder: Path) -> EnrolledEngine:
 
 
 def listen(engine: EnrolledEngine, samples: Samples) -> Iterator[tuple[float, Heard]]:
-    """What is heard in a sound, with the seconds of it that had been given by then."""
+    """Yield the recognized words of a sound, each with the seconds of sound processed so far."""
     for at in range(0, len(samples), BLOCK):
         for heard in engine.hear(samples[at : at + BLOCK]):
             yield (at + BLOCK) / RATE, heard
@@ -97,7 +97,7 @@ def listen(engine: EnrolledEngine, samples: Samples) -> Iterator[tuple[float, He
 
 
 def clips(speaker: voices.Speaker, decibels: float | None, seed: int) -> Iterator[tuple[str | None, Samples]]:
-    """Commands and other words of a speaker; None for what is no command."""
+    """Yield clips of a speaker, each with its command, or None for other words."""
     rng = np.random.default_rng(seed)
     commands: Iterable[str] = voices.COMMANDS[speaker.language]
     for name in commands:
@@ -114,7 +114,7 @@ def clips(speaker: voices.Speaker, decibels: float | None, seed: int) -> Iterato
 def judge(
     engine: EnrolledEngine, speaker: voices.Speaker, decibels: float | None, tally: _Tally, *, others: bool = True
 ) -> None:
-    """Say all clips of a speaker to an engine. A partial counts as a command where it is the one for stopping."""
+    """Pass all clips of a speaker to an engine. A partial result counts as a command if it is the stop command."""
     stop = voices.STOP[speaker.language]
     for name, samples in clips(speaker, decibels, _SEED):
         if name is None and not others:
@@ -134,7 +134,7 @@ def judge(
 
 
 def rows() -> list[Row]:
-    """The table."""
+    """Measure, and return the rows of the table."""
     if voices.missing():
         print(f"not installed here, so without their voices: {', '.join(voices.missing())}")
     speakers = voices.installed()
@@ -158,7 +158,7 @@ def rows() -> list[Row]:
 
 
 def _tallies(speaker: voices.Speaker, folder: Path) -> dict[str, _Tally]:
-    """What becomes of the clips of a speaker in each condition, and of those of another voice."""
+    """Return the results of the clips of a speaker in each condition, and of another voice."""
     made = engine(speaker, folder)
     found = {}
     for about, decibels in CONDITIONS.items():
@@ -173,7 +173,7 @@ def _tallies(speaker: voices.Speaker, folder: Path) -> dict[str, _Tally]:
 
 
 def _sound(kind: str, speaker: voices.Speaker, folder: Path) -> list[Row]:
-    """Commands from ten minutes of what is no speech, and the time that they take."""
+    """Measure false commands in ten minutes of sound without speech, and the processing time."""
     rng = np.random.default_rng(11)
     count = int(_LONG * RATE)
     if kind == "music":
@@ -192,7 +192,7 @@ def _sound(kind: str, speaker: voices.Speaker, folder: Path) -> list[Row]:
 
 
 def _reading(speakers: list[voices.Speaker], folder: Path) -> list[Row]:
-    """Commands from reading by the voices that are enrolled."""
+    """Measure false commands in texts that enrolled voices read."""
     rng = np.random.default_rng(12)
     engines = {speaker: _made(speaker, folder) for speaker in speakers}
     commands, stops, seconds, spent = 0, 0, 0.0, 0.0

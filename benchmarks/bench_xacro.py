@@ -1,4 +1,4 @@
-"""What expanding costs: real robots in this process, whole commands, and memory, beside PyPI's xacro.
+"""Measure expansion: real robots in this process, whole commands, and memory, compared with PyPI's xacro.
 
 Run it with ``python -m benchmarks xacro``. The robots are those of the corpus, where it is beside the repository, else
 robots made for this. The environment variable LINKWRIGHT_ROBOTS names a folder with further descriptions, which are all
@@ -37,19 +37,19 @@ _FINDING = f"""<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <link name="a"><visual><geometry><mesh filename="$(find {_FOUND})/a.stl"/></geometry></visual></link>
 </robot>"""
 FEWEST_LINES = 15
-"""Less is a file of macros, and no robot."""
+"""The minimum number of lines of a robot. A shorter file contains only macros."""
 PEER = "xacro"
 
 Engine = Callable[[Model], object]
 
 
 def ours(model: Model) -> object:
-    """Expand with this project."""
+    """Expand a model with this project."""
     return str(expand(model.path, model.arguments, packages=model.packages))
 
 
 def theirs() -> Engine | None:
-    """What expands with PyPI's xacro, or None where it is not installed."""
+    """Return the engine of PyPI's xacro, or None if it is not installed."""
     xacro = peers.load(PEER)
     if xacro is None:
         return None
@@ -69,7 +69,7 @@ def theirs() -> Engine | None:
 
 
 def forget() -> None:
-    """Drop everything that was kept from earlier expansions."""
+    """Clear all caches of earlier expansions."""
     for values in (
         cache.documents.values,
         template.templates,
@@ -90,7 +90,7 @@ def one_pass(engine: Engine, robots: list[Model]) -> None:
 
 
 def rows() -> list[Row]:
-    """Measure."""
+    """Measure, and return the rows of the table."""
     with tempfile.TemporaryDirectory() as folder:
         robots = models(Path(folder))
         other = theirs()
@@ -100,7 +100,7 @@ def rows() -> list[Row]:
 
 
 def _collection(other: Engine | None) -> list[Row]:
-    """The descriptions of LINKWRIGHT_ROBOTS that both programs expand, in processor time: all of them, and again."""
+    """Measure the processor time of the descriptions of LINKWRIGHT_ROBOTS that both programs expand, twice."""
     folder = os.environ.get("LINKWRIGHT_ROBOTS")
     if not folder:
         return []
@@ -157,7 +157,7 @@ def _row(what: str, seconds: dict[str, float], target: str) -> Row:
 
 
 def _largest(robots: list[Model], engine: Engine) -> list[Model]:
-    """The models that take longest, one of each file."""
+    """Return the slowest models, one for each file."""
     times = {model.name: side_by_side({"": lambda model=model: engine(model)}, 1)[""] for model in robots}
     chosen: dict[str, Model] = {}
     for model in sorted(robots, key=lambda model: -times[model.name]):
@@ -201,7 +201,7 @@ def _written(folder: Path, name: str, text: str) -> Path:
 
 
 def _prefix(model: Model, folder: Path) -> Path:
-    """An install prefix with the packages of a model, as both programs look for them."""
+    """Create an install prefix with the packages of a model, for both programs."""
     prefix = folder / "prefix"
     index = prefix / "share" / "ament_index" / "resource_index" / "packages"
     index.mkdir(parents=True)
@@ -212,7 +212,7 @@ def _prefix(model: Model, folder: Path) -> Path:
 
 
 def _ament_index(folder: Path) -> Path:
-    """A module that finds share folders for PyPI's xacro, with less ado than ament_index_python does."""
+    """Create a simple replacement of ament_index_python, with which PyPI's xacro finds share folders."""
     package = folder / "stand_in" / "ament_index_python"
     package.mkdir(parents=True)
     (package / "__init__.py").touch()

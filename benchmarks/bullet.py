@@ -1,4 +1,4 @@
-"""The same robots and boxes in Bullet, through pybullet: physics only, as its users write it."""
+"""The same robots and boxes in Bullet through pybullet, with physics only."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from benchmarks import peers
 
 _STEP = 0.001
 _BESIDE = 1.5
-"""Meters from one robot to the next."""
+"""The distance between adjacent robots in meters."""
 _WHEELS = ("left_wheel_joint", "right_wheel_joint")
 _TORQUE = 5.0
 
 
 class BulletWorld:
-    """A plane with robots whose wheels stand still, and boxes of 0.25 m and 1 kg; as it comes, nothing in it sleeps.
+    """A plane with robots at rest, and boxes of 0.25 m and 1 kg; bodies never sleep, by Bullet's default.
 
     Args:
         urdf: the robot's description, with shapes only.
-        robots: how many.
-        boxes: how many.
+        robots: the number of robots.
+        boxes: the number of boxes.
     """
 
     def __init__(self, bullet: types.ModuleType, urdf: str, robots: int, boxes: int) -> None:
@@ -58,17 +58,17 @@ class BulletWorld:
             )
 
     def advance(self, steps: int) -> None:
-        """Make steps of 1 ms."""
+        """Simulate a number of steps of 1 ms."""
         for _ in range(steps):
             self._bullet.stepSimulation(self._client)
 
     def close(self) -> None:
-        """Free it."""
+        """Release the world."""
         self._bullet.disconnect(self._client)
 
 
 def bullet_world(urdf: str, robots: int, boxes: int) -> BulletWorld | None:
-    """A world in Bullet; None where pybullet is not installed here."""
+    """Return a world in Bullet, or None if pybullet is not installed."""
     with _silence():
         bullet = peers.load("pybullet")
         return None if bullet is None else BulletWorld(bullet, urdf, robots, boxes)
@@ -76,7 +76,7 @@ def bullet_world(urdf: str, robots: int, boxes: int) -> BulletWorld | None:
 
 @contextmanager
 def _silence() -> Iterator[None]:
-    """Drop what Bullet says of each link without a mass, past Python's streams."""
+    """Suppress Bullet's messages about links without mass, which bypass Python's streams."""
     sys.stdout.flush()
     kept = [os.dup(number) for number in (1, 2)]
     with Path(os.devnull).open("w") as nothing:

@@ -35,13 +35,13 @@ TOPIC = "/measured"
 
 @dataclass
 class Result:
-    """What a side has found.
+    """The result of one side.
 
     Attributes:
         count: messages sent or received.
         seconds: from the first message to the last.
-        cores: processor time by that span.
-        latency: how old messages were when they were handed over, the median in seconds; 0 where nobody looked.
+        cores: the processor time divided by this duration.
+        latency: the median age of messages at delivery in seconds; 0 if it was not measured.
     """
 
     count: int
@@ -51,7 +51,7 @@ class Result:
 
 
 def ours(kind: str) -> Any:
-    """A message as Linkwright has it."""
+    """Return a message of a kind as an object of Linkwright."""
     if kind == "joints":
         message = get_message("sensor_msgs/msg/JointState")()
         message.name = [f"joint_{number}" for number in range(JOINTS)]
@@ -73,7 +73,7 @@ def ours(kind: str) -> Any:
 
 
 def renew(message: Any, count: int) -> None:
-    """Change a message a little, of whatever library it is."""
+    """Change the stamp and a value of a message of any library."""
     stamp = _stamp(message)
     stamp.sec, stamp.nanosec = divmod(time.time_ns(), 1_000_000_000)
     if hasattr(message, "position"):
@@ -81,13 +81,13 @@ def renew(message: Any, count: int) -> None:
 
 
 def age(message: Any) -> float:
-    """How long ago a message was renewed, seconds."""
+    """Return the time since a message was renewed, in seconds."""
     stamp = _stamp(message)
     return float(time.time() - stamp.sec - 1e-9 * stamp.nanosec)
 
 
 def median_age(ages: list[float]) -> float:
-    """The median of those; 0 where there are none."""
+    """Return the median of ages, or 0 if there are none."""
     return statistics.median(ages) if ages else 0.0
 
 
@@ -96,7 +96,7 @@ def _stamp(message: Any) -> Any:
 
 
 def paced(send: Callable[[], object], seconds: float, rate: float) -> Result:
-    """Send for a time, so many times a second."""
+    """Send at a rate for a number of seconds."""
     count, begin, cpu = 0, time.perf_counter(), time.process_time()
     while time.perf_counter() - begin < seconds:
         send()
@@ -136,7 +136,7 @@ async def receive_ours(kind: str, seconds: float) -> Result:
 
     def received(message: Any) -> None:
         nonlocal count, first, last, cpu
-        if kind != "transforms":  # whose objects are not made at all
+        if kind != "transforms":  # its objects are never created
             ages.append(age(message))
         last = time.perf_counter()
         if not count:
@@ -152,7 +152,7 @@ async def receive_ours(kind: str, seconds: float) -> Result:
 
 
 async def _until_quiet(count: Callable[[], int], seconds: float) -> None:
-    """Until messages came for so long and then no more, or none for too long."""
+    """Wait until messages have arrived for a time and then stop, or until none arrive for too long."""
     limit, seen = time.monotonic() + seconds + 20, 0
     while time.monotonic() < limit:
         await asyncio.sleep(0.7)

@@ -35,7 +35,7 @@ TYPES = {"tf": "tf2_msgs/msg/TFMessage", "odom": "nav_msgs/msg/Odometry", "scan"
 
 
 async def drive(first: int, count: int) -> None:
-    """Be so many robots until standard input is closed."""
+    """Simulate a number of robots until standard input is closed."""
     tf, odometry, scan = (get_message(name) for name in TYPES.values())
     transform = get_message("geometry_msgs/msg/TransformStamped")
     publishers, graphs = [], []
@@ -69,7 +69,7 @@ async def drive(first: int, count: int) -> None:
 
 
 async def listen(robots: int) -> None:
-    """Count what so many robots say, from one line of standard input to the next."""
+    """Count the messages of a number of robots between two lines of standard input."""
     graph = Graph()
     counts = dict.fromkeys(TYPES, 0)
     node = graph.create_node("listener")
@@ -94,7 +94,7 @@ async def listen(robots: int) -> None:
 
 
 def measure(robots: int) -> dict[str, float]:
-    """The cost of so many."""
+    """Return the cost of a number of robots."""
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         port = taken.getsockname()[1]
@@ -151,7 +151,7 @@ def measure(robots: int) -> dict[str, float]:
 
 
 def spent_by(used: dict[int, psutil.Process]) -> dict[int, float]:
-    """Seconds of the processor that each process has taken."""
+    """Return the processor time of each process in seconds."""
     return {pid: sum(process.cpu_times()[:2]) for pid, process in used.items()}
 
 
@@ -167,7 +167,7 @@ def settle(used: dict[int, psutil.Process]) -> float:
 
 
 def main() -> None:
-    """Measure, or be a part of what is measured."""
+    """Run the measurement, or one of its processes."""
     words = sys.argv[1:]
     if words[:1] == ["drive"]:
         asyncio.run(drive(int(words[1]), int(words[2])))

@@ -1,4 +1,4 @@
-"""Measuring: what a row of a table says, and times and memory of calls and commands."""
+"""The rows of tables, and the measurement of time and memory of calls and commands."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class Measured(Protocol):
     """A row of a table."""
 
     def cells(self) -> tuple[str, ...]:
-        """What stands in the table of the page."""
+        """Return the cells of the row in the page's table."""
 
     def line(self) -> str:
-        """What is printed to the terminal."""
+        """Return the line for the terminal."""
 
 
 @dataclass
@@ -32,11 +32,11 @@ class Row:
     """One measured thing.
 
     Attributes:
-        what: what was measured.
+        what: the measured quantity.
         ours: our figure.
         unit: its unit.
-        target: what was promised, in words, or empty.
-        peers: name of a peer -> its figure; None for one that is not installed here or cannot do it.
+        target: the promised figure as text, or empty.
+        peers: maps the name of a peer to its figure; None if it is not installed or not capable.
     """
 
     what: str
@@ -46,7 +46,7 @@ class Row:
     peers: dict[str, float | None] = field(default_factory=dict)
 
     def cells(self) -> tuple[str, str, str, str]:
-        """What, ours, promised, and peers with how many times as much they take."""
+        """Return the quantity, our figure, the promised figure, and the peers with their ratios."""
         others = [
             f"{name} not measured" if value is None else f"{name} {value:.4g} {self.unit}{self._compared(value)}"
             for name, value in self.peers.items()
@@ -55,7 +55,7 @@ class Row:
         return self.what, f"{shown} {self.unit}", self.target, ", ".join(others)
 
     def line(self) -> str:
-        """The row on a terminal."""
+        """Return the line for the terminal."""
         what, ours, target, others = self.cells()
         return f"{what:58} {ours:>12}   {f'(promised: {target})  ' if target else ''}{others}"
 
@@ -75,13 +75,13 @@ def side_by_side(
     repeat: int = 1,
     before: Callable[[], object] = gc.collect,
 ) -> dict[str, float]:
-    """The median seconds of one call of each, called in turns so that all meet the same machine.
+    """Return the median seconds of one call of each, called in turns under equal conditions.
 
     Args:
-        calls: name -> what to call; None for what cannot be.
-        rounds: how many turns.
-        repeat: how many calls are timed together.
-        before: what is done before each turn of each, untimed.
+        calls: maps a name to a function; None if it is not available.
+        rounds: the number of turns.
+        repeat: the number of calls that are timed together.
+        before: a function that is called before each turn, without timing.
     """
     times: dict[str, list[float]] = {name: [] for name, call in calls.items() if call is not None}
     for number in range(rounds + 1):
@@ -98,7 +98,7 @@ def side_by_side(
 
 
 def commands(calls: Mapping[str, Sequence[str] | None], rounds: int, **environment: str) -> dict[str, float]:
-    """The median seconds of whole commands, each a process of its own with compiled bytecode at hand."""
+    """Return the median seconds of whole commands, each in a new process with compiled bytecode."""
     known = {**os.environ, **environment}
     known.pop("PYTHONDONTWRITEBYTECODE", None)
 
@@ -118,7 +118,7 @@ print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 
 
 def peak_memory(words: Sequence[str], **environment: str) -> float:
-    """The most memory (MB) that a command has at once."""
+    """Return the peak memory of a command in MB."""
     known = {**os.environ, **environment}
     done = subprocess.run([sys.executable, "-c", _PEAK, *words], check=True, env=known, capture_output=True, text=True)
     return int(done.stdout) / (1000 if sys.platform != "darwin" else 1_000_000)

@@ -62,14 +62,14 @@ def _running(*words: str) -> Iterator[subprocess.Popen[str]]:
 
 
 def free_port() -> int:
-    """A port that nobody listens on."""
+    """Return a free port."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
 
 
 def viewer_url(process: subprocess.Popen[str]) -> str:
-    """The address that the program prints."""
+    """Return the address that the program prints."""
     assert process.stdout is not None
     for line in process.stdout:
         if line.startswith("Viewer: "):
@@ -91,7 +91,7 @@ def answered(port: int, begin: float) -> float:
 
 
 class Core:
-    """The part of a core that a process uses from now on, in percent."""
+    """A measurement of the share of a core that a process uses after its creation, in percent."""
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self._process = psutil.Process(process.pid)
@@ -99,7 +99,7 @@ class Core:
 
     @property
     def share(self) -> float:
-        """Since it was made."""
+        """Return the share since the creation of this object."""
         return 100 * (self._seconds() - self._used) / (time.perf_counter() - self._begin)
 
     def _seconds(self) -> float:

@@ -1,7 +1,7 @@
-"""What a release is made of, as CycloneDX has it: Python packages by cyclonedx-py, and those of npm in the page.
+"""Write the bill of materials of a release in the format of CycloneDX: packages of Python and of npm.
 
-`cyclonedx-py` lists the environment in which everything of a release is installed; this adds what the page brings
-along, which its lock file tells, and takes out what is only about the machine that it was made on.
+`cyclonedx-py` lists the environment in which a release is installed. This program adds the npm packages in the page,
+from its lock file, and removes the details of the machine.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ _LOCAL = "file:"
 
 
 def complete(listed: str) -> str:
-    """The whole bill, from that of an environment in which Linkwright is installed.
+    """Return the complete bill, given the bill of an environment in which Linkwright is installed.
 
     Raises:
-        SystemExit: when Linkwright is not in it.
+        SystemExit: the bill does not contain Linkwright.
     """
     bill: dict[str, Any] = json.loads(listed)
     components: list[dict[str, Any]] = bill["components"]
@@ -48,10 +48,10 @@ def complete(listed: str) -> str:
 
 
 def check(path: Path) -> list[str]:
-    """Hold a bill against the schema of CycloneDX; which packages say nothing about their license.
+    """Validate a bill with the schema of CycloneDX, and return the packages without a license.
 
     Raises:
-        SystemExit: when it does not fit.
+        SystemExit: the bill does not match the schema.
     """
     from cyclonedx.schema import SchemaVersion  # only the environment of `make release` has it
     from cyclonedx.validation.json import JsonStrictValidator
@@ -65,7 +65,7 @@ def check(path: Path) -> list[str]:
 
 
 def _reference(each: dict[str, Any]) -> str:
-    """The name that a component, or what one depends on, has in the bill."""
+    """Return the name of a component, or of a dependency of a component, in the bill."""
     return str(each.get("bom-ref") or each["ref"])
 
 

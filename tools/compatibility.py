@@ -33,7 +33,7 @@ class Words:
     missing: str
 
     def remark(self, remark: table.Remark) -> str:
-        """A remark in this language."""
+        """Return a remark in this language."""
         return remark.chinese if self is CHINESE else remark.english
 
 
@@ -108,7 +108,7 @@ CHINESE = Words(
 
 
 def generate() -> dict[Path, str]:
-    """Path -> text of each page."""
+    """Return the text of each page, by path."""
     return {DOCS / "compatibility.md": _page(ENGLISH), DOCS / "zh" / "compatibility.md": _page(CHINESE)}
 
 
@@ -159,7 +159,7 @@ def _listed(names: Iterable[str]) -> str:
 
 
 def _is_own(module: table.Module, name: str) -> bool:
-    """Whether a name is the module's own, or one of a package's that brings the names of its modules together."""
+    """Return whether a name is the module's own, or is one that a package re-exports from its modules."""
     origin = module.names[name].origin
     return origin.startswith(("linkwright.", f"{module.name}.")) or origin in (table.VALUE, module.name)
 
@@ -169,7 +169,7 @@ def _is_public(name: str) -> bool:
 
 
 def main(arguments: list[str]) -> int:
-    """Write the pages, or say which are not current."""
+    """Write the pages, or report which are not current."""
     stale = [path for path, text in generate().items()
              if not path.exists() or path.read_text(encoding="utf-8") != text]  # fmt: skip
     for path in stale:

@@ -4,7 +4,7 @@ Usage: python tools/documented_output.py [--check]
 
 A section of these pages that can be tried has fenced blocks with titles (the files), one ``bash`` block (the command)
 and one ``text`` block, which this program fills with what the command writes to standard error in a folder of these
-files, in the language of the page. What the launcher logs about itself is left out: it differs with each run.
+files, in the language of the page. The launcher's own log lines are left out, because they differ in each run.
 """
 
 from __future__ import annotations
@@ -27,22 +27,22 @@ _COMMAND = re.compile(r"^```bash\nlinkwright (.*?)\n```$", re.MULTILINE)
 _LOGGED = re.compile(r"^\[INFO\] \[launch\]: .*\n", re.MULTILINE)
 _OUTPUT = re.compile(r"(?<=^```text\n).*?(?=^```$)", re.MULTILINE | re.DOTALL)
 _READERS_FOLDER = "/home/you/robots"
-# A folder's look must not depend on where the program is run, nor on a workspace that happens to be sourced.
+# The output must depend neither on the current folder nor on a sourced workspace.
 _LEFT_OUT = ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "ROS_PACKAGE_PATH")
 
 
 def refreshed(page: str, language: str = "en") -> str:
-    """The text of a page with every output as it is now."""
+    """Return the text of a page with current outputs."""
     return "".join(_refreshed_section(section, language) for section in _SECTION.split(page))
 
 
 def language_of(page: Path) -> str:
-    """The language of a page: its folder's name."""
+    """Return the language of a page, which is the name of its folder."""
     return "zh" if page.parent.name == "zh" else "en"
 
 
 def output_of(words: Sequence[str], files: Sequence[tuple[str, str]], language: str = "en") -> str:
-    """What ``linkwright`` with these words writes to standard error in a folder of these files (path, text)."""
+    """Return the standard error of ``linkwright`` with these arguments, in a folder with these files (path, text)."""
     environment = {name: value for name, value in os.environ.items() if name not in _LEFT_OUT}
     environment |= {"LINKWRIGHT_LANG": language, "LINKWRIGHT_DDS": "0"}
     with tempfile.TemporaryDirectory() as folder:
@@ -73,7 +73,7 @@ def _refreshed_section(section: str, language: str) -> str:
 
 
 def main(words: Sequence[str]) -> int:
-    """Write the pages, or with ``--check`` say whether they are current."""
+    """Write the pages, or with ``--check`` report whether they are current."""
     stale = False
     for page in PAGES:
         before = page.read_text(encoding="utf-8")

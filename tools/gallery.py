@@ -2,7 +2,7 @@
 
 Usage: python tools/gallery.py [NAME ...] (needs a Chromium and Pillow)
 
-Each robot is what `linkwright view` shows of it in a headless browser: the scene alone, without panels.
+An image shows the scene of `linkwright view` in a headless browser, without panels.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 
 FOLDER = Path(__file__).resolve().parent.parent / "docs" / "gallery"
 PARTS = "parts"
-"""What the robots include, which is no robot by itself."""
+"""The file that the robots include; it does not describe a robot itself."""
 
 FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking")
 WINDOW = {"width": 1480, "height": 812}

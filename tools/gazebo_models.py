@@ -1,4 +1,4 @@
-"""The models of ``robots/my_robot_gazebo``: things that a robot can detect, push or run into.
+"""The models of ``robots/my_robot_gazebo``: objects that a robot can detect, push or hit.
 
 `make_gazebo_worlds.py` writes them.
 """
@@ -34,13 +34,13 @@ from gazebo_sdf import (
 
 
 def prism(name: str, rings: Sequence[tuple[float, float]], sides: int, turn: float = 0.0) -> str:
-    """An STL file of a closed surface about z.
+    """Return an STL file with a closed surface about z.
 
     Args:
-        name: the solid's name.
-        rings: radius and height of each ring of corners, from below, in meters.
-        sides: how many corners a ring has.
-        turn: where the first corner is, radians.
+        name: the name of the solid.
+        rings: the radius and height of each ring of corners in meters, from the bottom to the top.
+        sides: the number of corners of a ring.
+        turn: the angle of the first corner in radians.
     """
     angles = [turn + 2 * math.pi * at / sides for at in range(sides)]
     corners = [[(r * math.cos(a), r * math.sin(a), z) for a in angles] for r, z in rings]
@@ -62,7 +62,7 @@ def prism(name: str, rings: Sequence[tuple[float, float]], sides: int, turn: flo
 
 
 def normal(a: Vector, b: Vector, c: Vector) -> Vector:
-    """The unit normal of a triangle whose corners run counter-clockwise."""
+    """Return the unit normal of a triangle with counterclockwise corners."""
     u, v = [tuple(q - p for p, q in zip(a, other, strict=True)) for other in (b, c)]
     n = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
     length = math.hypot(*n)
@@ -70,12 +70,12 @@ def normal(a: Vector, b: Vector, c: Vector) -> Vector:
 
 
 def cone_radius(z: float) -> float:
-    """The traffic cone's radius at a height, meters."""
+    """Return the radius of the traffic cone at a height, in meters."""
     return 0.13 - 0.105 * (z - 0.03) / 0.47
 
 
 def traffic_cone() -> tuple[Model, dict[str, str]]:
-    """A cone of 0.5 m with two white bands on a square foot; it can be knocked over."""
+    """Return a traffic cone of 0.5 m with two white bands and a square foot, which can fall over."""
     bands = {
         f"band_{at}.stl": prism("band", [(cone_radius(z) + 0.002, z) for z in (low, low + 0.08)], 24)
         for at, low in ((1, 0.15), (2, 0.32))
@@ -90,7 +90,7 @@ def traffic_cone() -> tuple[Model, dict[str, str]]:
 
 
 def ball() -> tuple[Model, dict[str, str]]:
-    """A football of 0.22 m that rolls; its origin is on the ground below it."""
+    """Return a rolling football of 0.22 m, with its origin on the ground."""
     radius, mass = 0.11, 0.43
     spots = [
         cylinder(f"spot_{at}", 0.03, 0.2205, Pose(z=radius, roll=roll, pitch=pitch), BLACK, solid=False)
@@ -102,7 +102,7 @@ def ball() -> tuple[Model, dict[str, str]]:
 
 
 def crate() -> tuple[Model, dict[str, str]]:
-    """A wooden crate of 0.4 m that a robot can push."""
+    """Return a wooden crate of 0.4 m that a robot can push."""
     size, mass = 0.4, 3.0
     slats = [
         box(f"slat_{at}_{side}", (0.41, 0.41, 0.05), Pose(z=z), (0.40, 0.26, 0.14), solid=False)
@@ -114,7 +114,7 @@ def crate() -> tuple[Model, dict[str, str]]:
 
 
 def person(name: str, scale: float, shirt: Color, trousers: Color) -> tuple[Model, dict[str, str]]:
-    """A standing figure, 1.75 m tall times the scale, that looks along x."""
+    """Return a standing person that looks along x, 1.75 m tall times the scale."""
 
     def at(y: float, z: float, x: float = 0.0) -> Pose:
         return Pose(x * scale, y * scale, z * scale)
@@ -147,12 +147,12 @@ STROKES: dict[str, list[tuple[float, float, float, float]]] = {
 
 
 def lettering(word: str, step: float, pose: Pose, color: Color) -> list[Part]:
-    """A word of flat boxes on a plate that faces along x, read from there; `step` is the width of a stroke, meters."""
+    """Return a word of flat boxes on a plate that faces x; `step` is the width of a stroke in meters."""
     parts = []
     for at, letter in enumerate(word):
         middle = (at - (len(word) - 1) / 2) * 4
         for stroke, (across, up, width, tall) in enumerate(STROKES[letter], start=1):
-            # Whoever reads it looks along -x and has y on the right.
+            # A reader looks along -x and has y on the right.
             place = Pose(pose.x, pose.y + (middle + across) * step, pose.z + up * step)
             size = (0.004, width * step, tall * step)
             parts.append(box(f"{letter}{at + 1}_{stroke}", size, place, color, solid=False))
@@ -160,7 +160,7 @@ def lettering(word: str, step: float, pose: Pose, color: Color) -> list[Part]:
 
 
 def sign(name: str, plates: Sequence[tuple[str, str, Color]], height: float) -> list[Part]:
-    """A pole with plates that face along x, each a mesh before the one before it."""
+    """Return a pole with plates that face x, each a mesh in front of the previous one."""
     upright = [
         mesh(part, f"{name}/meshes/{file}", Pose(0.03 + 0.004 * at, 0, height, pitch=math.pi / 2), color, solid=at == 0)
         for at, (part, file, color) in enumerate(plates)
@@ -170,12 +170,12 @@ def sign(name: str, plates: Sequence[tuple[str, str, Color]], height: float) -> 
 
 
 def plate(sides: int, radius: float, turn: float) -> str:
-    """A plate of 8 mm with its middle in the origin, its face along z."""
+    """Return a plate of 8 mm thickness, centered at the origin, that faces z."""
     return prism("plate", [(radius, -0.004), (radius, 0.004)], sides, turn)
 
 
 def stop_sign() -> tuple[Model, dict[str, str]]:
-    """A red octagon with a white rim, the word STOP, on a pole of 1.6 m; it faces along x."""
+    """Return a stop sign that faces x: a red octagon with a white rim on a pole of 1.6 m."""
     height = 1.6
     meshes = {"rim.stl": plate(8, 0.32, math.pi / 8), "field.stl": plate(8, 0.30, math.pi / 8)}
     parts = sign("stop_sign", [("rim", "rim.stl", WHITE), ("field", "field.stl", RED)], height)
@@ -183,8 +183,8 @@ def stop_sign() -> tuple[Model, dict[str, str]]:
 
 
 def yield_sign() -> tuple[Model, dict[str, str]]:
-    """A white triangle with a red rim, one corner down, on a pole of 1.6 m; it faces along x."""
-    # A plate is stood up by a quarter turn about y, which brings its -x to the top: a corner at +x points down.
+    """Return a yield sign that faces x: a white triangle with a red rim, one corner down, on a pole of 1.6 m."""
+    # A quarter turn about y raises the plate, with its -x at the top: a corner at +x points down.
     meshes = {"rim.stl": plate(3, 0.40, 0.0), "field.stl": plate(3, 0.28, 0.0)}
     parts = sign("yield_sign", [("rim", "rim.stl", RED), ("field", "field.stl", WHITE)], 1.6)
     return Model("yield_sign", parts), meshes
@@ -202,7 +202,7 @@ MODELS = {
 
 
 def model_config(name: str, description: str) -> str:
-    """The file by which Gazebo knows a model."""
+    """Return the ``model.config`` of a model."""
     return "\n".join(
         [
             '<?xml version="1.0"?>',

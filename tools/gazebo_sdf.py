@@ -1,6 +1,6 @@
-"""What the worlds and models of ``robots/my_robot_gazebo`` are written with: elements of SDF 1.6.
+"""The elements of SDF 1.6 for the worlds and models of ``robots/my_robot_gazebo``.
 
-Gazebo Classic and the newer Gazebo read 1.6 alike. Lengths are meters, angles radians, masses kilograms.
+Both Gazebo Classic and the newer Gazebo read SDF 1.6. Lengths are meters, angles radians, masses kilograms.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ SKIN = (0.85, 0.65, 0.52)
 
 
 def number(value: float) -> str:
-    """A number with at most four decimals and no negative zero, the same on every machine."""
+    """Return a number with at most four decimal places, without negative zero."""
     text = f"{value:.4f}".rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text
 
 
 def numbers(values: Iterable[float]) -> str:
-    """Numbers with a blank between them."""
+    """Return numbers separated by spaces."""
     return " ".join(map(number, values))
 
 
 @dataclass(frozen=True)
 class Pose:
-    """A place in meters and a turn about z in radians; `pitch` is one about y, for what leans or lies."""
+    """A position in meters, and rotations about x (`roll`), y (`pitch`) and z (`yaw`) in radians."""
 
     x: float = 0.0
     y: float = 0.0
@@ -52,7 +52,7 @@ class Pose:
 
 @dataclass(frozen=True)
 class Part:
-    """A shape of one color in a link: seen, and where it is solid, touched."""
+    """A shape of one color in a link: a visual and, if it is solid, a collision."""
 
     name: str
     geometry: str
@@ -61,7 +61,7 @@ class Part:
     solid: bool = True
 
     def xml(self, indent: str) -> str:
-        """The part's collision and visual."""
+        """Return the collision and the visual."""
         rows = []
         if self.solid:
             rows += [f'<collision name="{self.name}">', *self._place(), "</collision>"]
@@ -81,36 +81,36 @@ class Part:
 
 
 def box(name: str, size: Vector, pose: Pose, color: Color, *, solid: bool = True) -> Part:
-    """A box about its pose."""
+    """Return a box centered at a pose."""
     return Part(name, f"<box><size>{numbers(size)}</size></box>", pose, color, solid)
 
 
 def cylinder(name: str, radius: float, length: float, pose: Pose, color: Color, *, solid: bool = True) -> Part:
-    """A cylinder along z about its pose."""
+    """Return a cylinder along z, centered at a pose."""
     geometry = f"<cylinder><radius>{number(radius)}</radius><length>{number(length)}</length></cylinder>"
     return Part(name, geometry, pose, color, solid)
 
 
 def sphere(name: str, radius: float, pose: Pose, color: Color, *, solid: bool = True) -> Part:
-    """A sphere about its pose."""
+    """Return a sphere centered at a pose."""
     return Part(name, f"<sphere><radius>{number(radius)}</radius></sphere>", pose, color, solid)
 
 
 def mesh(name: str, file: str, pose: Pose, color: Color, *, solid: bool = True) -> Part:
-    """A mesh of a model of this package: MODEL/meshes/FILE."""
+    """Return a mesh of a model of this package, MODEL/meshes/FILE."""
     return Part(name, f"<mesh><uri>model://{file}</uri></mesh>", pose, color, solid)
 
 
 @dataclass(frozen=True)
 class Body:
-    """What a thing that can be pushed weighs: kilograms, and moments about its center in kg m^2."""
+    """The mass in kg of an object that can be pushed, and its moments about the center in kg m^2."""
 
     mass: float
     moments: Vector
     center: Vector = (0.0, 0.0, 0.0)
 
     def xml(self, indent: str) -> str:
-        """The link's inertial."""
+        """Return the ``<inertial>`` of the link."""
         xx, yy, zz = map(moment, self.moments)
         rows = [
             "<inertial>",
@@ -123,13 +123,13 @@ class Body:
 
 
 def moment(value: float) -> str:
-    """A moment of inertia, which may be small."""
+    """Return a moment of inertia as text, with enough digits for small values."""
     return f"{value:.4g}"
 
 
 @dataclass(frozen=True)
 class Model:
-    """Parts that stand or move as one; without a body it is part of the world and does not move."""
+    """A rigid group of parts; without a body, it is static."""
 
     name: str
     parts: Sequence[Part]
@@ -137,7 +137,7 @@ class Model:
     body: Body | None = None
 
     def xml(self, indent: str = "    ") -> str:
-        """The model as an element of a world or of a file of its own."""
+        """Return the model as an element of a world or of a separate file."""
         place = [] if self.pose == Pose() else [f"{indent}  <pose>{self.pose}</pose>"]
         rows = [
             f'{indent}<model name="{self.name}">',
@@ -161,7 +161,7 @@ class Include:
     pose: Pose
 
     def xml(self, indent: str = "    ") -> str:
-        """The include element."""
+        """Return the ``<include>`` element."""
         rows = [
             "<include>",
             f"  <uri>model://{self.model}</uri>",
@@ -173,6 +173,6 @@ class Include:
 
 
 def sdf(content: str) -> str:
-    """A file of SDF 1.6."""
+    """Return the text of an SDF 1.6 file."""
     made_by = "SPDX-License-Identifier: Apache-2.0. Generated by tools/make_gazebo_worlds.py of Linkwright."
     return f'<?xml version="1.0"?>\n<!-- {made_by} -->\n<sdf version="1.6">\n{content}\n</sdf>\n'

@@ -2,7 +2,7 @@
 
 Usage: python tools/language_reference.py [--check]
 
-With ``--check`` it writes nothing and exits with 1 when a page is not current.
+With ``--check``, nothing is written, and the exit status is 1 if a page is not current.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ class _Section(NamedTuple):
     around: tuple[str, ...]
 
     def name(self, depth: int) -> tuple[str, ...]:
-        """The tag, and those of as many elements around it."""
+        """Return the tag, followed by the tags of this number of enclosing elements."""
         return (self.rule.tag, *self.around[:depth])
 
 
 def generate(head: str, root: ElementRule) -> str:
-    """A page."""
+    """Return the text of a page."""
     sections = list(_sections(root, (), set()))
     parts = [head]
     for section in sections:
@@ -59,7 +59,7 @@ def generate(head: str, root: ElementRule) -> str:
 
 
 def _sections(rule: ElementRule, around: tuple[str, ...], seen: set[object]) -> Iterator[_Section]:
-    """The rule and those below it, each that differs from others of its tag once; values stand with what has them."""
+    """Yield the rule and the rules below it, once each; values are listed with their parents."""
     key = (rule.tag, str(describe_element(rule)))
     if key in seen or rule.is_value:
         return
@@ -70,7 +70,7 @@ def _sections(rule: ElementRule, around: tuple[str, ...], seen: set[object]) -> 
 
 
 def main() -> int:
-    """Write the pages, or with ``--check`` say whether they are current."""
+    """Write the pages, or with ``--check`` report whether they are current."""
     stale = False
     for name, head, root in (("urdf.md", _URDF, ROBOT), ("sdf.md", _SDF, SDF)):
         text, page = generate(head, root), FOLDER / name

@@ -44,7 +44,7 @@ MAX_LINES = 24
 """The greatest number of lines of an output."""
 
 FAILED = Path(__file__).resolve().parent.parent / ".build" / "lesson-picture.png"
-"""A picture of a page in which an action failed."""
+"""The file for a picture of a page in which an action failed."""
 
 tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 
@@ -70,7 +70,7 @@ def pictured(workspace: Path, course: str) -> Iterator[tuple[Step, dict[str, Any
 
 
 def appearance(file: Path) -> str:
-    """Return what a robot looks like, as a text, to 1 cm and 0.01 rad."""
+    """Return a text that describes the appearance of a robot, rounded to 1 cm and 0.01 rad."""
     links = load(file).links.values()
     visuals = [
         (link.name, visual.geometry, visual.origin, visual.material) for link in links for visual in link.visuals
@@ -79,7 +79,7 @@ def appearance(file: Path) -> str:
 
 
 def make(browser: Browser, step: Step, row: dict[str, Any], workspace: Path) -> None:
-    """Make the picture and the output of a step, and bring both into its texts."""
+    """Make the picture and the output of a step, and insert both into its texts."""
     with closing(Terminals(workspace)) as terminals:
         for command in row.get("before", ()):
             terminals.run(command)
@@ -169,7 +169,7 @@ def picture_of(page: Page, selector: str | None, crop: Sequence[float]) -> Image
 
 
 def section_of(text: LessonText, step: Step, content: str) -> tuple[int, int]:
-    """Return where the section begins and ends that says what one should see in a step."""
+    """Return the start and end of the section of a step that describes what the learner should see."""
     start = re.search(rf"^## .*\{{#{step.id}[ }}]", content, re.MULTILINE)
     section = start and re.compile("|".join(map(re.escape, SEEN))).search(content, start.end())
     if not section:
@@ -190,7 +190,7 @@ def write_output(text: LessonText, step: Step, output: str) -> None:
 
 
 def link_picture(text: LessonText, step: Step, description: str | None) -> None:
-    """Show the picture of a step in a text, below what one should see."""
+    """Insert the picture of a step into a text, below the section on what the learner should see."""
     content = text.path.read_text(encoding="utf-8")
     start, end = section_of(text, step, content)
     title = description or next(each.title for each in text.steps if each.id == step.id)

@@ -37,10 +37,10 @@ _COPIED = (
 
 
 def without_addresses(text: str) -> str:
-    """The lock text with every address taken out.
+    """Return the text of the lock file without addresses.
 
-    The table ``package.metadata`` goes too: without it uv takes the file as a list of preferred versions and resolves
-    anew against the index it is set up with, instead of failing for want of addresses.
+    The table ``package.metadata`` is also removed. Without it, uv uses the file as a list of preferred versions, and
+    resolves them with its configured index instead of failing because of missing addresses.
     """
     text = re.sub(r'source = \{ registry = "[^"]+" \}', 'source = { registry = "index" }', text)
     text = re.sub(r'url = "[^"]*/([^"/]+)"', r'path = "\1"', text)
@@ -48,7 +48,7 @@ def without_addresses(text: str) -> str:
 
 
 def constraints(text: str) -> str:
-    """Requirement lines ``name==version ; marker --hash=...`` for every locked package."""
+    """Return a line ``name==version ; marker --hash=...`` for each locked package."""
     lines = []
     for block in text.split("[[package]]\n")[1:]:
         if '\nsource = { registry = "index" }\n' not in block:
@@ -90,7 +90,7 @@ def update(extra: list[str]) -> None:
 
 
 def main() -> int:
-    """Do what the first word says."""
+    """Run the action that the first argument names."""
     action, *extra = sys.argv[1:] or [""]
     if action == "update":
         update(extra)

@@ -2,9 +2,8 @@
 
 Usage: python tools/make_gazebo_worlds.py [--check]
 
-Everything is made of boxes, cylinders, spheres and a few meshes (`gazebo_models.py`). Each world has a ground and light
-of its own and keeps the place free where the robot starts: the origin, facing along x. The same program writes the same
-bytes everywhere.
+The worlds consist of boxes, cylinders, spheres and a few meshes (`gazebo_models.py`). Each world has a ground and
+light. The start of the robot, at the origin and facing x, is free. The output has the same bytes on every machine.
 """
 
 from __future__ import annotations
@@ -88,13 +87,13 @@ AROUND = """\
 
 
 def world(name: str, things: Sequence[Model | Include]) -> str:
-    """A world with ground, light and things."""
+    """Return a world with ground, light and the given objects."""
     parts = [AROUND, GROUND, *(thing.xml() for thing in things)]
     return sdf(f'  <world name="{name}">\n\n' + "\n\n".join(parts) + "\n\n  </world>")
 
 
 def wall(name: str, start: Point, end: Point, height: float, thickness: float) -> Part:
-    """A wall from one point on the ground to another; it reaches half its thickness beyond both."""
+    """Return a wall between two points on the ground, which extends beyond both by half its thickness."""
     length = math.dist(start, end) + thickness
     pose = Pose(
         (start[0] + end[0]) / 2, (start[1] + end[1]) / 2, height / 2, math.atan2(end[1] - start[1], end[0] - start[0])
@@ -103,19 +102,19 @@ def wall(name: str, start: Point, end: Point, height: float, thickness: float) -
 
 
 def walls(lines: Iterable[Line], height: float, thickness: float) -> Model:
-    """All walls of a building as one model that does not move."""
+    """Return all walls of a building as one static model."""
     parts = [wall(f"wall_{at}", *ends, height, thickness) for at, ends in enumerate(lines, start=1)]
     return Model("walls", parts)
 
 
 def rectangle(left: float, right: float, low: float, high: float) -> list[Line]:
-    """The four sides of a rectangle in x and y, meters."""
+    """Return the four sides of a rectangle in x and y, in meters."""
     corners = [(left, low), (right, low), (right, high), (left, high)]
     return [(corners[at], corners[(at + 1) % 4]) for at in range(4)]
 
 
 def obstacles() -> list[Model | Include]:
-    """A room of 10 by 8 meters with pillars, blocks, a ramp and two crates that can be pushed."""
+    """Return a room of 10 m x 8 m with pillars, blocks, a ramp and two crates that can be pushed."""
     blocks = [
         (2.5, 1.5, 0.8, 0.5, 0.6, 0.5, RED),
         (-2.2, 2.4, 1.2, 0.4, 0.8, -0.3, BLUE),
@@ -139,7 +138,7 @@ def obstacles() -> list[Model | Include]:
 
 
 def house() -> list[Model | Include]:
-    """A house of 10 by 8 meters without a roof: living room, kitchen, bedroom, bath and a hall; doors are 1 m wide."""
+    """Return a house of 10 m x 8 m without a roof, with five rooms and doors of 1 m width."""
     lines: list[Line] = [
         *rectangle(-5, 5, -4, 4)[1:],
         ((-5, -4), (-0.5, -4)),  # the front door is between these two
@@ -193,7 +192,10 @@ def house() -> list[Model | Include]:
 
 
 def maze(size: int = 9, cell: float = 1.1, seed: int = 7) -> list[Model | Include]:
-    """A maze of square cells with one way between any two; the robot starts in a corner and leaves at the other one."""
+    """Return a maze of square cells with one path between any two.
+
+    The robot starts in one corner and leaves at the opposite one.
+    """
     chance = random.Random(seed)
     here, seen = (0, 0), {(0, 0)}
     way, open_between = [here], set()
@@ -210,7 +212,8 @@ def maze(size: int = 9, cell: float = 1.1, seed: int = 7) -> list[Model | Includ
         way.append(chosen)
     lines: list[Line] = []
     for line in range(size + 1):
-        # Walls along x below row `line`, and along y left of column `line`; the way out is the last cell's right side.
+        # Walls along x below row `line`, and along y left of column `line`; the exit is the right side of the last
+        # cell.
         below = [((at, line - 1), (at, line)) not in open_between for at in range(size)]
         left = [((line - 1, at), (line, at)) not in open_between for at in range(size)]
         if line == size:
@@ -222,7 +225,10 @@ def maze(size: int = 9, cell: float = 1.1, seed: int = 7) -> list[Model | Includ
 
 
 def _runs(line: int, closed: Sequence[bool], cell: float) -> Iterator[tuple[float, float, float]]:
-    """Where a line of the grid is, and where each of its walls begins and ends; cell 0 has its middle in 0, meters."""
+    """Yield the position of a grid line, and the start and end of each of its walls, in meters.
+
+    Cell 0 is centered at 0.
+    """
     start = None
     for at, wanted in enumerate([*closed, False]):
         if wanted:
@@ -233,7 +239,7 @@ def _runs(line: int, closed: Sequence[bool], cell: float) -> Iterator[tuple[floa
 
 
 def playground() -> list[Model | Include]:
-    """A yard with things to detect: cones as a slalom, balls, crates, people and signs."""
+    """Return a yard with objects to detect: a slalom of cones, balls, crates, people and signs."""
     slalom = [Include("traffic_cone", f"cone_{at}", Pose(1.5 + 1.2 * at, 0.35 * (-1) ** at)) for at in range(1, 5)]
     colored = [
         Model(
@@ -272,7 +278,7 @@ def playground() -> list[Model | Include]:
 
 
 def line_track(steps: int = 120) -> list[Model | Include]:
-    """A black line of 5 cm on a white floor, closed, that passes through the origin along x; two cones beside it."""
+    """Return a closed black line of 5 cm on a white floor, along x at the origin, with two cones beside it."""
 
     def point(at: int) -> Point:
         t = 2 * math.pi * at / steps
@@ -304,7 +310,7 @@ WORLDS = {
 
 
 def generate() -> dict[str, str]:
-    """All files: path below the package, and text."""
+    """Return the texts of all files, by path below the package."""
     files = {f"worlds/{name}.world": world(name, make()) for name, make in WORLDS.items()}
     for name, (make, description) in MODELS.items():
         model, meshes = make()
@@ -315,7 +321,7 @@ def generate() -> dict[str, str]:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Write the files, or with ``--check`` say whether they are current."""
+    """Write the files, or with ``--check`` report whether they are current."""
     stale = []
     for name, text in generate().items():
         path = PACKAGE / name

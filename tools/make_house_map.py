@@ -2,10 +2,10 @@
 
 Usage: python tools/make_house_map.py
 
-An exact laser at the height of mbot's looks around from many places in the house that can be reached from the origin.
-Its rays make cells free, and their ends make them occupied, as with a mapper that makes no errors. Walls behind
-furniture are drawn as it sees them where there is none: planners that cross unknown cells, as nav2's do, would lead out
-of the front door, round the house and through the back of a wardrobe.
+An exact laser at the height of mbot's laser scans the house from many positions that can be reached from the origin.
+Cells along its rays are free, and cells at their ends are occupied, as with a mapper that makes no errors. Walls behind
+furniture are drawn as if there were no furniture. Otherwise, planners that cross unknown cells, as nav2's do, would
+lead out of the front door, around the house and through the back of a wardrobe.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ from linkwright.testing.scenes import read_world
 
 PACKAGE = Path(__file__).resolve().parent.parent / "robots" / "my_robot_gazebo"
 HEIGHT = 0.215
-"""Of the laser of mbot_gazebo.xacro above the ground, in meters."""
+"""The height of the laser of mbot_gazebo.xacro above the ground, in meters."""
 RAYS = 2880
 REACH = 20.0
 APART = 10
-"""Cells between two places from which it looks."""
+"""The number of cells between two positions of the laser."""
 WALLS = "walls"
 """The model of the walls."""
 INSIDE = np.array((4.9, 3.9))
-"""Meters from the origin to the walls around the house, along x and y; its front door stands open."""
+"""The distance from the origin to the outer walls along x and y, in meters. The front door is open."""
 
 
 def house_map() -> Grid:
-    """The map: 5 cm cells, the frame of the world."""
+    """Return the map, with cells of 5 cm in the frame of the world."""
     world = read_world(str(PACKAGE / "worlds" / "house.world")).world
     grid = _seen(world)
     bare = _seen(replace(world, models=tuple(model for model in world.models if model.name == WALLS)))
@@ -48,7 +48,7 @@ def house_map() -> Grid:
 
 
 def _seen(world: World) -> Grid:
-    """What the laser sees of a world."""
+    """Return the map of a world that the laser creates."""
     simulation = Simulation(world, ResourceFinder(PackageFinder(start=[PACKAGE])))
     grid = Grid(cells=np.full((180, 220), UNKNOWN, np.int8), resolution=0.05, x=-5.5, y=-4.5)
     shape = (grid.rows, grid.columns)
@@ -66,7 +66,7 @@ def _seen(world: World) -> Grid:
         origin = np.array((*place, HEIGHT))
         distances, _ = cast(simulation.model, simulation.data, origin, rays, groups, apart_from=-1, reach=REACH)
         met = distances > 0.0
-        # A little into what was hit: a wall that ends where cells do belongs to one of them.
+        # Slightly inside the object, so that a wall on the border of two cells belongs to one of them.
         ends = place + (np.where(met, distances + 0.002, REACH))[:, None] * rays[:, :2]
         hit, passed = ray_counts(shape, cell, grid.cells_of(ends), met)
         hits += hit
@@ -77,7 +77,7 @@ def _seen(world: World) -> Grid:
             inside = (np.abs(grid.centers_of(beside)) < INSIDE).all()
             if inside and not hits[tuple(between.T)].any() and passes[tuple(between.T)].all():
                 waiting.append(beside)
-    # A ray that grazes a wall goes through its cells, too: what was hit as a rule is occupied.
+    # A ray that grazes a wall also crosses its cells: cells that are usually hit are occupied.
     grid.cells[passes > 0] = FREE
     grid.cells[hits > 0.1 * passes] = OCCUPIED
     return grid

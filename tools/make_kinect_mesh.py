@@ -4,7 +4,7 @@ Usage: python tools/make_kinect_mesh.py [--check]
 
 The mesh is COLLADA 1.4.1 in meters with z up. The long side lies along x and the lenses look along -y, so that the
 quarter turn about z in the URDF makes them look along the robot's +x. The origin is 34 mm above the underside of the
-foot: mbot's models place it 30 mm and 35 mm above a deck. The same program writes the same bytes everywhere.
+foot: mbot's models place it 30 mm and 35 mm above a deck. The output has the same bytes on every machine.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ LENS_FRONT = -0.035
 
 @dataclass(frozen=True)
 class Material:
-    """A surface: colors are red, green, blue from 0 to 1."""
+    """A surface, with colors as red, green and blue from 0 to 1."""
 
     name: str
     diffuse: Vector
@@ -41,7 +41,7 @@ class Material:
 
 @dataclass(frozen=True)
 class Triangle:
-    """Three corners, counter-clockwise from outside, and the outward normal at each."""
+    """Three corners, counterclockwise from outside, and the outward normal at each corner."""
 
     corners: tuple[Vector, Vector, Vector]
     normals: tuple[Vector, Vector, Vector]
@@ -49,7 +49,7 @@ class Triangle:
 
 @dataclass(frozen=True)
 class Part:
-    """One closed surface of one material."""
+    """A closed surface of one material."""
 
     name: str
     material: Material
@@ -66,23 +66,23 @@ LED = Material("led", (0.05, 0.45, 0.10), emission=(0.03, 0.55, 0.10))
 
 
 def subtract(a: Vector, b: Vector) -> Vector:
-    """The vector from b to a."""
+    """Return the vector from b to a."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 def unit(a: Vector) -> Vector:
-    """The same direction with length 1."""
+    """Return a vector with the same direction and length 1."""
     length = math.hypot(*a)
     return (a[0] / length, a[1] / length, a[2] / length)
 
 
 def cross(a: Vector, b: Vector) -> Vector:
-    """The vector product of a and b."""
+    """Return the vector product of a and b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def rounded_rectangle(width: float, height: float, radius: float, steps: int = 5) -> list[tuple[float, float]]:
-    """The outline of a rectangle about (0, 0) with round corners, counter-clockwise."""
+    """Return the outline of a rectangle about (0, 0) with round corners, counterclockwise."""
     outline = []
     for quarter, (sign_u, sign_v) in enumerate(((1, 1), (-1, 1), (-1, -1), (1, -1))):
         for step in range(steps + 1):
@@ -97,16 +97,16 @@ def rounded_rectangle(width: float, height: float, radius: float, steps: int = 5
 
 
 def circle(radius: float, steps: int = 32) -> list[tuple[float, float]]:
-    """The outline of a circle about (0, 0), counter-clockwise."""
+    """Return the outline of a circle about (0, 0), counterclockwise."""
     angles = [2 * math.pi * step / steps for step in range(steps)]
     return [(radius * math.cos(angle), radius * math.sin(angle)) for angle in angles]
 
 
 def loft(rings: Sequence[Sequence[Vector]]) -> list[Triangle]:
-    """A closed, convex surface through rings of equally many points.
+    """Return a closed, convex surface through rings with equal numbers of points.
 
-    The rings run counter-clockwise as seen from beyond the last one. The walls are shaded smooth around a ring and flat
-    from one ring to the next, so that edges between rings stay crisp; the two ends are flat.
+    The rings are counterclockwise, seen from beyond the last one. Shading is smooth around a ring and flat between
+    rings, so that edges between rings remain sharp. Both ends are flat.
     """
     triangles = []
     count = len(rings[0])
@@ -125,21 +125,21 @@ def loft(rings: Sequence[Sequence[Vector]]) -> list[Triangle]:
 
 
 def smooth(a: Vector, b: Vector, face: Vector) -> Vector:
-    """The normal between two faces that meet at less than 30 degrees; at a sharper edge, the face's own."""
+    """Return the mean normal of two faces that meet at less than 30 degrees, otherwise the normal of the face."""
     if sum(x * y for x, y in zip(a, b, strict=True)) < math.cos(math.radians(30)):
         return face
     return unit((a[0] + b[0], a[1] + b[1], a[2] + b[2]))
 
 
 def cap(ring: list[Vector]) -> list[Triangle]:
-    """A flat, convex end: a fan over the ring, which runs counter-clockwise from outside."""
+    """Return a flat, convex end: a fan over a ring that is counterclockwise from outside."""
     normal = unit(cross(subtract(ring[1], ring[0]), subtract(ring[2], ring[0])))
     normals = (normal, normal, normal)
     return [Triangle((ring[0], ring[at], ring[at + 1]), normals) for at in range(1, len(ring) - 1)]
 
 
 def body() -> Part:
-    """The long shell: a rounded profile drawn out along x, bevelled at both ends."""
+    """Return the long shell: a rounded profile, extruded along x and beveled at both ends."""
     middle_y, middle_z = sum(BODY_Y) / 2, sum(BODY_Z) / 2
     rings = []
     for x, inset in ((-BODY_X, 0.004), (-BODY_X + 0.004, 0.0), (BODY_X - 0.004, 0.0), (BODY_X, 0.004)):
@@ -150,7 +150,7 @@ def body() -> Part:
 
 
 def foot() -> Part:
-    """The stand: a neck that widens to the base; its upper end is hidden inside the body."""
+    """Return the stand: a neck that widens to the base, with its upper end inside the body."""
     rings = []
     for z, width, depth in (
         (FOOT_BOTTOM, 0.090, 0.062),
@@ -164,17 +164,17 @@ def foot() -> Part:
 
 
 def lens(name: str, material: Material, x: float, radius: float, front: float = LENS_FRONT) -> Part:
-    """A round window in the front: a short cylinder along -y with a bevelled rim."""
+    """Return a round window in the front: a short cylinder along -y with a beveled rim."""
     z = sum(BODY_Z) / 2
     rings = []
     for y, size in ((BODY_Y[0] + 0.003, radius), (front + 0.0005, radius), (front, radius - 0.001)):
-        # The x-z plane seen from -y, the side that the rings advance to: x to the right, z up.
+        # The x-z plane seen from -y, toward which the rings advance: x to the right, z up.
         rings.append([(x + u, y, z + v) for u, v in circle(size)])
     return Part(name, material, loft(rings))
 
 
 def kinect() -> list[Part]:
-    """All parts, in the order of the file."""
+    """Return all parts, in the order of the file."""
     return [
         body(),
         foot(),
@@ -186,13 +186,13 @@ def kinect() -> list[Part]:
 
 
 def number(value: float) -> str:
-    """A number with at most six decimals and no negative zero, the same on every machine."""
+    """Return a number with at most six decimal places, without negative zero."""
     text = f"{value:.6f}".rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text
 
 
 def effect(material: Material) -> str:
-    """The COLLADA effect of a material: Phong shading."""
+    """Return the COLLADA effect of a material, with Phong shading."""
     rows = []
     for tag, color in (
         ("emission", material.emission),
@@ -215,7 +215,7 @@ def effect(material: Material) -> str:
 
 
 def source(identifier: str, vectors: Sequence[Vector]) -> str:
-    """A COLLADA source of x, y, z triples, one triple a line."""
+    """Return a COLLADA source of x, y, z triples, one per line."""
     rows = "\n".join("          " + " ".join(map(number, vector)) for vector in vectors)
     accessor = f'<accessor source="#{identifier}-array" count="{len(vectors)}" stride="3">'
     return "\n".join(
@@ -233,7 +233,7 @@ def source(identifier: str, vectors: Sequence[Vector]) -> str:
 
 
 def geometry(part: Part) -> str:
-    """The COLLADA geometry of a part; equal points and equal normals are written once."""
+    """Return the COLLADA geometry of a part, in which equal points and equal normals are written once."""
     positions: dict[Vector, int] = {}
     normals: dict[Vector, int] = {}
     indices = []
@@ -267,12 +267,12 @@ def geometry(part: Part) -> str:
 
 
 def rounded(vector: Vector) -> Vector:
-    """The vector as the file will hold it; adding zero turns -0.0 into 0.0."""
+    """Return a vector rounded as in the file; adding zero turns -0.0 into 0.0."""
     return (round(vector[0], 6) + 0.0, round(vector[1], 6) + 0.0, round(vector[2], 6) + 0.0)
 
 
 def node(part: Part) -> str:
-    """The place of a part in the scene."""
+    """Return the node of a part in the scene."""
     name, material = part.name, part.material.name
     return "\n".join(
         [
@@ -286,10 +286,10 @@ def node(part: Part) -> str:
 
 
 def generate() -> str:
-    """The whole file."""
+    """Return the text of the file."""
     parts = kinect()
     materials = list(dict.fromkeys(part.material for part in parts))
-    # COLLADA requires both dates; they are fixed so that the file depends on nothing but this program.
+    # COLLADA requires both dates; they are fixed, so that the file depends only on this program.
     return "\n".join(
         [
             '<?xml version="1.0" encoding="utf-8"?>',
@@ -327,7 +327,7 @@ def generate() -> str:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Write the file, or with ``--check`` say whether it is current."""
+    """Write the file, or with ``--check`` report whether it is current."""
     text = generate()
     if "--check" in arguments:
         current = TARGET.read_text(encoding="utf-8") if TARGET.exists() else ""

@@ -39,7 +39,7 @@ tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "toml
 
 _FOLLOWERS = (followers.DWB, followers.MPPI, followers.PURE_PURSUIT, followers.ROTATION_SHIM)
 _RECORD = re.compile(r"\{\s+([^{}]*?)\s+\}")
-"""An object in the text that contains no other one; each parameter is one line."""
+"""A JSON object that contains no other object; each parameter is on one line."""
 _SENSOR = re.compile(r"^(odom|imu|pose|twist)\d")
 _PLUGIN, _ITEM, _PART = "THE_PLUGIN", "THE_ITEM", "THE_PART"
 _ROBOT = '<robot name="r"><link name="base_link"/></robot>'
@@ -116,7 +116,7 @@ Declarations = dict[str, dict[str, dict[str, Any]]]
 
 @contextmanager
 def _recording(found: Declarations, given: Mapping[str, Any]) -> Iterator[None]:
-    """Record the parameters that nodes declare; values that they were given are not their defaults."""
+    """Record the parameters that nodes declare; given values are not recorded as defaults."""
     start, declare, read = NodeParameters.__init__, ParameterStore.declare, parameter_tables._Reader.read
     owners: dict[int, str] = {}
     declared: list[tuple[ParameterStore, str, Any, Any]] = []
@@ -151,20 +151,21 @@ def _recording(found: Declarations, given: Mapping[str, Any]) -> Iterator[None]:
             known = found.setdefault(owner, {}).setdefault(name, record)
             if name.startswith(f"{_ITEM}.") and listing:
                 known["keys"] = sorted({*known.get("keys", ()), *listing})
-    for (owner, name), entry in tables.items():  # those of one distribution, which are not declared in the other one
+    # parameters of one distribution, which are not declared in the other one
+    for (owner, name), entry in tables.items():
         if "*" not in name:
             found.setdefault(owner, {}).setdefault(name, _record(entry.default, None, entry))
 
 
 def _record(default: Any, descriptor: Any, entry: parameter_tables.TableEntry | None) -> dict[str, Any]:
-    """Return the type, the default and the description of a parameter; what is not known is left out."""
+    """Return the type, default and description of a parameter, without unknown entries."""
     kind = default if isinstance(default, ParameterType) else ParameterType.from_parameter_value(_listed(default))
     if kind is ParameterType.NOT_SET and descriptor is not None and descriptor.type:
         kind = ParameterType(descriptor.type)
     if entry is not None:
         kind = entry.kind
     if default == []:
-        kind = ParameterType.STRING_ARRAY  # an empty list tells no type
+        kind = ParameterType.STRING_ARRAY  # the type of an empty list is unknown
     record: dict[str, Any] = {"type": kind.name.lower().replace("not_set", "")}
     if default is not None and not isinstance(default, ParameterType):
         record["default"] = _plain(default)
@@ -179,7 +180,7 @@ def _listed(value: Any) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value for JSON; numbers that it lacks are texts, as YAML has them."""
+    """Return a value for JSON; infinity and NaN, which JSON lacks, become texts as in YAML."""
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]
     if isinstance(value, float) and not math.isfinite(value):
@@ -188,7 +189,7 @@ def _plain(value: Any) -> Any:
 
 
 def _start(executable: tuple[str, str], parameters: Mapping[str, Any], others: ParameterRules) -> None:
-    """Start a node, configure it, and close it; an error after the declarations is of no interest."""
+    """Start a node, configure it, and close it, ignoring errors after the declarations."""
     options = NodeOptions(parameters=dict(parameters), parameters_of_others=others, output=lambda _: None)
     running = None
     with suppress(LinkwrightError, OSError):
@@ -211,7 +212,7 @@ def _nodes() -> Declarations:
 
 
 def _without_plugins(parameters: Mapping[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
-    """Return the parameters of a node without those of its default plugins, whose types a file may replace."""
+    """Return the parameters of a node without the parameters of default plugins, which a file may replace."""
     plugins = tuple(name.removesuffix("plugin") for name in parameters if name.endswith(".plugin"))
     return {
         name: record for name, record in parameters.items() if not name.startswith(plugins) or name.endswith(".plugin")
@@ -219,7 +220,7 @@ def _without_plugins(parameters: Mapping[str, dict[str, Any]]) -> dict[str, dict
 
 
 def _plugin_tables() -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the type of each plugin, with the nodes and parameters that list it, and its own parameters."""
+    """Yield the type of each plugin, the nodes and parameters that list it, and its parameters."""
     for executable, node, listed, kind in _plugins():
         names: Any = _PLUGIN if listed.endswith("_plugin") else [_PLUGIN]
         given = {listed: names, f"{_PLUGIN}.plugin": kind}
@@ -242,7 +243,7 @@ def _plugin_tables() -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 def _describe(owner: str, parameters: dict[str, dict[str, Any]], texts: Mapping[str, Any]) -> None:
-    """Add the written descriptions to parameters without one, and the parameters that are only written."""
+    """Add the descriptions in the file to parameters without one, and the parameters that are only in the file."""
     groups = {
         "COSTMAP": owner.endswith("_costmap"),
         "ROBOT_LOCALIZATION": owner.endswith(("kf_filter_node",)),
@@ -285,7 +286,7 @@ async def _table() -> str:
 
 
 def main(words: list[str]) -> int:
-    """Write the table, or check it; returns the exit status."""
+    """Write the table, or check it, and return the exit status."""
     with redirect_stderr(StringIO()), redirect_stdout(StringIO()):  # the logs of the nodes
         text = asyncio.run(_table())
     if words == ["--check"]:

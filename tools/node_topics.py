@@ -1,7 +1,7 @@
 """Write the table of the topics, services and actions of Linkwright's nodes, for the language server.
 
-Each node is started in a graph without a network, as `node_parameters.py` does, and what it creates is recorded. Names
-are those in the program, which a launch file can remap.
+Each node is started in a graph without a network, as in `node_parameters.py`, and its endpoints are recorded. The names
+are those in the program, before a launch file remaps them.
 
 Usage: python tools/node_topics.py [--check]
 """
@@ -41,7 +41,7 @@ _MORE: Mapping[str, list[tuple[str, str, str]]] = {
     "teleop_twist_keyboard/teleop_twist_keyboard": [("cmd_vel", "geometry_msgs/msg/Twist", "publisher")],
     "controller_manager/ros2_control_node": [("~/robot_description", "std_msgs/msg/String", "subscription")],
 }
-"""Names that a node creates only when it has what it needs, such as a terminal."""
+"""Names that a node creates only under conditions, such as with a terminal."""
 
 
 def _type_name(kind: Any) -> str:
@@ -53,7 +53,7 @@ def _type_name(kind: Any) -> str:
 
 
 def _shown(name: str, kind: str, role: str) -> tuple[str, str, str] | None:
-    """Return the name, type and role of what a node creates; None for what every node has, and parts of an action."""
+    """Return the name, type and role of an endpoint; None for endpoints of every node, and for parts of an action."""
     name, is_action, part = name.partition("/_action/")
     if is_action:
         of_server = role == "publisher"
@@ -84,12 +84,12 @@ def _recording(found: dict[tuple[str, str], list[str]], names: list[str]) -> Ite
 
 
 def _order(key: tuple[str, str]) -> tuple[bool, bool, str]:
-    """Return topics first, and those of transforms after the others."""
+    """Return the sort key of an endpoint: topics first, and topics of transforms after the others."""
     return key[1] not in ("publisher", "subscription"), key[0].startswith("/tf"), key[0]
 
 
 def _endpoints() -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the package and executable of each node, with the name of the node and what it creates."""
+    """Yield the package and executable of each node, with the node's name and endpoints."""
     for package, executable in sorted(EXECUTABLES):
         found: dict[tuple[str, str], list[str]] = {}
         names: list[str] = []

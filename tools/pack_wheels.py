@@ -70,7 +70,7 @@ def _has(rows: Mapping[str, Any], package: Package, extra: str) -> bool:
 
 
 def _package(edge: Mapping[str, Any], by_name: Mapping[str, list[Package]]) -> Package:
-    """Return the package that an edge names; the lock gives a version wherever it has several."""
+    """Return the package that an edge names; the lock file states the version if there are several."""
     (package,) = [
         package
         for package in by_name[edge["name"]]
@@ -106,7 +106,7 @@ def _file(file: Mapping[str, Any]) -> Iterator[Any]:
 
 
 def main(words: list[str]) -> int:
-    """Write the table, or with ``--check`` say whether it is current."""
+    """Write the table, or with ``--check`` report whether it is current."""
     text = table(LOCK.read_text(encoding="utf-8"))
     if TABLE.exists() and TABLE.read_text(encoding="utf-8") == text:
         return 0

@@ -1,4 +1,4 @@
-"""The README as a package index shows it: files of the repository have no address, and installing needs no checkout.
+"""Write the README for a package index, where files of the repository have no address and no checkout is needed.
 
 Usage: python tools/package_readme.py (prints it)
 """
@@ -23,7 +23,7 @@ _FROM_THE_CHECKOUT = (
 
 
 def package_readme() -> str:
-    """The README of the repository for those who read it on a package index."""
+    """Return the README of the repository in the form for a package index."""
     text = without_relative_links(README.read_text(encoding="utf-8"))
     for pattern, words in _FROM_THE_CHECKOUT:
         text = pattern.sub(words, text)
@@ -31,7 +31,7 @@ def package_readme() -> str:
 
 
 def without_relative_links(text: str) -> str:
-    """Markdown whose links lead somewhere from anywhere: of relative ones the words stay, relative pictures go."""
+    """Return Markdown without relative links, whose words remain, and without relative images."""
     return _LINK.sub(r"\1", _PICTURE.sub("", text))
 
 

@@ -2,7 +2,7 @@
 
 An action is a line with a verb first:
 
-| action | what is done |
+| action | effect |
 | --- | --- |
 | ``run COMMAND`` | start another command, until the picture is made |
 | ``once COMMAND`` | run a command to its end |
@@ -34,11 +34,11 @@ from pathlib import Path
 from playwright.sync_api import Locator, Page
 
 PATIENCE = 60_000
-"""How long anything may take, milliseconds."""
+"""The timeout of an action, in milliseconds."""
 
 
 class Terminals:
-    """Commands that run side by side in a workspace, each as in a terminal of its own.
+    """Commands that run in parallel in a workspace, each as in a separate terminal.
 
     Args:
         workspace: the folder in which they run.
@@ -112,7 +112,7 @@ def drain(program: subprocess.Popen[str]) -> None:
 
 
 def act(page: Page, terminals: Terminals, action: str) -> None:
-    """Do an action; the table of the module lists them."""
+    """Carry out an action from the table in the module's docstring."""
     verb, _, text = action.partition(" ")
     match verb:
         case "run":

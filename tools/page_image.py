@@ -2,8 +2,8 @@
 
 Usage: python tools/page_image.py IMAGE [--wait SECONDS] [--click TEXT ...] -- COMMAND ... (needs a Chromium and Pillow)
 
-The command, such as ``linkwright view robot.urdf``, is run without opening a browser; the image, a WebP, is a
-screenshot of its page in a headless one, after what has to be clicked, in English or, with ``--lang zh``, in Chinese.
+The command, such as ``linkwright view robot.urdf``, is run without opening a browser; the image is a WebP screenshot of
+its page in a headless browser after the given clicks, in English or, with ``--lang zh``, in Chinese.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader
 SIZE = {"width": 1120, "height": 700}
 LOCALES = {"en": "en-US", "zh": "zh-CN"}
 PATIENCE = 60_000
-"""How long anything may take, milliseconds."""
+"""The timeout of an action, in milliseconds."""
 
 
 def main() -> int:
-    """Start the command, make the image, end the command."""
+    """Start the command, make the image, and end the command."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("image", type=Path)
     parser.add_argument("--wait", type=float, default=2.0, help="seconds until the robot stands where it should")

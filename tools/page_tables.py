@@ -1,9 +1,9 @@
-"""Bring the tables of pages up to date that list what the code knows: commands, extras, and where extras can be had.
+"""Update the tables in pages that come from the code: commands, extras, and the systems that support extras.
 
 Usage: python tools/page_tables.py [--check]
 
-A table stands between the comments ``<!-- table: NAME -->`` and ``<!-- end of table -->``, in the language of its page.
-The commands and their texts are those of the help, the packages and their markers those of ``pyproject.toml``.
+A table is between the comments ``<!-- table: NAME -->`` and ``<!-- end of table -->``, in the language of its page.
+Commands and their texts come from the help, and packages and their markers from ``pyproject.toml``.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ _TABLE = re.compile(r"(?<=<!-- table: )(\w+) -->\n.*?(?=<!-- end of table -->)",
 
 @dataclass(frozen=True)
 class Extra:
-    """What an extra is for.
+    """The purpose of an extra.
 
     Attributes:
-        main: the package that it is of no use without.
+        main: the package without which the extra is useless.
         english: its purpose, as a phrase.
         chinese: the same in Chinese.
     """
@@ -105,7 +105,7 @@ EXTRAS = {
     "ray": Extra("ray", "`linkwright sweep` on a cluster", "在集群上运行 `linkwright sweep`"),
     "train": Extra("torch", "`linkwright vision train`", "`linkwright vision train`"),
 }
-"""The extras in the order in which readers meet them."""
+"""The extras, in the order of the table."""
 
 ROBOTS = {
     "arm": ("Arm with a gripper", "带夹爪的机械臂"),
@@ -129,7 +129,7 @@ ROBOTS = {
     "plane": ("Fixed-wing plane", "固定翼飞机"),
     "underwater_vehicle": ("Underwater vehicle", "水下机器人"),
 }
-"""The robots of the gallery: the name of its file -> its title in English and in Chinese."""
+"""The robots of the gallery: maps the name of a file to the titles in English and in Chinese."""
 
 COLUMNS = 4
 
@@ -140,19 +140,19 @@ SYSTEMS = {
     "macOS Intel": ("darwin", "x86_64"),
     "Windows": ("win32", "AMD64"),
 }
-"""Name of a system -> its ``sys_platform`` and ``platform_machine``."""
+"""Maps the name of a system to its ``sys_platform`` and ``platform_machine``."""
 
 PYTHONS = [words[-1] for line in PROJECT["classifiers"] if re.fullmatch(r"3\.\d+", (words := line.split(" :: "))[-1])]
-"""The versions of Python that Linkwright is made for, oldest first."""
+"""The versions of Python that Linkwright supports, oldest first."""
 
 
 def refreshed(page: str, chinese: bool) -> str:
-    """The text of a page with each table as it is now."""
+    """Return the text of a page with current tables."""
     return _TABLE.sub(lambda match: f"{match[1]} -->\n\n{TABLES[match[1]](chinese)}\n\n", page)
 
 
 def commands(chinese: bool) -> str:
-    """The commands in their groups, each with what the help says of it and a link to its reference."""
+    """Return the table of commands by group, each with its help text and a link to its reference."""
     set_language("zh" if chinese else "en")
     try:
         title = "用途" if chinese else "what it does"
@@ -165,7 +165,7 @@ def commands(chinese: bool) -> str:
 
 
 def extras(chinese: bool) -> str:
-    """What each extra is for, and the packages that it brings."""
+    """Return the table of extras, with their purposes and packages."""
     rows = ["| 可选部分 | 用途 | 安装的包 |" if chinese else "| extra | for | brings |", "| --- | --- | --- |"]
     together = {name for requirement in _required("all") for name in requirement.extras}
     apart = "；不在 `all` 里" if chinese else "; not in `all`"
@@ -178,7 +178,7 @@ def extras(chinese: bool) -> str:
 
 
 def systems(chinese: bool) -> str:
-    """Which versions of Python an extra has packages for, for those that do not have them everywhere."""
+    """Return the table of Python versions for extras whose packages are not available everywhere."""
     rows = [f"| {'可选部分' if chinese else 'extra'} | {' | '.join(SYSTEMS)} |", f"| --- |{' --- |' * len(SYSTEMS)}"]
     every = f"{PYTHONS[0]}–{PYTHONS[-1]}"
     for name, extra in EXTRAS.items():
@@ -189,7 +189,7 @@ def systems(chinese: bool) -> str:
 
 
 def gallery(chinese: bool) -> str:
-    """The robots of the gallery in rows: images, and below them titles with the number of joints that move."""
+    """Return the rows of the gallery: images, with titles and the numbers of moving joints below."""
     folder = "../gallery" if chinese else "gallery"
     images = {}
     for name, titles in ROBOTS.items():
@@ -204,7 +204,7 @@ def gallery(chinese: bool) -> str:
 
 
 def pack(chinese: bool) -> str:
-    """The parts of a course that some systems lack in a pack, with the versions of Python that have them."""
+    """Return the table of a course's parts that some packs lack, with the Python versions that have them by system."""
     language = "zh" if chinese else "en"
     labels = [system.label for system in targets.SYSTEMS.values()]
     rows = [f"| {'部分' if chinese else 'part'} | {' | '.join(labels)} |", f"| --- |{' --- |' * len(labels)}"]
@@ -245,7 +245,7 @@ def _capital(text: str) -> str:
 
 
 def _required(extra: str) -> Iterator[Requirement]:
-    """The requirements of an extra, in the order in which they are listed; those of the engine's in their place."""
+    """Yield the requirements of an extra in order, with the engine's requirements in place of the engine's extra."""
     for requirement in map(Requirement, PROJECT["optional-dependencies"][extra]):
         if requirement.name == ENGINE["name"]:
             for name in requirement.extras:
@@ -255,7 +255,7 @@ def _required(extra: str) -> Iterator[Requirement]:
 
 
 def _span(main: str, platform: str, machine: str) -> str:
-    """The versions of Python for which a package is asked for on a system, as ``3.10–3.13``, or a dash."""
+    """Return the Python versions for which a package is required on a system, as ``3.10–3.13``, or a dash."""
     listed = [
         requirement
         for extra in EXTRAS
@@ -277,7 +277,7 @@ def _span(main: str, platform: str, machine: str) -> str:
 
 
 def main(words: Sequence[str]) -> int:
-    """Write the pages, or with ``--check`` say whether they are current."""
+    """Write the pages, or with ``--check`` report whether they are current."""
     status = 0
     for page in PAGES:
         before = page.read_text(encoding="utf-8")

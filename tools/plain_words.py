@@ -1,10 +1,10 @@
-"""Refuse words that readers stumble over, in everything that Linkwright says.
+"""Refuse unusual words in the texts of Linkwright.
 
 Usage: python tools/plain_words.py [PATH ...]
 
 Reads the strings, docstrings and comments of the Python sources and of the page. Prints each text that a pattern of
-``plain_words.toml`` matches, with the plain way to say it, and each exception of the table that no text needs.
-Exits with 1 if there is one. With paths below ``src/linkwright`` or ``frontend/src``, reads only those.
+``plain_words.toml`` matches, with the plain wording, and each exception of the table that no text needs. Exits with 1
+if there is one. With paths below ``src/linkwright`` or ``frontend/src``, reads only those.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Refusal:
 
     Attributes:
         pattern: the words.
-        unless: a sentence that this matches, too, is accepted.
+        unless: a sentence that this pattern matches, too, is accepted.
         plain: what to write instead.
     """
 

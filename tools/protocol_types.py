@@ -36,7 +36,7 @@ _WIDTH = 120
 
 
 def typescript(annotation: object, aliases: Mapping[Any, str]) -> str:
-    """The TypeScript spelling of a Python annotation, in which `aliases` go by their names."""
+    """Return the TypeScript type for a Python annotation, with the names of `aliases`."""
     if annotation in _PLAIN:
         return _PLAIN[typing.cast("type", annotation)]
     if _is_record(annotation):
@@ -60,7 +60,7 @@ def typescript(annotation: object, aliases: Mapping[Any, str]) -> str:
 
 
 def generate() -> dict[str, str]:
-    """Every file by its name: one for each module, and the index that the page imports from."""
+    """Return the text of each file by name: one file for each module, and the index that the page imports."""
     names = [iter_module.name for iter_module in pkgutil.iter_modules(protocol.__path__)]
     modules = {name: importlib.import_module(f"{protocol.__name__}.{name}") for name in names}
     homes = {own: _file(name) for name, module in modules.items() for own in _own_names(module)}
@@ -71,7 +71,7 @@ def generate() -> dict[str, str]:
 
 
 def _languages_text() -> str:
-    """The languages, each with its tag, as a table and a type."""
+    """Return the table of languages by tag, and its type."""
     tags = ", ".join(f'{language}: "{tag}"' for language, tag in TAGS.items())
     return "\n".join((
         _HEAD.format(source="src/linkwright/diagnostics/translation/language.py"),
@@ -89,7 +89,7 @@ def _file(name: str) -> str:
 
 
 def _module_text(name: str, module: ModuleType, homes: Mapping[str, str]) -> str:
-    """What a module declares, in its order, below what it takes from others."""
+    """Return the text of a module: its imports, then its declarations in order."""
     aliases = {value: alias for alias, value in vars(module).items() if _is_alias(value)}
     declared: list[str] = []
     used: set[str] = set()
@@ -115,7 +115,7 @@ def _module_text(name: str, module: ModuleType, homes: Mapping[str, str]) -> str
 
 
 def _index_text(homes: Mapping[str, str]) -> str:
-    """The unions of what is registered, and everything that the modules export."""
+    """Return the text of the index: the unions of registered messages, and the exports of all modules."""
     unions = {
         base.__name__: sorted(subclass.__name__ for subclass in base.__subclasses__() if subclass.__name__ in homes)
         for base in _UNIONS
@@ -129,7 +129,7 @@ def _index_text(homes: Mapping[str, str]) -> str:
 
 
 def _imports(names: Iterable[str], homes: Mapping[str, str]) -> list[str]:
-    """Lines that import the names, each from the file that declares it; below an empty one when there are any."""
+    """Return the lines that import names from the files that declare them, after a blank line if there are any."""
     imported: dict[str, list[str]] = {}
     for name in sorted(names):
         imported.setdefault(homes[name], []).append(name)
@@ -138,7 +138,7 @@ def _imports(names: Iterable[str], homes: Mapping[str, str]) -> list[str]:
 
 
 def _own_names(module: ModuleType) -> list[str]:
-    """What a module declares itself for the page, in its order: constants, aliases and records."""
+    """Return the constants, aliases and records that a module declares for the page, in order."""
     names: list[str] = []
     for statement in ast.parse(inspect.getsource(module)).body:
         if isinstance(statement, ast.Assign):
@@ -161,7 +161,7 @@ def _is_alias(value: object) -> bool:
 
 
 def _named(annotation: Any, aliases: Mapping[Any, str]) -> Iterator[str]:
-    """The names of the records and aliases in an annotation."""
+    """Yield the names of the records and aliases in an annotation."""
     if _is_record(annotation):
         yield typing.cast("type", annotation).__name__
     elif annotation in aliases:
@@ -186,7 +186,7 @@ def _import(names: list[str], home: str) -> list[str]:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Write the files and remove those of modules that are gone; with ``--check`` only say which are stale."""
+    """Write the files and remove files of removed modules; with ``--check``, only report stale files."""
     expected = {FOLDER / name: text for name, text in generate().items()}
     left = set(FOLDER.glob("*")) - set(expected)
     changed = [path for path, text in expected.items() if not path.exists() or path.read_text("utf-8") != text]

@@ -1,6 +1,6 @@
-"""Run pytest as it is told to; what failed is run again, three times over, and has to pass each time.
+"""Run pytest, and run failed tests three more times, in which they must pass each time.
 
-For ``.ci/run``: see decision 0037. What did not pass at once is named at the end whatever becomes of it.
+For ``.ci/run``: see decision 0037. Tests that did not pass at once are named at the end in any case.
 
     python tools/pytest_again.py ARGUMENTS OF PYTEST
 """
@@ -14,14 +14,14 @@ from pathlib import Path
 
 ROUNDS = 3
 MOST = 10
-"""More failures than these are no accident, and nothing is run again."""
+"""With more failures than this, nothing is run again, because they are not accidental."""
 
-_TESTS_FAILED = 1  # pytest's exit status; others say that not all tests were run
+_TESTS_FAILED = 1  # pytest's exit status; any other status means that not all tests were run
 _FAILED = Path(".pytest_cache/v/cache/lastfailed")
 
 
 def main(arguments: list[str]) -> int:
-    """Run the tests; the exit status is 0 when each passed at once, or passed each time afterwards."""
+    """Run the tests, and return 0 if each test passed at once or in all repetitions."""
     _FAILED.unlink(missing_ok=True)
     status = _run("pytest", *arguments)
     failed = _failed()

@@ -29,17 +29,17 @@ MODEL = ROOT / "robots" / "my_robot_description" / "urdf" / "mbot_base.xacro"
 FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking")
 
 SIZE = (1120, 630)
-"""Of the page, pixels."""
+"""The size of the page in pixels."""
 STRIP = 44
-"""Height of the strip with the edited line, pixels."""
+"""The height of the strip with the edited line, in pixels."""
 
 
 @dataclass
 class Film:
-    """The frames so far, each with the milliseconds that it is shown.
+    """The recorded frames, each with its duration in milliseconds.
 
     Attributes:
-        page: what is filmed.
+        page: the page to record.
         line: the text in the strip below it.
     """
 
@@ -49,7 +49,7 @@ class Film:
     durations: list[int] = field(default_factory=list)
 
     def take(self, milliseconds: int) -> None:
-        """Add what the page shows now."""
+        """Add a frame with the current page."""
         shot = Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
         frame = Image.new("RGB", (SIZE[0], SIZE[1] + STRIP), "#1e2327")
         frame.paste(shot)
@@ -65,7 +65,7 @@ class Film:
 
 
 def main() -> int:
-    """Start the program on a copy of the model, film it, write the picture."""
+    """Start the program on a copy of the model, record the page, and write the picture."""
     with tempfile.TemporaryDirectory() as folder:
         model = Path(folder) / "mbot.urdf.xacro"
         shutil.copy(MODEL, model)
@@ -93,7 +93,7 @@ def main() -> int:
 
 
 def play(film: Film, model: Path) -> None:
-    """What the picture shows, in about ten seconds."""
+    """Carry out the actions of the picture, which take about ten seconds."""
     page = film.page
     canvas = page.locator("canvas").first.bounding_box()
     assert canvas is not None
@@ -115,14 +115,14 @@ def play(film: Film, model: Path) -> None:
 
 
 def edit(film: Film, model: Path, name: str, values: tuple[str, ...], seen: str) -> None:
-    """Set a property of the model to each of some values, of which the first is in the file, and save each time.
+    """Set a property of the model to values in turn, the first of which is in the file, and save each time.
 
     Args:
         film: the film.
         model: the file.
-        name: of the property.
-        values: its values.
-        seen: what of the page becomes the value, as JavaScript.
+        name: the name of the property.
+        values: the values of the property.
+        seen: the JavaScript expression for the quantity in the page that becomes the value.
     """
     for before, after in pairwise(values):
         text = model.read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Record what the programs of ROS make of the descriptions in the tests.
+"""Record the outputs of ROS's programs for the descriptions in the tests.
 
 Usage: make reference                        (installs them below .build/reference, then runs this)
        python tools/reference_outputs.py [--check]
@@ -7,11 +7,11 @@ The programs are ros/xacro and urdfdom's check_urdf and urdf_to_graphviz, from w
 
 * tests/corpus: the expansion, the verdict and the diagram of each robot in ``manifest.json``. To add a robot, add its
   ``entry`` (a path below ``robots/``), ``args`` and the name of the file for its expansion as ``expected``;
-* tests/xacro/rules/*.md: the ``urdf`` blocks;
-* tests/corpus/verdicts.json: whether they accept what is wrong in tests/xacro/errors and tests/urdf/mistakes.md.
+* tests/xacro/rules/*.md: the ``urdf`` blocks.
+* tests/corpus/verdicts.json: whether they accept the mistakes in tests/xacro/errors and tests/urdf/mistakes.md.
 
 Tests compare with these files and need none of the programs. With ``--check`` nothing is written, and the exit status
-is 1 when something would change.
+is 1 if a file would change.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ Texts = dict[Path, str]
 
 
 def expand(requests: list[dict[str, Any]]) -> list[dict[str, str]]:
-    """What ros/xacro answers, ``text`` or ``error``, for each path with arguments, packages and folder."""
+    """Return the output of ros/xacro, ``text`` or ``error``, for each path with arguments, packages and folder."""
     program = [str(PROGRAMS / "python"), str(ROOT / "fuzz" / "peer.py")]
     environment = {name: value for name, value in os.environ.items() if name not in ENVIRONMENT}
     environment |= {name: value for name, value in ENVIRONMENT.items() if value is not None}
@@ -53,7 +53,7 @@ def expand(requests: list[dict[str, Any]]) -> list[dict[str, str]]:
 
 
 def check_urdf(text: str) -> dict[str, Any]:
-    """Whether urdfdom accepts a description, and the errors it tells."""
+    """Return whether urdfdom accepts a description, and the errors that it reports."""
     with tempfile.TemporaryDirectory() as folder:
         output, errors = _run_urdfdom("check_urdf", text, folder)
     accepts = "Successfully Parsed XML" in output
@@ -61,14 +61,14 @@ def check_urdf(text: str) -> dict[str, Any]:
 
 
 def diagram(text: str) -> str:
-    """What urdf_to_graphviz draws, in Graphviz's language."""
+    """Return the diagram of urdf_to_graphviz in Graphviz's language."""
     with tempfile.TemporaryDirectory() as folder:
         _run_urdfdom("urdf_to_graphviz", text, folder)
         return (Path(folder) / "diagram.gv").read_text(encoding="utf-8")
 
 
 def _run_urdfdom(program: str, text: str, folder: str) -> tuple[str, str]:
-    """What one of urdfdom's programs writes to its two outputs; where joints go in a circle it would write for ever."""
+    """Return the standard output and error of one of urdfdom's programs, which never ends if joints form a cycle."""
 
     def limited() -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))
@@ -83,7 +83,7 @@ def _run_urdfdom(program: str, text: str, folder: str) -> tuple[str, str]:
 
 
 def robots() -> Texts:
-    """Expansions, diagrams and the manifest of the corpus."""
+    """Return the expansions, the diagrams and the manifest of the corpus."""
     requests = [
         {"path": str(model.path), "arguments": model.arguments, "packages": model.packages, "folder": str(OWN.robots)}
         for model in OWN.models
@@ -108,7 +108,7 @@ def robots() -> Texts:
 
 
 def rules() -> Texts:
-    """The pages of rules with ros/xacro's expansions."""
+    """Return the pages of rules with ros/xacro's expansions."""
     written: Texts = {}
     for page in sorted((XACRO_CASES / "rules").glob("*.md")):
         text = page.read_text(encoding="utf-8")
@@ -123,7 +123,7 @@ def rules() -> Texts:
 
 
 def verdicts() -> Texts:
-    """What each of the mistakes in the tests is to ros/xacro (its words, or null when it goes on) and to urdfdom."""
+    """Return the verdict of ros/xacro (its message or null) and of urdfdom on each mistake in the tests."""
     xacro = {
         f"{page.stem}: {case.title}": answer.get("error")
         for page in sorted((XACRO_CASES / "errors").glob("*.md"))
@@ -154,7 +154,7 @@ def _json(content: object) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Write the files, or tell which are not as they would be written."""
+    """Write the files, or report which are not current."""
     if not (PROGRAMS / "check_urdf").exists():
         print("the programs of ROS are not installed: run `make reference`", file=sys.stderr)
         return 2

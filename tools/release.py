@@ -1,13 +1,13 @@
-"""Build a release twice, and try it: wheels, source distributions, bill of materials, changelog, sums.
+"""Build a release twice and test it: wheels, source distributions, bill of materials, changelog, checksums.
 
-Everything is made of the last commit, below ``.build/release``, and ends up in ``dist/``. The wheels and source
+Everything is built from the last commit below ``.build/release``, and is then moved to ``dist/``. The wheels and source
 distributions of linkwright and linkwright-core are built in two folders, in other time zones, languages, umasks and
-seconds, and the wheels once more of the unpacked source distributions: all bytes have to be the same. See "Making a
+seconds, and the wheels once more from the unpacked source distributions. All bytes must be the same. See "Making a
 release" in CONTRIBUTING.md.
 
 Usage:
-    python tools/release.py                  make it (`make release`, which has the programs that this needs)
-    python tools/release.py version 0.2.0    begin that version, in CHANGELOG.md and where else it is named
+    python tools/release.py                  make the release (`make release` provides the required programs)
+    python tools/release.py version 0.2.0    begin this version, in CHANGELOG.md and other files with the version
 """
 
 from __future__ import annotations
@@ -36,19 +36,19 @@ RECIPE = Path("packaging", "conda", "recipe.yaml")
 PROJECT = Path("pyproject.toml")
 _GENERATED = ("src/linkwright/page/built", "src/linkwright/standins/stubs")
 _NAMES = ("linkwright_core", "linkwright")
-"""The two distributions as their files name them, the engine first."""
+"""The names of the two distributions in their files, the engine first."""
 _DIFFERENT = (
     {"TZ": "UTC", "LC_ALL": "C", "PYTHONHASHSEED": "1"},
     {"TZ": "Asia/Tokyo", "LC_ALL": "C.UTF-8", "PYTHONHASHSEED": "2"},
 )
-"""What two builds may differ in without a difference in what they make; so may their folders, umasks and seconds."""
+"""The environments of two builds, which must not affect the result; neither must folders, umasks and times."""
 
 
 def run(*words: str | Path, cwd: Path = ROOT, umask: int = 0o022, **environment: str) -> str:
-    """What a program prints.
+    """Run a program, and return its output.
 
     Raises:
-        SystemExit: when it fails; what it said is on the terminal.
+        SystemExit: the program fails; its messages are on the terminal.
     """
     done = subprocess.run(
         words, cwd=cwd, env={**os.environ, **environment}, stdout=subprocess.PIPE, text=True, check=False, umask=umask
@@ -59,10 +59,10 @@ def run(*words: str | Path, cwd: Path = ROOT, umask: int = 0o022, **environment:
 
 
 def committed() -> str:
-    """When the last commit was made, in seconds since 1970: the time of every file in a release.
+    """Return the time of the last commit in seconds since 1970, which is the time of every file in a release.
 
     Raises:
-        SystemExit: when there are changes that are in no commit, and would not be in the release.
+        SystemExit: there are uncommitted changes, which would not be in the release.
     """
     if changed := run("git", "status", "--porcelain"):
         raise SystemExit(f"{changed}release: this is in no commit, and a release is made of the last one: commit first")
@@ -70,13 +70,13 @@ def committed() -> str:
 
 
 def sources(folder: Path) -> Path:
-    """The files of the last commit in a folder of their own."""
+    """Write the files of the last commit to a new folder, and return the folder."""
     run("git", "checkout-index", "--all", f"--prefix={folder}/")
     return folder
 
 
 def built(folder: Path, time: str, *kinds: str, umask: int = 0o022, **environment: str) -> dict[str, Path]:
-    """Build a folder's wheels (``--wheel``) or source distributions (``--sdist``); what came of it, by name."""
+    """Build wheels (``--wheel``) or source distributions (``--sdist``) of a folder, and return the files by name."""
     results = folder.with_name(f"{folder.name} dist")
     constraints = SCRATCH / "constraints.txt"
     words = ("build", "--quiet", "--no-create-gitignore", "--build-constraints", constraints, *kinds)
@@ -95,20 +95,20 @@ def built(folder: Path, time: str, *kinds: str, umask: int = 0o022, **environmen
 
 
 def unpacked(sdist: Path, folder: Path) -> Path:
-    """The sources in a source distribution, without what was generated from them."""
+    """Unpack a source distribution, and return the folder of its sources without generated files."""
     with tarfile.open(sdist) as archive:
         archive.extractall(folder, filter="data")
     (root,) = folder.iterdir()
     for generated in _GENERATED:
-        shutil.rmtree(root / generated, ignore_errors=True)  # that of the engine has none
+        shutil.rmtree(root / generated, ignore_errors=True)  # the engine's distribution has no such folder
     return root
 
 
 def same(first: dict[str, Path], second: dict[str, Path]) -> None:
-    """Compare what two builds made.
+    """Compare the results of two builds.
 
     Raises:
-        SystemExit: when the bytes of a file of the second differ from those in the first.
+        SystemExit: a file of the second build differs from the same file of the first.
     """
     for name, path in second.items():
         if digest(path) != digest(first[name]):
@@ -116,17 +116,17 @@ def same(first: dict[str, Path], second: dict[str, Path]) -> None:
 
 
 def digest(path: Path) -> str:
-    """The SHA-256 of a file, as ``sha256sum`` prints it."""
+    """Return the SHA-256 of a file, as ``sha256sum`` prints it."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def installed(files: list[Path], name: str, extras: str = "") -> Path:
-    """Install distributions with the locked packages into an empty environment, and return that one's Python.
+    """Install distributions with the locked packages into an empty environment, and return its Python.
 
     Args:
         files: wheels or source distributions, the last one with the extras.
-        name: of the environment.
-        extras: in brackets.
+        name: the name of the environment.
+        extras: the extras in brackets.
     """
     environment = SCRATCH / name
     python = environment / ("Scripts" if os.name == "nt" else "bin") / "python"
@@ -140,10 +140,10 @@ def installed(files: list[Path], name: str, extras: str = "") -> Path:
 
 
 def make() -> None:
-    """Make the release in ``dist/``, and say what was done on the way.
+    """Make the release in ``dist/``, and print each step.
 
     Raises:
-        SystemExit: when a step fails; ``dist/`` is then empty.
+        SystemExit: a step fails; ``dist/`` is then empty.
     """
     time = committed()
     for folder in (SCRATCH, RESULTS):
@@ -186,15 +186,15 @@ def make() -> None:
 
 
 def read_version(root: Path = ROOT) -> str:
-    """The version that a checkout says it has."""
+    """Return the version of a checkout."""
     return re.findall(r'__version__ = "(.+)"', (root / VERSION).read_text(encoding="utf-8"))[0]
 
 
 def begin(version: str, root: Path = ROOT) -> None:
-    """Write a new version into the checkout: what is unreleased in the changelog becomes its section.
+    """Write a new version into the checkout; the unreleased changes in the changelog become its section.
 
     Raises:
-        SystemExit: when that is no version, or not a newer one, or nothing is unreleased.
+        SystemExit: the text is not a newer version, or there are no unreleased changes.
     """
     today = datetime.now(timezone.utc).strftime("%Y-%m-%d")
     changelog = root / release_notes.CHANGELOG.name
@@ -214,7 +214,7 @@ def _uv() -> str:
 
 
 def _beside(program: str) -> Path:
-    """A program of the environment that this runs in."""
+    """Return the path of a program in the environment of this process."""
     return Path(sys.executable).parent / program
 
 
@@ -223,7 +223,7 @@ def _say(text: str) -> None:
 
 
 def main(words: list[str]) -> int:
-    """Do what is asked for; returns the exit status."""
+    """Run the requested action, and return the exit status."""
     if not words:
         make()
     elif len(words) == 2 and words[0] == "version":

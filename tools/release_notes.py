@@ -1,6 +1,6 @@
-"""The section of a version in CHANGELOG.md: taking it out for a release, and beginning it.
+"""Extract the section of a version from CHANGELOG.md, or begin a new section.
 
-Usage: python tools/release_notes.py [VERSION] (prints it; without a version, what is unreleased)
+Usage: python tools/release_notes.py [VERSION] (prints the section, or without a version the unreleased changes)
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ _VERSION = re.compile(r"(0|[1-9]\d*)\.(0|[1-9]\d*)\.(0|[1-9]\d*)", re.ASCII)
 
 
 def sections(text: str) -> dict[str, str]:
-    """What a changelog says about each version, by what stands in the heading's brackets."""
+    """Return the sections of a changelog, by the text in the brackets of their headings."""
     found = list(_HEADING.finditer(text))
     ends = [heading.start() for heading in found[1:]] + [len(text)]
     return {heading["name"]: text[heading.end() : end].strip() for heading, end in zip(found, ends, strict=True)}
 
 
 def section(text: str, version: str) -> tuple[str, str]:
-    """Whose section it is, and what a changelog says about a version; as long as it has no section, what is unreleased.
+    """Return the name and text of a version's section, or of the unreleased changes if the version has no section.
 
     Raises:
-        SystemExit: when there is nothing about it.
+        SystemExit: the section does not exist or is empty.
     """
     all_sections = sections(text)
     title = version if version in all_sections else UNRELEASED
@@ -36,10 +36,11 @@ def section(text: str, version: str) -> tuple[str, str]:
 
 
 def begun(text: str, version: str, date: str, before: str) -> str:
-    """The changelog in which the unreleased changes are those of a version, made on a date such as ``2026-11-22``.
+    """Return a changelog with the unreleased changes as a version with a date such as ``2026-11-22``.
 
     Raises:
-        SystemExit: when that is no version, or older than the one `before`, or has a section; or nothing is unreleased.
+        SystemExit: the version is not valid, is older than `before`, or has a section; or there are no unreleased
+            changes.
     """
     new, old = _VERSION.fullmatch(version), _VERSION.fullmatch(before)
     if not new:

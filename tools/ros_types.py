@@ -1,9 +1,9 @@
-"""Makes Python modules of message types for the ROS 2 that this interpreter has, where its wheels have none of them.
+"""Make Python modules of message types that the ROS 2 wheels of this interpreter lack.
 
     .build/ros/bin/python tools/ros_types.py PACKAGE=FOLDER... OUTPUT
 
-reads the ``.idl`` files in ``msg/`` and ``srv/`` of each folder and compiles what rosidl generates of them. ``OUTPUT``
-then has ``python``, for ``PYTHONPATH``, and ``lib``, for ``LD_LIBRARY_PATH``. Needs gcc and g++.
+reads the ``.idl`` files in ``msg/`` and ``srv/`` of each folder, and compiles the code that rosidl generates.
+``OUTPUT`` then has ``python``, for ``PYTHONPATH``, and ``lib``, for ``LD_LIBRARY_PATH``. Needs gcc and g++.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def make(package: str, folder: Path, output: Path) -> None:
 
 
 def generate(package: str, folder: Path, interfaces: list[str], output: Path) -> None:
-    """What ``rosidl generate`` does, which these wheels make fail: each of its plug-ins is registered twice there."""
+    """Generate code like ``rosidl generate``, which fails here because its plug-ins are registered twice."""
     entry_points: Any = importlib.import_module("rosidl_cli.entry_points")
     api = importlib.import_module("rosidl_cli.command.generate.api")
 
@@ -93,7 +93,7 @@ def build(package: str, generated: Path, output: Path) -> None:
 
 
 def others(part: str) -> list[str]:
-    """The libraries of that kind that the installed packages have: types of theirs may be parts of these."""
+    """Return the libraries of a kind in installed packages, whose types these types may contain."""
     return [path.name[3:-3] for path in sorted((PREFIX / "lib").glob(f"lib*__{part}.so"))]
 
 

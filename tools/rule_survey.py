@@ -1,12 +1,12 @@
-"""Say how often each rule fires on robots that their authors are content with.
+"""Report how often each rule has findings on robots that work for their authors.
 
 Usage: python tools/rule_survey.py [--sample CODE] FILE|FOLDER...
 
-All rules that are on by default run over each description below the folders. The table names each code with its
-findings and the share of robots that have one: a rule that fires on many is either noise or knows something that the
-field does not. Errors come first, since nothing that ROS accepts may have one. ``--sample`` prints findings of one
-code, spread over the robots, to be judged by eye; a rule that is right in fewer than nine of ten is to be mended or
-switched off.
+All rules that are on by default run over each description below the folders. The table lists each code with its number
+of findings and the share of robots with such a finding. A rule with findings on many robots is either noise, or detects
+a widespread mistake. Errors come first, because nothing that ROS accepts may have an error. ``--sample`` prints
+findings of one code, spread over the robots, for manual review. A rule that is right in fewer than nine of ten cases
+must be fixed or disabled.
 """
 
 from __future__ import annotations
@@ -40,13 +40,13 @@ def main() -> None:
 
 
 def targets(paths: Iterable[Path]) -> list[Path]:
-    """The descriptions, and the folders of packages."""
+    """Return the descriptions, and the folders of packages."""
     meant = find_targets(paths)
     return [*meant.files, *meant.packages]
 
 
 def survey_of(path: Path, start: Iterable[Path]) -> list[Diagnostic]:
-    """What the rules say of a description or package, with the packages below the folders at hand."""
+    """Return the findings about a description or package, which may use the packages below the folders."""
     finder = PackageFinder(start=[path.absolute().parent, *(each.absolute() for each in start)])
     if path.is_dir():
         return list(examine_package(path, Settings(), finder).diagnostics)
@@ -54,7 +54,7 @@ def survey_of(path: Path, start: Iterable[Path]) -> list[Diagnostic]:
 
 
 def print_table(found: dict[Path, list[Diagnostic]]) -> None:
-    """A line for each code and severity: how many findings, on how many robots."""
+    """Print a line for each code and severity, with the numbers of findings and robots."""
     findings: Counter[tuple[int, str]] = Counter()
     robots: Counter[tuple[int, str]] = Counter()
     order = list(Severity)
@@ -70,7 +70,7 @@ def print_table(found: dict[Path, list[Diagnostic]]) -> None:
 
 
 def print_sample(found: dict[Path, list[Diagnostic]], code: str) -> None:
-    """Findings of a code, one of each robot before the second of any."""
+    """Print findings of a code, one of each robot before the second of any robot."""
     mine = [[diagnostic for diagnostic in diagnostics if diagnostic.code == code] for diagnostics in found.values()]
     picked = [each[turn] for turn in range(_SAMPLE) for each in mine if len(each) > turn]
     for each in picked[:_SAMPLE]:

@@ -1,7 +1,7 @@
 """Write the table of the plugins of simulators and their parameters, for the language server.
 
 Names, types and defaults are those of the classes that simulate the plugins. Importing these classes takes too long for
-an editor, so they are recorded. The words are in ``simulator_plugins.toml``.
+an editor, so they are recorded. The descriptions are in ``simulator_plugins.toml``.
 
 Usage: python tools/simulator_plugins.py [--check]
 """

@@ -1,8 +1,8 @@
-"""A hook of MkDocs: each page of the site has its sister in the other language one click away.
+"""A hook of MkDocs that links each page of the site with its version in the other language.
 
-``mkdocs.yml`` lists the English pages. The Chinese ones lie under the same names in ``docs/zh``: they get the same
-navigation, with their own titles, the theme's Chinese texts and a search index of their own. A page without a sister
-leads to the page of its folder (``rules/joints.md`` to ``zh/rules.md``), else to the home page.
+``mkdocs.yml`` lists the English pages. The Chinese pages have the same names in ``docs/zh``. They have the same
+navigation with Chinese titles, the theme's Chinese texts and a separate search index. A page without a Chinese version
+links to the page of its folder (``rules/joints.md`` to ``zh/rules.md``), or else to the home page.
 
 Every function whose name begins with ``on_`` is called by MkDocs.
 """
@@ -59,7 +59,7 @@ def on_page_context(context: dict[str, Any], *, page: Page, config: MkDocsConfig
         {"name": name, "lang": other, "link": page.url if other == language else _sister(page, other).url}
         for other, name in NAMES.items()
     ]
-    config.extra["scope"] = context["base_url"]  # the colors that a reader chose hold in both languages
+    config.extra["scope"] = context["base_url"]  # the selected colors apply in both languages
     if language == CHINESE:
         context["base_url"] += f"/{CHINESE}/"  # where the page looks for its search index
 
@@ -85,7 +85,7 @@ def language_of(page: Page) -> str:
 
 
 def _chinese(items: list[Any], folder: Path, titles: dict[str, str]) -> list[Any]:
-    """The entries of a navigation that have Chinese pages, titled as in the table or by their first heading."""
+    """Return the navigation entries with Chinese pages, with titles from the table or their first heading."""
     found: list[Any] = []
     for item in items:
         title, below = next(iter(item.items())) if isinstance(item, dict) else ("", item)

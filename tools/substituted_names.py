@@ -20,7 +20,7 @@ tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "toml
 
 
 def names() -> str:
-    """Return the list: a line for each package, its name before those of its executables."""
+    """Return the list: a line for each package, with its name and the names of its executables."""
     groups = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["entry-points"]
     found: dict[str, set[str]] = {"rviz2": set()}
     for folder in ("standins/tables", "messages/data"):
@@ -34,7 +34,7 @@ def names() -> str:
 
 
 def main(words: list[str]) -> int:
-    """Write the list, or check it; returns the exit status."""
+    """Write the list, or check it, and return the exit status."""
     if words == ["--check"]:
         if LIST.read_text(encoding="utf-8") == names():
             return 0

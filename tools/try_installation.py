@@ -1,10 +1,10 @@
-"""Try an installed Linkwright as a newcomer would: its version, a check of a robot, and whether the page answers.
+"""Test an installed Linkwright: its version, a check of a robot, and the response of the page.
 
-Run by the Python of the environment to be tried, which needs nothing but Linkwright.
+Run it with the Python of the environment to test, which needs only Linkwright.
 
 Usage: PYTHON -I tools/try_installation.py VERSION [--engine]
 
-With --engine only linkwright-core is installed: its commands are tried on a robot that is written for it.
+With --engine, only linkwright-core is installed, and its commands are tested with a generated robot.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ _XACRO = """\
 """
 _ROBOT = Path("robots", "my_robot_description", "urdf", "mbot_with_laser.urdf")
 _SECONDS = 120
-"""More than enough on any machine; nothing is measured here."""
+"""A timeout that suffices on any machine, because nothing is measured here."""
 
 
 def try_it(version: str) -> str:
-    """What was seen, in a line.
+    """Test the installation, and return a summary in one line.
 
     Raises:
-        AssertionError: when something is not as it should be.
+        AssertionError: a test fails.
     """
     with tempfile.TemporaryDirectory() as home:
         environment = {**os.environ, "HOME": home, "XDG_CONFIG_HOME": home, "XDG_CACHE_HOME": home}
@@ -57,10 +57,10 @@ def try_it(version: str) -> str:
 
 
 def try_engine(version: str) -> str:
-    """What was seen of linkwright-core alone, in a line.
+    """Test linkwright-core alone, and return a summary in one line.
 
     Raises:
-        AssertionError: when something is not as it should be.
+        AssertionError: a test fails.
     """
     with tempfile.TemporaryDirectory() as home:
         environment = {**os.environ, "HOME": home, "XDG_CONFIG_HOME": home, "XDG_CACHE_HOME": home}
@@ -92,7 +92,7 @@ def _run(environment: dict[str, str], *words: str, status: int = 0) -> str:
 
 
 def _page(environment: dict[str, str], robot: Path) -> int:
-    """How many files the page of a robot names and the server has."""
+    """Return the number of files that the page of a robot names and the server provides."""
     words = [_PROGRAM, "view", str(robot), "--no-open"]
     with subprocess.Popen(
         words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True

@@ -1,4 +1,4 @@
-"""Walk through a course in the page as a learner does: each step red before and green after, in both languages.
+"""Go through a course in the page as a learner does: each step is red before and green after, in both languages.
 
 Usage: python tools/walk_course.py [--course COURSE] [--lang zh] [LESSON ...] (needs a Chromium)
 
@@ -28,7 +28,7 @@ from linkwright.learning.course import Course, Step, find_course, load_course
 
 LOCALES = {"en": "en-US", "zh": "zh-CN"}
 PATIENCE = 150_000
-"""How long a check may take, milliseconds."""
+"""The timeout of a check, in milliseconds."""
 
 _CHECKED = """(address) => {
   const { step, checks } = window.linkwright?.panels.lesson ?? {};
@@ -67,7 +67,7 @@ def change_language(page: Page) -> None:
 
 
 def do_step(page: Page, step: Step, number: int, workspace: Path) -> tuple[str, str | None]:
-    """Do one step of a lesson, and return the language of its text and what is wrong, or None."""
+    """Do one step of a lesson, and return the language of its text and the problem, or None."""
     language = open_step(page, step, number)
     page.wait_for_function(_CHECKED, arg=step.address, timeout=PATIENCE)
     if page.evaluate(_PASSED):

@@ -50,7 +50,7 @@ export interface StepCheck {
   message: Record<string, string> | null;
 }
 
-/** The last results of the checks of a step, whether the checks run, and whether they have paused a running world. */
+/** The last results of a step's checks, and whether the checks run or have paused a running world. */
 export interface StepChecks {
   address: string;
   is_running: boolean;

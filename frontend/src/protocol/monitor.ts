@@ -89,7 +89,7 @@ export interface SeriesStates {
   type: "series_states";
 }
 
-/** A request for the fields of a topic. `topic` is None after the user's choice. */
+/** A request for the fields of a topic. */
 export interface AskFields {
   topic: string | null;
   type: "ask_fields";

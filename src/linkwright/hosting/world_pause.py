@@ -12,10 +12,10 @@ _STATE_TOPIC, _STATE_TYPE = "/simulation_state", "simulation_interfaces/msg/Simu
 
 
 class WorldPause:
-    """Pauses the world that runs in this graph, if any, and resumes it.
+    """A pause of the world that runs in this graph, if there is one.
 
-    A weak computer cannot simulate two worlds. A world that the user has paused stays paused, and one that the user has
-    resumed meanwhile is left alone.
+    A weak computer cannot simulate two worlds. A world that the user has paused stays paused, and a world that the user
+    has resumed in the meantime is not paused again.
 
     Args:
         node: the node that calls the services of the simulator.

@@ -1,8 +1,9 @@
-"""The search for files that changed files can affect, by the names of files in texts.
+"""The search for the files that changed files can affect, based on the file names in texts.
 
 A description can include a file under a name that only its expansion knows. Therefore, the search looks for the names
 of files in the texts of a version, without expanding anything, and follows a name with a computed part to all files
-that fit the rest. It may find files that the change does not affect; comparing these finds no difference.
+that fit the rest. The result may include files that the change does not affect; a comparison of such files finds no
+difference.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ _TEXT_SUFFIXES = (
     ".xacro", ".urdf", ".sdf", ".world", ".srdf", ".xml", ".launch", ".py", ".yaml", ".yml", ".config", ".json",
     ".toml", ".dae", ".obj", ".mtl", ".gltf", ".inc", ".macro", ".gazebo", ".trans", ".rviz",
 )  # fmt: skip
-"""The ends of the names of files that can name other files."""
+"""The endings of the files that can name other files."""
 _MESH_SUFFIXES = (".dae", ".obj", ".gltf")
 _MAX_TEXT_BYTES, _MAX_MESH_BYTES = 1 << 20, 1 << 16
 """The number of bytes that are searched for names. Meshes name their textures near their beginning."""
@@ -42,10 +43,10 @@ class TextFiles:
         self._root = root
 
     def affected(self, changed: Iterable[str], candidates: Collection[str]) -> set[str]:
-        """Return the candidates that changed files can affect, with the candidates that changed themselves.
+        """Return the candidates that have changed or that changed files can affect.
 
         Args:
-            changed: the paths of changed files, also of removed ones, relative to the root.
+            changed: the paths of changed and removed files, relative to the root.
             candidates: paths relative to the root.
         """
         pending = list(changed)
@@ -59,7 +60,7 @@ class TextFiles:
         return affected & set(candidates)
 
     def _naming(self, path: str) -> Iterator[str]:
-        """Yield the files whose texts can name a file."""
+        """Yield the paths of the files whose texts can name a file."""
         name = Path(path).name
         yield from self._files_by_name.get(name, ())
         if name in ("model.config", "model.sdf"):
@@ -103,7 +104,7 @@ class TextFiles:
 
 
 def _file_names(text: str) -> Iterator[str]:
-    """Yield the names of files in a text, with ``*`` for each computed part, and the names of models of SDF."""
+    """Yield the file names in a text, with ``*`` for each computed part, and the names of SDF models."""
     for word in set(_WORD.findall(_EXPRESSION.sub("*", text))):
         if word.startswith(_MODEL):
             yield word.removeprefix(_MODEL)

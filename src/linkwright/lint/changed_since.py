@@ -1,4 +1,4 @@
-"""The parts of the working tree that changed since a commit, and the findings that the commit has already."""
+"""The parts of the working tree that changed since a commit, and the findings that the commit already has."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class Inclusion:
     Attributes:
         package: the package in a ``$(find ...)`` in front of the path; empty if there is none.
         path: the path in the package, or relative to the file with the include; it can contain expressions.
-        pattern: a regular expression for the ends of the possible paths if the path is computed, also if only from an
+        pattern: a regular expression for the ends of the possible paths if the path is computed, even if only from an
             argument with a default; empty for other paths.
     """
 

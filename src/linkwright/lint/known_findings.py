@@ -1,4 +1,4 @@
-"""Findings that are known already: those of a baseline file, or of another version.
+"""Known findings, from a baseline file or from another version of the sources.
 
 Lines are not compared, because an insertion above a finding moves it.
 """
@@ -85,7 +85,7 @@ def count_keys(
 
 
 def new_findings(findings: Sequence[Diagnostic], folder: Path, counts: Mapping[Key, int]) -> list[Diagnostic]:
-    """Return the findings without as many of each key as are known.
+    """Return the findings, leaving out the known number of findings with each key.
 
     A finding that differs from a known one only in numbers is not new. Of a finding that lists names, such as
     undeclared dependencies, only the names that no known finding lists are new.

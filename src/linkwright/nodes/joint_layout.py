@@ -252,7 +252,7 @@ def make_layout(robot: Robot, settings: JointSettings) -> JointLayout:
             continue
         zero = settings.zeros.get(joint.name, _default_zero(*limits))
         ranges[joint.name] = JointRange(joint.name, joint.type, *limits, zero)
-        # The parameter takes precedence over <mimic>, also after the description changes. In the ROS node, <mimic>
+        # The parameter takes precedence over <mimic>, even after the description changes. In the ROS node, <mimic>
         # then takes precedence.
         if joint.name in settings.dependent_joints:
             dependent[joint.name] = settings.dependent_joints[joint.name]

@@ -2,7 +2,7 @@
 
 The node follows the ROS 2 node of that name (2.4), with these deliberate differences:
 
-- The parameters ``dependent_joints.*`` take precedence over ``<mimic>`` tags, also after the description changes.
+- The parameters ``dependent_joints.*`` take precedence over ``<mimic>`` tags, even after the description changes.
 - After a new description, existing joints keep their positions, and the first message is published immediately.
 - A parameter that is changed while the node runs takes effect.
 - Descriptions are URDF. SDF and COLLADA, which the ROS node also reads, are reported and ignored.

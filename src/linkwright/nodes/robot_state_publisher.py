@@ -204,7 +204,7 @@ class Throttle:
     does not delay a move that follows it.
 
     Args:
-            interval_ns: the minimum time between two messages about the same joints.
+        interval_ns: the minimum time between two messages about the same joints.
     """
 
     def __init__(self, interval_ns: int) -> None:

@@ -45,7 +45,7 @@ Endpoint: TypeAlias = tuple[IPAddress, int]
 """An address and a TCP port."""
 
 PROGRAM_PAGES_VARIABLE = "LINKWRIGHT_PROGRAM_PAGES"
-"""The environment variable with the address to which programs in a terminal of a page send the addresses of theirs."""
+"""The environment variable with the address to which programs in a terminal of the page send their page's address."""
 
 PROGRAM_PAGES_PATH = "/programs/"
 """The path of this address."""

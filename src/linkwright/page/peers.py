@@ -31,8 +31,8 @@ def may_be_own_user(transport: BaseTransport | None) -> bool:
     because the relay that connects a browser on Windows to WSL is expected to run as root.
 
     Returns:
-        True also where the system does not list the sockets of other users. False for a socket that is not listed as
-        open: one whose program has closed it no longer has an owner.
+        True if the system does not list the sockets of other users. False if the socket is not listed as open, because
+        a socket that its program has closed has no owner.
     """
     endpoints = endpoints_of(transport)
     if endpoints is None:

@@ -70,7 +70,7 @@ class ProgramPages:
         return bool(self._paused)
 
     def pause_worlds(self) -> None:
-        """Ask all programs to pause their worlds, also those that start before `resume_worlds`."""
+        """Ask all programs to pause their worlds, including programs that start before `resume_worlds` is called."""
         self._must_pause = True
         for response in self._responses.values():
             self._send(response, _PAUSE)
@@ -169,7 +169,7 @@ class Embedder:
 
     @classmethod
     def of(cls, environment: Mapping[str, str]) -> Embedder | None:
-        """Return the page that the environment variables name, or None if they do not."""
+        """Return the page that the environment variables name, or None if they name none."""
         address = environment.get(PROGRAM_PAGES_VARIABLE, "")
         if not _SERVER_ADDRESS.fullmatch(address):
             return None
@@ -208,7 +208,8 @@ class Embedding:
     """The connection to the page that shows a page of this program.
 
     Attributes:
-        on_pause: called with whether to pause the world of this program; returns whether it is paused because of that.
+        on_pause: called with True to pause the world of this program, or False to resume it; returns whether the world
+            is paused because of this call.
     """
 
     def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:

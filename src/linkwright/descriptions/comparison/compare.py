@@ -100,10 +100,9 @@ def compare(old: Side, new: Side) -> Comparison:
     """Return the differences between two descriptions.
 
     Links and joints are matched by name. An object with a new name is recognized if everything else is equal, or if
-    enough of it is and no other object is as similar. Poses are
-    compared as poses, not as text, with the tolerances in `linkwright.descriptions.comparison.facts`. Elements outside
-    the robot model (``<gazebo>``, ``<ros2_control>``, sensors) are compared as XML, ignoring white space, comments and
-    the order of attributes.
+    enough of the rest is equal and no other object is as similar. Poses are compared as poses, not as text, with the
+    tolerances in `linkwright.descriptions.comparison.facts`. Elements outside the robot model (``<gazebo>``,
+    ``<ros2_control>``, sensors) are compared as XML, ignoring white space, comments and the order of attributes.
     """
     return _Comparer(old, new).run()
 

@@ -118,8 +118,10 @@ class ElementComparison:
         """Yield the differences between two elements that belong together.
 
         Args:
-            name: the name of the element of the robot that contains both, or that they are.
-            path: the names of the elements between them, with their own; empty for elements of the robot.
+            name: the name of the element directly below the robot that contains both elements, or that is compared
+                itself.
+            path: the names of the elements from there down to the compared elements; empty for elements directly below
+                the robot.
             old: the old element.
             new: the new element.
         """

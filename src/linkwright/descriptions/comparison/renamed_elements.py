@@ -25,8 +25,8 @@ def renamed_elements(
     Args:
         old: the elements of the old description.
         new: the elements of the new description.
-        old_lone: those of the old elements whose names the new description does not have.
-        new_lone: those of the new elements whose names the old description does not have.
+        old_lone: the old elements whose names do not occur in the new description.
+        new_lone: the new elements whose names do not occur in the old description.
     """
     if len(old_lone) * len(new_lone) > _MAX_PAIRS:
         return

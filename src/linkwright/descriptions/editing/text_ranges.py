@@ -73,7 +73,7 @@ def literal(text_range: TextRange) -> Candidate | None:
 def added_constants(word: TextRange) -> Iterator[Candidate]:
     """Yield candidates for the numbers on which an expression depends linearly.
 
-    These are the terms of a sum, also inside ``radians()``.
+    These are the terms of a sum, including a sum inside ``radians()``.
     """
     match = _ONE_EXPRESSION.match(word.text)
     expression = None if match is None else match[1]

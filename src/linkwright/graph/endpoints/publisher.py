@@ -70,7 +70,7 @@ class Publisher(TopicEndpoint[M]):
         self._copies_messages = node.copies_messages
         self._is_plain = not is_transient_local and not self._copies_messages
         if event_callbacks is not None:
-            from linkwright.graph.endpoints.endpoint_events import PublisherEvents  # few use events
+            from linkwright.graph.endpoints.endpoint_events import PublisherEvents  # few publishers use events
 
             self.events = PublisherEvents(self, event_callbacks, self._on_liveliness_change)
             self._is_plain = self._is_plain and not self.events.wants_messages

@@ -83,7 +83,7 @@ class Subscription(TopicEndpoint[M], Entity):
         self.event_callbacks = event_callbacks
         self.events: SubscriptionEvents | None = None
         if event_callbacks is not None:
-            from linkwright.graph.endpoints.endpoint_events import SubscriptionEvents  # few use events
+            from linkwright.graph.endpoints.endpoint_events import SubscriptionEvents  # few subscriptions use events
 
             self.events = SubscriptionEvents(self, event_callbacks)
         self._publishers: dict[TopicEndpoint[Any], None] = {}

@@ -270,7 +270,7 @@ class LoopDispatcher:
         tasks = [task for task in self._tasks if task is not asyncio.current_task()]
         if tasks:
             await asyncio.gather(*tasks, return_exceptions=True)
-            await asyncio.sleep(0)  # let the loop drop them, too
+            await asyncio.sleep(0)  # run one more iteration, so that the loop drops them, too
 
     def _call_threadsafe(self, callback: Callable[[], None]) -> None:
         try:

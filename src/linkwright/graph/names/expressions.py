@@ -33,8 +33,8 @@ class Expression:
     """A regular expression for names (decision 0020).
 
     Args:
-            text: the expression, in the syntax of the library ``regex``, which extends Python's `re`. Expressions that
-                are valid in both `re` and ECMAScript work unchanged.
+        text: the expression, in the syntax of the library ``regex``, which extends Python's `re`. Expressions that
+            are valid in both `re` and ECMAScript work unchanged.
 
     Raises:
         ExpressionError: the text is too long, or is not a valid expression.

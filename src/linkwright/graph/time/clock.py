@@ -529,7 +529,7 @@ class ROSClock(Clock):
                 return
             if self._jump_handles or now_ns < self._override_ns:
                 self._jump_to(now_ns)
-            else:  # usual case
+            else:  # the usual case
                 self._override_ns = now_ns
             self._change_condition.notify_all()
             due_alarms = []

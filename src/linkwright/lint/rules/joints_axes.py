@@ -15,7 +15,7 @@ from linkwright.urdf import Joint
 from linkwright.urdf.values import plain
 
 _TILT_TOLERANCE = 1e-6
-"""The tilt in rad below which an axis is not reported, because it is only rounded: a micrometre per meter."""
+"""The tilt in rad below which an axis is not reported, because it is only rounded: a micrometer per meter."""
 _MOVING_TYPES = ("revolute", "continuous", "prismatic", "planar")
 _LENGTH_TOLERANCE = 1e-3
 

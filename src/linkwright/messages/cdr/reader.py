@@ -1,9 +1,9 @@
 """Compile the functions that deserialize structures from CDR.
 
-Such a function unpacks each run of fields of fixed size, also across nested structures, with one `struct` call directly
-into the slots of the objects. The checks on assignment are skipped. The function does not trust lengths in the data: no
-length can make it read or allocate more than the data contains. `linkwright.messages.cdr.values.READ_FAULTS` lists all
-errors that it raises for bad data.
+Such a function unpacks each run of fields of fixed size, including fields of nested structures, with one `struct` call
+directly into the slots of the objects. The checks on assignment are skipped. The function does not trust lengths in the
+data: no length can make it read or allocate more than the data contains. `linkwright.messages.cdr.values.READ_FAULTS`
+lists all errors that it raises for bad data.
 """
 
 from __future__ import annotations

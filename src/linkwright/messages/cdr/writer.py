@@ -1,7 +1,7 @@
 """Compile the functions that serialize structures to CDR.
 
-Such a function packs each run of fields of fixed size, also across nested structures, with one `struct` call. It takes
-encoded strings from a cache, uses arrays without copying them, and joins all pieces at the end.
+Such a function packs each run of fields of fixed size, including fields of nested structures, with one `struct` call.
+It takes encoded strings from a cache, uses arrays without copying them, and joins all pieces at the end.
 """
 
 from __future__ import annotations

@@ -428,7 +428,7 @@ class CMakeProgram:
     def _change_list(self, words: list[str]) -> None:
         for target, value in list_command(words[0], words[1:], self._value).items():
             if words[0] in ("APPEND", "PREPEND"):
-                self.variables[target] = value  # also if uncertain: a possible item is added
+                self.variables[target] = value  # even if the command is uncertain, so that a possible item is added
             else:
                 self._set(target, value)
 

@@ -47,13 +47,13 @@ class Course(ServerMessage):
 class CourseStep(ServerMessage):
     """The step that is shown.
 
-    Texts are HTML without scripts. `introduction` is that of the lesson for its first step, or empty. `hints` are the
-    hints that the learner has taken, of `hint_count` hints. `solution` are the files that the solution writes, and
-    `files` those of them that the page shows or the text mentions, both as absolute paths. `unit` is the unit of the
-    number that the step asks for, or None if it asks for none. `answer` is the learner's answer as text. `right_answer`
-    is the right one, or None before the learner has taken the solution. `has_solution` is whether there is a solution.
-    `missing_count` is the number of steps before it whose files the step may need, and which are neither passed nor
-    taken over.
+    Texts are HTML without scripts. `introduction` is the introduction of the lesson if this is its first step, or
+    empty. `hints` are the hints that the learner has taken, of `hint_count` hints. `solution` lists the files that the
+    solution writes, and `files` the files among them that the page shows or the text mentions, all as absolute paths.
+    `unit` is the unit of the number that the step asks for, or None if it asks for none. `answer` is the learner's
+    answer as text. `right_answer` is the right answer, or None before the learner has taken the solution.
+    `has_solution` is whether there is a solution. `missing_count` is the number of earlier steps that are neither
+    passed nor taken over, and whose files this step may need.
     """
 
     address: str
@@ -84,7 +84,7 @@ class StepCheck(Record):
 
 
 class StepChecks(ServerMessage):
-    """The last results of the checks of a step, whether the checks run, and whether they have paused a running world.
+    """The last results of a step's checks, and whether the checks run or have paused a running world.
 
     `checks` is empty before the first results. `checked_at` is the time of the results in seconds since the epoch, or
     None if there are none.

@@ -140,7 +140,10 @@ class SeriesStates(ServerMessage):
 
 
 class AskFields(PageMessage):
-    """A request for the fields of a topic. `topic` is None after the user's choice."""
+    """A request for the fields of a topic.
+
+    `topic` is None once the user has chosen a field, so that the server stops reading the topic.
+    """
 
     topic: str | None
 

@@ -65,7 +65,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
     The topic contains the speeds of all rotors in rad/s. The commands of a controller in the model take precedence.
 
     Attributes:
-        wanted: the commanded speed, in rad/s.
+        target_speed: the commanded speed, in rad/s.
         speed: the current speed, in rad/s.
     """
 

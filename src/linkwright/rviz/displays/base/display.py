@@ -199,7 +199,7 @@ class ViewerDisplay:
         """Handle a property's new value."""
 
     def on_properties_restored(self) -> None:
-        """Update derived state after values were restored and `changed` was called for each of them."""
+        """Update derived state after `on_property_changed` was called for every restored value."""
 
     def on_enabled_changed(self) -> None:
         """Handle a change to the check box of the display or of a group that contains the display."""
