@@ -1,5 +1,5 @@
 import { describe, expect, it, vi } from "vitest";
-import { placeText, shortPath } from "../src/panels/place";
+import { formatPlace, shortenPath } from "../src/panels/place";
 import { listMaterialFiles } from "../src/scene/meshes/obj";
 import { formatColor, parseColor } from "../src/tree/colors";
 import { clamp, formatFixed, formatNumber, parseNumber, stepFor } from "../src/tree/numbers";
@@ -46,9 +46,9 @@ describe("colors in rows", () => {
 
 describe("source positions", () => {
   it("show the end of a long path", () => {
-    expect(shortPath("/home/me/ws/src/mbot/urdf/mbot.xacro")).toBe("…/mbot/urdf/mbot.xacro");
-    expect(shortPath("mbot.xacro")).toBe("mbot.xacro");
-    expect(placeText("mbot.xacro", 3, null)).toBe("mbot.xacro:3");
+    expect(shortenPath("/home/me/ws/src/mbot/urdf/mbot.xacro")).toBe("…/mbot/urdf/mbot.xacro");
+    expect(shortenPath("mbot.xacro")).toBe("mbot.xacro");
+    expect(formatPlace("mbot.xacro", 3, null)).toBe("mbot.xacro:3");
   });
 });
 

@@ -1,7 +1,7 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
 import { WORLD_KEYS } from "../panels/modeling/world-commands";
-import { FIT_KEY, toolName } from "../panels/over-scene/toolbar";
+import { FIT_KEY, translateToolName } from "../panels/over-scene/toolbar";
 import { TERMINAL_KEYS, terminalKeyText } from "../panels/terminal/terminal-keys";
 import { TALK_KEY } from "../panels/voice/talk-button";
 import { TOOLS } from "../scene/tools/catalog";
@@ -47,7 +47,7 @@ export class KeySheet {
     const { shell, displays, modeling, terminal } = strings;
     const tools = this.tools.tools.flatMap((tool): Row[] => {
       const entry = TOOLS.get(tool.cls);
-      return entry ? [[entry.key.toUpperCase(), toolName(tool)]] : [];
+      return entry ? [[entry.key.toUpperCase(), translateToolName(tool)]] : [];
     });
     return [
       [texts.toolsTitle, tools, texts.toolsNote],

@@ -7,7 +7,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { tickBox } from "../../widgets/controls";
 import type { Panel } from "../panel";
-import { shortPlace } from "../place";
+import { shortenPlace } from "../place";
 
 const KIND_ICONS = { added: "plus", removed: "minus", renamed: "rename", changed: "options" } as const satisfies Record<string, IconName>;
 const SUBJECT_ICONS = { robot: "diagram", link: "cube", joint: "joints", extension: "code" } as const satisfies Record<string, IconName>;
@@ -80,7 +80,7 @@ export class ComparisonPanel implements Panel {
     const texts = strings.comparison;
     for (const [tick, { label }] of [[this.oldSwitch, compared.old], [this.new, compared.new]] as const) {
       const file = tick.querySelector(".comparison-file");
-      if (file) file.textContent = shortPlace(label);
+      if (file) file.textContent = shortenPlace(label);
       tick.title = `${tick === this.oldSwitch ? texts.showOld : texts.showNew}\n${label}`;
     }
     const marks = usedMarks([compared.new, compared.old]);
@@ -174,7 +174,7 @@ export class ComparisonPanel implements Panel {
   private createPlace(place: ComparedPlace | null, side: "old" | "new"): HTMLElement | null {
     if (!place) return null;
     const { text, file, line } = place;
-    const parts = [h("span", { class: "difference-side" }, strings.comparison[side]), shortPlace(text)] as const;
+    const parts = [h("span", { class: "difference-side" }, strings.comparison[side]), shortenPlace(text)] as const;
     const display = this.session.comparison.compared?.[side].display ?? "";
     if (file === "" || display === "") return h("span", { class: "place", title: text }, ...parts);
     const name = text.replace(/(:\d+)+$/, "");

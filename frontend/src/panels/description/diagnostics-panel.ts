@@ -6,7 +6,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { formatTrouble } from "../displays/display-items";
 import type { Panel } from "../panel";
-import { placeText, shortPath } from "../place";
+import { formatPlace, shortenPath } from "../place";
 
 /** The findings on the description with the lines they point to, and the reasons why displays show nothing. */
 export class DiagnosticsPanel implements Panel {
@@ -123,8 +123,8 @@ function createCard(item: DiagnosticItem, show: ShowPlace): HTMLElement {
 /** Returns a button that shows a place in the Source panel. */
 function placeButton({ file, line, column }: Pick<DiagnosticNote, "file" | "line" | "column">, show: ShowPlace): HTMLElement | null {
   if (file === null) return null;
-  const text = placeText(shortPath(file), line, column);
-  return button(placeText(file, line, column), () => show(file, line ?? 1), "place", icon("file"), text);
+  const text = formatPlace(shortenPath(file), line, column);
+  return button(formatPlace(file, line, column), () => show(file, line ?? 1), "place", icon("file"), text);
 }
 
 /** Returns the source line of a finding, with the part in question marked. */

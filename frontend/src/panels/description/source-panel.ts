@@ -9,7 +9,7 @@ import { strings } from "../../strings";
 import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { EditorPane } from "../source-editor/editor-pane";
-import { placeText, shortPath, shortPlace } from "../place";
+import { formatPlace, shortenPath, shortenPlace } from "../place";
 import { modelOfCurrentRobot } from "./current-model";
 import { SourceView, type Highlight } from "./source-view";
 
@@ -228,7 +228,7 @@ export class SourcePanel implements Panel {
   private listFiles(files: readonly string[]): void {
     const options = files.map((file) => {
       const name = this.requestedPlace?.file === file ? this.requestedPlace.name : undefined;
-      const option = h("option", { title: name ?? file }, name === undefined ? shortPath(file) : shortPlace(name));
+      const option = h("option", { title: name ?? file }, name === undefined ? shortenPath(file) : shortenPlace(name));
       option.value = file;
       return option;
     });
@@ -249,8 +249,8 @@ export class SourcePanel implements Panel {
     const texts = strings.description.source;
     const { origin, calls } = this.writtenPlaces();
     const steps = calls.map(({ macro, file, line, column }) => {
-      const text = texts.call(macro, placeText(shortPath(file, 1), line, null));
-      return button(placeText(file, line, column), () => this.reveal(file, line, { look: "focus" }), "trail-step", text);
+      const text = texts.call(macro, formatPlace(shortenPath(file, 1), line, null));
+      return button(formatPlace(file, line, column), () => this.reveal(file, line, { look: "focus" }), "trail-step", text);
     });
     const backButton = origin && this.requestedPlace
       ? button(texts.origin, () => this.showFocus(), "tool bare", icon("reset"))

@@ -3,7 +3,7 @@ import { icon } from "../../icons";
 import type { DiagnosticItem, EditedFile } from "../../protocol";
 import type { EditingState } from "../../state/editing/editing";
 import { strings } from "../../strings";
-import { shortPath } from "../place";
+import { shortenPath } from "../place";
 import { diffLines } from "./diff-lines";
 
 /** The number of characters shown before and after the difference, in a long line or a low panel. */
@@ -49,7 +49,7 @@ export class EditOutcome {
     else if (preview?.refusal) this.text.replaceChildren(refusalElement(preview.refusal));
     else if (preview) this.text.replaceChildren(...alsoElement(preview.also), ...preview.files.map(diff));
     else if (isOpen) this.text.replaceChildren(h("p", { class: "hint" }, texts.looking));
-    else if (writtenFiles.length > 0) this.text.replaceChildren(h("p", { class: "hint" }, writtenWords(writtenFiles.map((file) => shortPath(file)).join(", "))));
+    else if (writtenFiles.length > 0) this.text.replaceChildren(h("p", { class: "hint" }, writtenWords(writtenFiles.map((file) => shortenPath(file)).join(", "))));
     else this.text.replaceChildren(h("p", { class: "hint" }, texts.idle));
     this.element.classList.toggle("refused", refusal !== null || (preview?.refusal ?? null) !== null);
   }
@@ -69,7 +69,7 @@ function diff({ file, diff: lines }: EditedFile): HTMLElement {
     return h("span", { class: kind }, sign, ...parts, "\n");
   });
   const isLong = lines.some((line) => line.length > LONGEST_WHOLE);
-  return h("figure", { class: isLong ? "edit-diff long" : "edit-diff" }, h("figcaption", { title: file }, shortPath(file)), h("pre", {}, ...rows));
+  return h("figure", { class: isLong ? "edit-diff long" : "edit-diff" }, h("figcaption", { title: file }, shortenPath(file)), h("pre", {}, ...rows));
 }
 
 /** Returns the distant part of a line, which only a high panel with short lines shows. */
@@ -78,7 +78,7 @@ function distantText(text: string): HTMLElement | null {
 }
 
 function refusalElement({ message, file, line, notes, hints }: DiagnosticItem): HTMLElement {
-  const at = (path: string | null, number: number | null): string => (path === null || number === null ? "" : ` (${shortPath(path)}:${number})`);
+  const at = (path: string | null, number: number | null): string => (path === null || number === null ? "" : ` (${shortenPath(path)}:${number})`);
   return h(
     "div",
     { class: "edit-refusal" },

@@ -10,7 +10,7 @@ import { choice } from "../../widgets/controls";
 import { UnitSwitch } from "../../widgets/unit-switch";
 import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
-import { shortPath } from "../place";
+import { shortenPath } from "../place";
 import { EditOutcome } from "./edit-outcome";
 
 /** m */
@@ -111,7 +111,7 @@ export class EditingPanel implements Panel {
     const { file, line, written } = part;
     if (file !== "") {
       const show = (): void => this.session.description.placeRequested.emit({ file, line });
-      const text = `${shortPath(file)}:${line}`;
+      const text = `${shortenPath(file)}:${line}`;
       this.place.append(button(`${file}:${line}`, show, "place", icon("file"), text), h("code", { title: written }, written === "" ? texts.notWritten : written));
     }
   }

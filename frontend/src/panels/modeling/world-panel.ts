@@ -9,7 +9,7 @@ import { choice } from "../../widgets/controls";
 import { keyText, type Shortcut } from "../../widgets/shortcuts";
 import { UnitSwitch } from "../../widgets/unit-switch";
 import type { Panel } from "../panel";
-import { shortPath } from "../place";
+import { shortenPath } from "../place";
 import { entityItems } from "./entity-items";
 import { EntityList } from "./entity-list";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
@@ -57,7 +57,7 @@ export class WorldPanel implements Panel {
     const { isActive, file, isUnsaved, entities } = this.modeling;
     this.inactiveView.hidden = isActive;
     this.activeView.hidden = !isActive;
-    this.file.textContent = file === null ? strings.modeling.untitled : shortPath(file);
+    this.file.textContent = file === null ? strings.modeling.untitled : shortenPath(file);
     this.file.title = file ?? "";
     this.mark.hidden = !isUnsaved;
     this.empty.hidden = entities.length > 0;

@@ -2,7 +2,7 @@ import type { LSPClient } from "@codemirror/lsp-client";
 import { button, h } from "../../dom";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
-import { shortPath } from "../place";
+import { shortenPath } from "../place";
 import type { Documents } from "./documents";
 import type { ServerLocation } from "./navigation";
 import { pathOf, type ServerRange } from "./server-places";
@@ -164,6 +164,6 @@ function flatten(symbols: readonly DocumentSymbol[], uri: string, depth: number)
 
 function listSymbol({ name, location, containerName }: WorkspaceSymbol): ListedSymbol {
   const path = pathOf(location.uri);
-  const file = path === null ? (containerName ?? "") : shortPath(path);
+  const file = path === null ? (containerName ?? "") : shortenPath(path);
   return { name, detail: `${file}:${location.range.start.line + 1}`, depth: 0, location };
 }

@@ -4,7 +4,7 @@ import { strings } from "../../strings";
 import { propertyItem } from "../../tree/property-item";
 import type { TreeItem } from "../../tree/tree-item";
 import { TreeView } from "../../tree/tree-view";
-import { toolName } from "../over-scene/toolbar";
+import { translateToolName } from "../over-scene/toolbar";
 import type { Panel } from "../panel";
 
 /** RViz's Tool Properties panel: the settings of all tools that have any. */
@@ -32,7 +32,7 @@ export class ToolPropertiesPanel implements Panel {
       .filter((tool) => tool.rows.nodes.length > 0)
       .map((tool): TreeItem => ({
         key: tool.id,
-        name: toolName(tool),
+        name: translateToolName(tool),
         kind: "group",
         value: "",
         description: "",
