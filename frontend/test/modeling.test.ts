@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { hex, entityItems } from "../src/panels/modeling/entity-items";
+import { formatHex, createEntityItems } from "../src/panels/modeling/entity-items";
 import type { ModelingState, PageMessage, WorldEntity } from "../src/protocol";
 import { AngleUnits } from "../src/state/angle-unit";
 import { Modeling } from "../src/state/modeling/modeling";
@@ -180,7 +180,7 @@ describe("the rows of the selection", () => {
   const items = (): Map<string, TreeItem> => {
     const angles = new AngleUnits(browserStorage());
     angles.current = "deg";
-    const all = entityItems(modeling, angles).flatMap((item) => [item, ...(item.children?.() ?? [])]);
+    const all = createEntityItems(modeling, angles).flatMap((item) => [item, ...(item.children?.() ?? [])]);
     return new Map(all.map((item) => [item.key, item]));
   };
 
@@ -208,6 +208,6 @@ describe("the rows of the selection", () => {
   });
 
   it("format colors as the page does", () => {
-    expect(hex([1, 0.5, 0, 1])).toBe("#ff8000");
+    expect(formatHex([1, 0.5, 0, 1])).toBe("#ff8000");
   });
 });

@@ -1,7 +1,7 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
 import { ComparisonPanel } from "../panels/description/comparison-panel";
-import { jointBar } from "../panels/joints/joint-bar";
+import { createJointBar } from "../panels/joints/joint-bar";
 import { JointRow } from "../panels/joints/joint-row";
 import type { View } from "../protocol";
 import type { DisplayState } from "../state/displays";
@@ -114,7 +114,7 @@ export class Sidebar {
     joints.positionsChanged.on(update);
     angles.changed.on(() => rows.forEach((row) => row.showUnit()));
     update();
-    const bar = jointBar(this.session);
+    const bar = createJointBar(this.session);
     const none = h("p", { class: "empty" }, texts.none);
     const content = rows.length > 0 ? [bar, h("div", { class: "joints" }, ...rows.map((row) => row.element))] : [none];
     return h("section", { class: "joint-section", aria: { label: strings.sharing.exported.joints } }, h("h2", {}, strings.sharing.exported.joints), ...content);

@@ -2,7 +2,7 @@ import { button, h } from "../dom";
 import { icon } from "../icons";
 import { WORLD_KEYS } from "../panels/modeling/world-commands";
 import { FIT_KEY, translateToolName } from "../panels/over-scene/toolbar";
-import { TERMINAL_KEYS, terminalKeyText } from "../panels/terminal/terminal-keys";
+import { TERMINAL_KEYS, formatTerminalKey } from "../panels/terminal/terminal-keys";
 import { TALK_KEY } from "../panels/voice/talk-button";
 import { TOOLS } from "../scene/tools/catalog";
 import type { ToolsState } from "../state/tools";
@@ -96,9 +96,9 @@ export class KeySheet {
       [
         terminal.panel,
         [
-          [terminalKeyText(TERMINAL_KEYS.copy), terminal.copy],
-          [terminalKeyText(TERMINAL_KEYS.paste), terminal.paste],
-          [terminalKeyText(TERMINAL_KEYS.leave), terminal.leave],
+          [formatTerminalKey(TERMINAL_KEYS.copy), terminal.copy],
+          [formatTerminalKey(TERMINAL_KEYS.paste), terminal.paste],
+          [formatTerminalKey(TERMINAL_KEYS.leave), terminal.leave],
           ["← →", terminal.tabKeys],
         ],
       ],

@@ -2,7 +2,7 @@ import { withRecording, recordingIn } from "../connection/recording-address";
 import type { Tokens } from "../connection/tokens";
 import { RefusedError, Upload } from "../connection/upload";
 import { h } from "../dom";
-import { amountOf } from "../panels/timeline/timeline-text";
+import { formatBytesOfTotal } from "../panels/timeline/timeline-text";
 import type { Session } from "../state/session";
 import { language, strings } from "../strings";
 import { Dialog, showNotice } from "../widgets/dialog";
@@ -78,7 +78,7 @@ export class RecordingDrop {
       bar.max = Math.max(1, whole);
       if (sent < whole) bar.value = sent;
       else bar.removeAttribute("value");
-      text.textContent = sent < whole ? amountOf(sent, whole) : texts.opening;
+      text.textContent = sent < whole ? formatBytesOfTotal(sent, whole) : texts.opening;
     };
     const upload = new Upload(document.baseURI, this.tokens, language, show);
     let done = false;

@@ -3,7 +3,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import type { WorldCommands } from "../modeling/world-commands";
 import type { Panel } from "../panel";
-import { talkButton } from "../voice/talk-button";
+import { createTalkButton } from "../voice/talk-button";
 import { VoiceNotice } from "../voice/voice-notice";
 import { ArgumentFormCard } from "./argument-form";
 import { CardColumn, type CoveredScene } from "./card-column";
@@ -36,7 +36,7 @@ export class ScenePanel implements Panel {
   private readonly waiting = h("div", { class: "waiting" }, h("span", { class: "pulse" }), strings.scene.waiting);
 
   constructor(session: Session, commands: WorldCommands, fit: () => void, showDiagnostics: () => void, showKeys: () => void) {
-    const toolbar = new Toolbar(session.tools, fit, showKeys, talkButton(session.voice, "scene-tool small talk"));
+    const toolbar = new Toolbar(session.tools, fit, showKeys, createTalkButton(session.voice, "scene-tool small talk"));
     const banner = new DiagnosticsBanner(session, showDiagnostics);
     const connectionNotice = new ConnectionNotice(session.connection);
     const card = new SelectionCard(session, this.column, () => session.editing.editRequested.emit());

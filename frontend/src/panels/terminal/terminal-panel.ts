@@ -7,7 +7,7 @@ import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import type { TerminalDeck } from "./terminal-deck";
 
-/** The place of the terminals, whose code is loaded when the panel is shown first. */
+/** The panel of the terminals, whose code is loaded when the panel is first shown. */
 export class TerminalPanel implements Panel {
   readonly id = "terminal";
   readonly icon = "terminal";

@@ -12,21 +12,21 @@ export class ToolPropertiesPanel implements Panel {
   readonly id = "tool-properties";
   readonly icon = "options";
   readonly element: HTMLElement;
-  private readonly none = h("p", { class: "hint empty" }, strings.tools.nothing);
+  private readonly emptyHint = h("p", { class: "hint empty" }, strings.tools.nothing);
 
   constructor(private readonly session: Session) {
     const { tools, frames } = session;
     const tree = new TreeView(
       strings.panels["tool-properties"],
-      () => this.items(),
+      () => this.createItems(),
       () => frames.names,
     );
-    this.element = h("div", { class: "panel" }, tree.element, this.none);
+    this.element = h("div", { class: "panel" }, tree.element, this.emptyHint);
     tools.listChanged.on(tree.refresh);
     tools.valueChanged.on(tree.refresh);
   }
 
-  private items(): TreeItem[] {
+  private createItems(): TreeItem[] {
     const { tools } = this.session;
     const items = tools.tools
       .filter((tool) => tool.rows.nodes.length > 0)
@@ -40,7 +40,7 @@ export class ToolPropertiesPanel implements Panel {
         expanded: true,
         children: () => tool.rows.nodes.map((node) => propertyItem(node, (id, value) => tools.setProperty(id, value))),
       }));
-    this.none.hidden = items.length > 0;
+    this.emptyHint.hidden = items.length > 0;
     return items;
   }
 }
