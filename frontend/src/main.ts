@@ -18,7 +18,7 @@ import "./styles/editing.css";
 import "./styles/learning.css";
 import { Connection, socketUrl } from "./connection/connection";
 import { Tokens, type AddressBar } from "./connection/tokens";
-import { button, coalesced, h, isFramed } from "./dom";
+import { button, coalesce, h, isFramed } from "./dom";
 import { publishInspection } from "./inspection";
 import { ComparisonPanel } from "./panels/description/comparison-panel";
 import { DiagnosticsPanel } from "./panels/description/diagnostics-panel";
@@ -67,10 +67,10 @@ import { WorldHandling } from "./scene/world-handling";
 import { TokenScreen } from "./shell/token-screen";
 import { FileCommands } from "./shell/file-commands";
 import { bindFileKeys } from "./shell/file-keys";
-import { fullScreenOnF11 } from "./shell/full-screen";
+import { bindFullScreenKey } from "./shell/full-screen";
 import { KeySheet } from "./shell/key-sheet";
-import { noWebgl } from "./shell/no-webgl";
-import { hasOwnDisplays, ownKey } from "./shell/own-displays";
+import { createNoWebglNotice } from "./shell/no-webgl";
+import { hasOwnDisplays, ensureOwnKey } from "./shell/own-displays";
 import { RecordingDrop } from "./shell/recording-drop";
 import { ShareMenu } from "./shell/share-menu";
 import { StatusBar } from "./shell/status-bar";
@@ -79,7 +79,7 @@ import type { CourseState } from "./state/course";
 import { Session } from "./state/session";
 import { THEME_CHOICES, ThemeState } from "./state/theme";
 import { takeRequested } from "./requested-settings";
-import { browserStorage } from "./storage";
+import { openBrowserStorage } from "./storage";
 import { language, languageChosen, languageTag, strings } from "./strings";
 import { matches, SHORTCUTS } from "./widgets/shortcuts";
 
@@ -89,12 +89,12 @@ const CONFIGURATION_PANELS: readonly PanelId[] = ["displays", "views", "tool-pro
 
 function start(app: HTMLElement): void {
   document.documentElement.lang = languageTag;
-  const theme = new ThemeState(document.documentElement, browserStorage(), matchMedia("(prefers-color-scheme: light)"));
+  const theme = new ThemeState(document.documentElement, openBrowserStorage(), matchMedia("(prefers-color-scheme: light)"));
   const requestedTheme = takeRequested("theme", location, history);
   const themeChoice = THEME_CHOICES.find((each) => each === requestedTheme);
   if (themeChoice) theme.choose(themeChoice);
-  const own = hasOwnDisplays(location.href) ? ownKey(browserStorage("sessionStorage")) : null;
-  const tokens = new Tokens(addressBar(), browserStorage());
+  const own = hasOwnDisplays(location.href) ? ensureOwnKey(openBrowserStorage("sessionStorage")) : null;
+  const tokens = new Tokens(addressBar(), openBrowserStorage());
   const connection = new Connection(socketUrl(location.href, own, language), tokens);
   const door = new TokenScreen(connection, tokens, app);
   // Connect before drawing anything: the answer takes a moment.
@@ -148,7 +148,7 @@ function start(app: HTMLElement): void {
     ...createLivePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
   ];
   preserveSearches(panels, session.memory);
-  const dock = new Dock(dockBox, panels, new Layouts(browserStorage()), browserStorage());
+  const dock = new Dock(dockBox, panels, new Layouts(openBrowserStorage()), openBrowserStorage());
   followAvailability(dock, session);
   new FilePanels(connection, dock);
 
@@ -199,7 +199,7 @@ function start(app: HTMLElement): void {
   const fold = new TimeFold(session.time, dock.strip);
   app.append(h("div", { class: "foot" }, new TimelineBar(session).element, fold.element, new StatusBar(session, stage).element));
   document.body.append(door.element);
-  fullScreenOnF11(scene.box);
+  bindFullScreenKey(scene.box);
   document.addEventListener("keydown", (event) => {
     const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLTextAreaElement;
     if (event.key === "?" && !typing) sheet.toggle();
@@ -236,7 +236,7 @@ function followAvailability(dock: Dock, session: Session): void {
   const { displays } = session;
   const pruneDisplayPanels = (): void => dock.displayPanels.prune(displays.displays.map(({ id }) => id));
   const countFindings = (): void => dock.setCount("diagnostics", session.diagnostics.length + displays.failingCount);
-  const countBeforePaint = coalesced(countFindings);
+  const countBeforePaint = coalesce(countFindings);
   session.joints.controlsChanged.on(followJoints);
   session.modeling.changed.on(followWorld);
   session.comparison.changed.on(followComparison);
@@ -332,7 +332,7 @@ function makeStage(container: HTMLElement, session: Session, panels: PanelHost, 
     return new Stage(container, session, panels, theme, SERVED, new StandIns(standInWorker));
   } catch (error) {
     console.warn(error);
-    container.append(noWebgl());
+    container.append(createNoWebglNotice());
     return null;
   }
 }

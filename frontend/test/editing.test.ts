@@ -2,7 +2,7 @@ import { describe, expect, it, vi } from "vitest";
 import { formatPlace, shortenPath } from "../src/panels/place";
 import { listMaterialFiles } from "../src/scene/meshes/obj";
 import { formatColor, parseColor } from "../src/tree/colors";
-import { clamp, formatFixed, formatNumber, parseNumber, stepFor } from "../src/tree/numbers";
+import { clamp, formatFixed, formatNumber, parseNumber, chooseStep } from "../src/tree/numbers";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
 
@@ -32,7 +32,7 @@ describe("numbers in rows", () => {
   });
 
   it("change by steps of a tenth of their size", () => {
-    expect([stepFor(0, false), stepFor(0.5, false), stepFor(45, false), stepFor(45, true)]).toEqual([0.01, 0.01, 1, 1]);
+    expect([chooseStep(0, false), chooseStep(0.5, false), chooseStep(45, false), chooseStep(45, true)]).toEqual([0.01, 0.01, 1, 1]);
   });
 });
 

@@ -1,6 +1,6 @@
 import { PROTOCOL_VERSION, type PageMessage, type ServerMessage } from "../protocol";
 import { Signal } from "../signal";
-import { browserStorage } from "../storage";
+import { openBrowserStorage } from "../storage";
 import { unpackData, type DisplayData } from "./data";
 import { isPiece, FrameAssembler } from "./frame-assembler";
 import { askForProof } from "./proof";
@@ -149,7 +149,7 @@ export class Connection {
         this.reloadOutdated();
         return;
       }
-      browserStorage("sessionStorage").removeItem(RELOADED_KEY);
+      openBrowserStorage("sessionStorage").removeItem(RELOADED_KEY);
       this.acceptedToken = this.shownToken;
       if (this.shownToken !== null) this.tokens?.accept(this.shownToken);
       this.retryMs = FIRST_RETRY_MS;
@@ -211,7 +211,7 @@ export class Connection {
     const socket = this.socket;
     this.setState("outdated");
     socket?.close();
-    const tab = browserStorage("sessionStorage");
+    const tab = openBrowserStorage("sessionStorage");
     if (tab.getItem(RELOADED_KEY) !== null) return;
     tab.setItem(RELOADED_KEY, "yes");
     location.reload();

@@ -14,10 +14,10 @@ import { Controls } from "../scene/controls";
 import { Keyboard } from "../scene/keyboard";
 import { Stage } from "../scene/stage";
 import { Toolbox } from "../scene/tools/toolbox";
-import { noWebgl } from "../shell/no-webgl";
+import { createNoWebglNotice } from "../shell/no-webgl";
 import { Session } from "../state/session";
 import { ThemeState } from "../state/theme";
-import { browserStorage } from "../storage";
+import { openBrowserStorage } from "../storage";
 import { languageChosen, languageTag, strings } from "../strings";
 import { RecordedConnection } from "./recorded-connection";
 import { RecordedFiles } from "./recorded-files";
@@ -30,7 +30,7 @@ const NO_PANELS = { offer: () => undefined, withdraw: () => undefined, retitle: 
 
 function start(app: HTMLElement, recorded: HTMLElement): void {
   document.documentElement.lang = languageTag;
-  const theme = new ThemeState(document.documentElement, browserStorage(), matchMedia("(prefers-color-scheme: light)"));
+  const theme = new ThemeState(document.documentElement, openBrowserStorage(), matchMedia("(prefers-color-scheme: light)"));
   const recording = readRecording(recorded);
   const { display } = recording;
   const connection = new RecordedConnection(recording);
@@ -72,7 +72,7 @@ function makeStage(container: HTMLElement, session: Session, files: RecordedFile
     return new Stage(container, session, NO_PANELS, theme, files);
   } catch (error) {
     console.warn(error);
-    container.append(noWebgl());
+    container.append(createNoWebglNotice());
     return null;
   }
 }

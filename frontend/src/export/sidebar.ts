@@ -8,7 +8,7 @@ import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
 import type { ThemeState } from "../state/theme";
 import { changeLanguage, strings } from "../strings";
-import { tickBox } from "../widgets/controls";
+import { createTickBox } from "../widgets/controls";
 import type { Side } from "./views";
 
 const SIDES: readonly Side[] = ["iso", "front", "left", "top"];
@@ -79,13 +79,13 @@ export class Sidebar {
   private rowBox(robot: DisplayState, row: string, label: string): HTMLElement | null {
     const node = robot.rows.find(row);
     if (!node) return null;
-    const tick = tickBox(label, label, (ticked) => this.session.setProperty(node.id, ticked));
+    const tick = createTickBox(label, label, (ticked) => this.session.setProperty(node.id, ticked));
     tick.box.checked = node.value === true;
     return tick;
   }
 
   private displayBox(display: DisplayState): HTMLElement {
-    const tick = tickBox(display.name, display.name, (ticked) => this.session.setProperty(display.enabledId, ticked));
+    const tick = createTickBox(display.name, display.name, (ticked) => this.session.setProperty(display.enabledId, ticked));
     tick.box.checked = display.isChecked;
     return tick;
   }

@@ -1,4 +1,4 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon, LEVEL_ICONS } from "../../icons";
 import type { DiagnosticItem, DiagnosticNote, StatusRow } from "../../protocol";
 import { problemsOf, type DisplayState } from "../../state/displays";
@@ -22,7 +22,7 @@ export class DiagnosticsPanel implements Panel {
     this.element.append(this.noFindings, this.findings, this.displays);
     session.diagnosticsChanged.on(() => this.showFindings());
     const { displays } = session;
-    const show = coalesced(() => this.showDisplays());
+    const show = coalesce(() => this.showDisplays());
     for (const signal of [displays.statusChanged, displays.enabledChanged, displays.treeChanged]) {
       (signal as { on(listener: () => void): void }).on(show);
     }

@@ -1,4 +1,4 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { EditablePart } from "../../protocol";
 import type { HandleFrame } from "../../state/editing/editing";
@@ -6,7 +6,7 @@ import { ANGLE_STEPS } from "../../state/modeling/snapping";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { formatNumber, parseNumber } from "../../tree/numbers";
-import { choice } from "../../widgets/controls";
+import { createSelect } from "../../widgets/controls";
 import { UnitSwitch } from "../../widgets/unit-switch";
 import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
@@ -48,7 +48,7 @@ export class EditingPanel implements Panel {
     const numbers = h("div", { class: "editing-numbers" }, this.place, this.fields, this.createTools());
     this.workArea.append(numbers, new EditOutcome(editing).element);
     this.element = h("div", { class: "panel editing-panel" }, h("div", { class: "editing-body" }, this.hint, this.list, this.workArea));
-    const update = coalesced(() => this.update());
+    const update = coalesce(() => this.update());
     const follow = (): void => {
       const { current } = focus;
       const link = current && focus.linkOf(current);
@@ -191,11 +191,11 @@ export class EditingPanel implements Panel {
   private createTools(): HTMLElement {
     const texts = strings.editing;
     const { editing, angles } = this.session;
-    const frameSelect = choice<HandleFrame>(texts.frameHint, [["parent", texts.parentFrame], ["own", texts.ownFrame]], (value) => (editing.frame = value));
+    const frameSelect = createSelect<HandleFrame>(texts.frameHint, [["parent", texts.parentFrame], ["own", texts.ownFrame]], (value) => (editing.frame = value));
     const formatSteps = (values: readonly number[], unit: string): (readonly [string, string])[] => values.map((value) => [String(value), `${value}${unit}`]);
     const { snapping } = editing;
-    const lengthSelect = choice(strings.modeling.lengthStep, formatSteps(LENGTH_STEPS_M, " m"), (value) => (snapping.meters = Number(value)));
-    const angleSelect = choice(strings.modeling.angleStep, formatSteps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
+    const lengthSelect = createSelect(strings.modeling.lengthStep, formatSteps(LENGTH_STEPS_M, " m"), (value) => (snapping.meters = Number(value)));
+    const angleSelect = createSelect(strings.modeling.angleStep, formatSteps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
     const snapButton = button(texts.snap, () => (snapping.isEnabled = !snapping.isEnabled), "tool bare", icon("magnet"));
     const show = (): void => {
       snapButton.setAttribute("aria-pressed", String(snapping.isEnabled));

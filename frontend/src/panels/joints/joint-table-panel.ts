@@ -1,4 +1,4 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import type { JointDetails } from "../../protocol";
 import type { DescriptionModel } from "../../state/description-model";
 import { formatJointCells, COLUMNS, sortJoints, type Column } from "../../state/joint-table";
@@ -30,12 +30,12 @@ export class JointTablePanel implements Panel {
     const bar = h("div", { class: "toolbar" }, this.count, h("span", { class: "spacer" }), units.element);
     this.element = h("div", { class: "panel" }, bar, this.empty, this.box);
     const { description, focus, angles } = session;
-    const update = coalesced(() => this.update());
+    const update = coalesce(() => this.update());
     holdWhileVisible(this.element, () => description.hold(), update);
     description.arrived.on(update);
     session.robotChanged.on(update);
     angles.changed.on(update);
-    focus.changed.on(coalesced(() => this.markCurrent(true)));
+    focus.changed.on(coalesce(() => this.markCurrent(true)));
     this.update();
   }
 

@@ -13,6 +13,6 @@ export function askToCatchUp(state: CourseState, { new: newFiles, replaced: repl
   new Dialog(
     texts.catchUpTitle,
     [h("p", {}, texts.catchUpText), ...createPart(texts.catchUpReplaced(replacedFiles.length), replacedFiles), ...createPart(texts.catchUpNew(newFiles.length), newFiles)],
-    [{ label: strings.shell.cancel }, { label: texts.catchUpTake, run: () => (state.catchUp(), undefined), main: true }],
+    [{ label: strings.shell.cancel }, { label: texts.catchUpTake, run: () => (state.catchUp(), undefined), isMain: true }],
   ).open();
 }

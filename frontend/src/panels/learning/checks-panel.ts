@@ -1,9 +1,9 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { StepCheck } from "../../protocol";
 import type { CourseState } from "../../state/course";
 import { languageTag, strings } from "../../strings";
-import { keyText, SHORTCUTS } from "../../widgets/shortcuts";
+import { formatShortcut, SHORTCUTS } from "../../widgets/shortcuts";
 import type { Panel } from "../panel";
 import { askToCatchUp } from "./catch-up";
 import { localize } from "./local-text";
@@ -23,8 +23,8 @@ export class ChecksPanel implements Panel {
 
   constructor(private readonly state: CourseState) {
     const texts = strings.learning;
-    const checkButton = button(`${texts.checkHint} (${keyText(SHORTCUTS.checkStep)})`, () => state.check(), "tool framed", texts.check);
-    this.nextButton = button(`${texts.nextHint} (${keyText(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed primary", texts.nextStep);
+    const checkButton = button(`${texts.checkHint} (${formatShortcut(SHORTCUTS.checkStep)})`, () => state.check(), "tool framed", texts.check);
+    this.nextButton = button(`${texts.nextHint} (${formatShortcut(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed primary", texts.nextStep);
     this.offerBox = h("div", { class: "checks-offer" }, this.offerText, button(texts.catchUpHint, () => state.askCatchUp(), "tool framed", texts.catchUp));
     this.content = h(
       "div",
@@ -35,7 +35,7 @@ export class ChecksPanel implements Panel {
     );
     this.element = h("div", { class: "panel checks-panel" }, this.empty, this.content);
     state.catchUpAnswered.on((files) => askToCatchUp(state, files));
-    state.changed.on(coalesced(() => this.update()));
+    state.changed.on(coalesce(() => this.update()));
     this.update();
   }
 

@@ -1,9 +1,9 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { CourseState } from "../../state/course";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
-import { keyText, SHORTCUTS } from "../../widgets/shortcuts";
+import { formatShortcut, SHORTCUTS } from "../../widgets/shortcuts";
 import { nameOf } from "../place";
 import type { Panel } from "../panel";
 import { createLessonText } from "./lesson-text";
@@ -35,8 +35,8 @@ export class LessonPanel implements Panel {
     const texts = strings.learning;
     this.outline = new Outline(state, () => this.showOutline(false));
     this.outlineToggle = button(texts.outlineHint, () => this.showOutline(!this.isOutlineShown), "tool framed", icon("tree"), texts.outline);
-    this.backButton = button(`${texts.backHint} (${keyText(SHORTCUTS.previousStep)})`, () => state.move(-1), "tool framed", texts.back);
-    this.nextButton = button(`${texts.nextHint} (${keyText(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed", texts.next);
+    this.backButton = button(`${texts.backHint} (${formatShortcut(SHORTCUTS.previousStep)})`, () => state.move(-1), "tool framed", texts.back);
+    this.nextButton = button(`${texts.nextHint} (${formatShortcut(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed", texts.next);
     this.hintButton = button(texts.hintHint, () => state.takeHint(), "tool framed", icon("bulb"), texts.hint);
     this.solutionButton = button(texts.solutionHint, () => this.askForSolution(), "tool framed", texts.solution);
     this.answerField.setAttribute("aria-label", texts.answer);
@@ -55,7 +55,7 @@ export class LessonPanel implements Panel {
     );
     this.element = h("div", { class: "panel lesson-panel" }, this.empty, this.course);
     this.showOutline(false);
-    state.changed.on(coalesced(() => this.update()));
+    state.changed.on(coalesce(() => this.update()));
     this.update();
   }
 
@@ -143,7 +143,7 @@ export class LessonPanel implements Panel {
     const answerNote = (this.state.step?.unit ?? null) === null ? [] : [h("p", {}, texts.solutionNumber)];
     new Dialog(texts.solutionTitle, [...(files.length > 0 ? copiedFiles : []), ...answerNote], [
       { label: strings.shell.cancel },
-      { label: texts.solutionTake, run: () => (this.state.takeSolution(), undefined), main: true },
+      { label: texts.solutionTake, run: () => (this.state.takeSolution(), undefined), isMain: true },
     ]).open();
   }
 }

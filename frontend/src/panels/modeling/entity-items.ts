@@ -88,11 +88,11 @@ function parseChannels(text: string): number[] {
 }
 
 function createGroup(key: string, name: string, items: readonly TreeItem[]): TreeItem {
-  return { key, name, kind: "group", value: "", description: "", strong: true, expanded: true, children: () => items };
+  return { key, name, kind: "group", value: "", description: "", isStrong: true, isExpanded: true, children: () => items };
 }
 
 function createNote(key: string, name: string, value = ""): TreeItem {
-  return { key, name, kind: "group", value, description: "", strong: value === "" };
+  return { key, name, kind: "group", value, description: "", isStrong: value === "" };
 }
 
 /** Returns the value that all entities share; null if they differ. */

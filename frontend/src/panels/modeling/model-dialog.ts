@@ -24,7 +24,7 @@ export class ModelDialog {
     this.dialog = new Dialog(
       texts.models,
       [h("div", { class: "search-box" }, icon("search"), this.search), this.list],
-      [{ label: strings.shell.cancel }, { label: texts.choose, main: true, run: () => this.accept() }],
+      [{ label: strings.shell.cancel }, { label: texts.choose, isMain: true, run: () => this.accept() }],
       "add-dialog",
     );
     const unsubscribe = modeling.modelsArrived.on((models) => {
@@ -63,7 +63,7 @@ export class ModelDialog {
 
   private choose(model: ModelChoice | null): void {
     this.chosenModel = model;
-    this.dialog.ready = model !== null;
+    this.dialog.isReady = model !== null;
     [...this.list.querySelectorAll<HTMLElement>("[role=option]")].forEach((row, index) => {
       const isChosen = this.listedModels[index] === model;
       row.setAttribute("aria-selected", String(isChosen));

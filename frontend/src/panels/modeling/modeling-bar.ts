@@ -3,7 +3,7 @@ import { icon, type IconName } from "../../icons";
 import type { GizmoMode, Modeling, Placing } from "../../state/modeling/modeling";
 import type { NewKind } from "../../state/modeling/shapes";
 import { strings } from "../../strings";
-import { keyText, type Shortcut } from "../../widgets/shortcuts";
+import { formatShortcut, type Shortcut } from "../../widgets/shortcuts";
 import { ModelDialog } from "./model-dialog";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
 
@@ -108,5 +108,5 @@ function setPressed(element: HTMLButtonElement, isPressed: boolean): void {
 }
 
 function appendKeys(label: string, shortcut: Shortcut): string {
-  return `${label} (${keyText(shortcut)})`;
+  return `${label} (${formatShortcut(shortcut)})`;
 }

@@ -5,8 +5,8 @@ import type { Modeling } from "../../state/modeling/modeling";
 import { ANGLE_STEPS, LENGTH_STEPS } from "../../state/modeling/snapping";
 import { strings } from "../../strings";
 import { TreeView } from "../../tree/tree-view";
-import { choice } from "../../widgets/controls";
-import { keyText, type Shortcut } from "../../widgets/shortcuts";
+import { createSelect } from "../../widgets/controls";
+import { formatShortcut, type Shortcut } from "../../widgets/shortcuts";
 import { UnitSwitch } from "../../widgets/unit-switch";
 import type { Panel } from "../panel";
 import { shortenPath } from "../place";
@@ -68,8 +68,8 @@ export class WorldPanel implements Panel {
     const texts = strings.modeling;
     const { snapping } = this.modeling;
     const formatSteps = (values: readonly number[], unit: string): (readonly [string, string])[] => values.map((value) => [String(value), `${value}${unit}`]);
-    const lengthSelect = choice(texts.lengthStep, formatSteps(LENGTH_STEPS, " m"), (value) => (snapping.meters = Number(value)));
-    const angleSelect = choice(texts.angleStep, formatSteps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
+    const lengthSelect = createSelect(texts.lengthStep, formatSteps(LENGTH_STEPS, " m"), (value) => (snapping.meters = Number(value)));
+    const angleSelect = createSelect(texts.angleStep, formatSteps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
     const show = (): void => {
       lengthSelect.value = String(snapping.meters);
       angleSelect.value = String(snapping.degrees);
@@ -81,5 +81,5 @@ export class WorldPanel implements Panel {
 }
 
 function createAction(label: string, keys: Shortcut, name: IconName, run: () => void): HTMLButtonElement {
-  return button(`${label} (${keyText(keys)})`, run, "tool bare", icon(name));
+  return button(`${label} (${formatShortcut(keys)})`, run, "tool bare", icon(name));
 }

@@ -1,4 +1,4 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { TopicChoice } from "../../protocol";
 import { largestRoot } from "../../state/frame-tree";
@@ -24,7 +24,7 @@ export class FrameNotice {
   constructor(private readonly session: Session) {
     const { displays, frames, configuration } = session;
     this.element.hidden = true;
-    const updateFrame = coalesced(() => this.updateFrame());
+    const updateFrame = coalesce(() => this.updateFrame());
     for (const signal of [displays.treeChanged, frames.tableChanged]) signal.on(updateFrame);
     displays.statusChanged.on(updateFrame);
     displays.valueChanged.on(updateFrame);

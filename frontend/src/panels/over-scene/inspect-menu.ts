@@ -1,4 +1,4 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { Inspected } from "../../state/inspect";
 import { formatGeneral } from "../../state/number-text";
@@ -33,7 +33,7 @@ export class InspectMenu {
     this.card.append(...CHOICES.map((choice) => this.createChoice(choice)), this.createDepthRow(), this.createScaleRow(), this.facts);
     this.element.append(this.openButton, this.card);
     const { inspect, description, robotChanged } = session;
-    const show = coalesced(() => this.show());
+    const show = coalesce(() => this.show());
     inspect.changed.on(show);
     description.arrived.on(show);
     description.findingsArrived.on(show);

@@ -1,4 +1,4 @@
-import { coalesced, h } from "../../dom";
+import { coalesce, h } from "../../dom";
 import { formatBytes } from "../../scene/meshes/mesh-error";
 import type { MeshLoad, MeshProgress } from "../../state/mesh-progress";
 import { strings } from "../../strings";
@@ -11,7 +11,7 @@ export class MeshNotice {
   readonly element = h("div", { class: "line-notice", role: "status", data: { notice: "meshes" } });
 
   constructor(private readonly progress: MeshProgress) {
-    progress.changed.on(coalesced(() => this.update()));
+    progress.changed.on(coalesce(() => this.update()));
     this.update();
   }
 

@@ -1,4 +1,4 @@
-import { coalesced, h } from "../../dom";
+import { coalesce, h } from "../../dom";
 import type { Session } from "../../state/session";
 import type { Reduced } from "../../state/slow-connection";
 import type { SlowCause } from "../../state/slowness";
@@ -16,7 +16,7 @@ export class SlowNotice {
   private slowPageNotice: "not yet" | "now" | "done" = "not yet";
 
   constructor(private readonly session: Session) {
-    const update = coalesced(() => this.update());
+    const update = coalesce(() => this.update());
     session.slowConnection.changed.on(update);
     session.slowness.changed.on(update);
     session.displays.treeChanged.on(update);

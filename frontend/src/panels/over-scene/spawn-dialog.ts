@@ -59,7 +59,7 @@ export class SpawnDialog {
   /** Removes the message about the previous address. */
   private onAddressChanged(): void {
     this.fill();
-    this.dialog.ready = this.address.value.trim() !== "";
+    this.dialog.isReady = this.address.value.trim() !== "";
     this.problem.textContent = "";
   }
 
@@ -102,7 +102,7 @@ export class SpawnDialog {
     if (address === "" || numbers.some((number) => !Number.isFinite(number))) return false;
     const model = this.models?.find(({ name }) => name === address);
     this.simulation.spawn(model?.address ?? address, numbers);
-    this.dialog.ready = false;
+    this.dialog.isReady = false;
     this.problem.classList.remove("problem");
     this.problem.textContent = strings.simulation.adding;
     return false;
@@ -111,6 +111,6 @@ export class SpawnDialog {
   private showProblem(text: string): void {
     this.problem.classList.add("problem");
     this.problem.textContent = text;
-    this.dialog.ready = true;
+    this.dialog.isReady = true;
   }
 }

@@ -37,7 +37,7 @@ export function confirmRename(name: string, newName: string, files: readonly Ren
     const dialog = new Dialog(
       texts.renameTitle(name, newName),
       [h("p", {}, texts.renameCount(count, files.length)), region, ...notes],
-      [{ label: strings.shell.cancel }, { label: texts.rename, run: accept, main: true }],
+      [{ label: strings.shell.cancel }, { label: texts.rename, run: accept, isMain: true }],
       "rename-preview",
     );
     dialog.element.addEventListener("close", () => resolve(isWanted));

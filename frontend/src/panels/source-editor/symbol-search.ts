@@ -69,7 +69,7 @@ export class SymbolSearch {
       if (symbol) open(symbol.location);
     };
     const scopes = h("div", { class: "symbol-scopes", role: "group", aria: { label: texts.symbolsIn } }, ...this.scopes);
-    this.dialog = new Dialog(texts.symbols, [scopes, this.field, this.list, this.status], [{ label: strings.shell.cancel }, { label: texts.goTo, run: go, main: true }], "symbol-search");
+    this.dialog = new Dialog(texts.symbols, [scopes, this.field, this.list, this.status], [{ label: strings.shell.cancel }, { label: texts.goTo, run: go, isMain: true }], "symbol-search");
     this.field.addEventListener("input", () => this.searchLater());
     this.dialog.element.addEventListener("keydown", (event) => this.onKeyDown(event), true);
     this.list.addEventListener("click", ({ target }) => {
@@ -125,7 +125,7 @@ export class SymbolSearch {
     this.listedSymbols = symbols.slice(0, MAX_LISTED);
     this.list.replaceChildren(...this.listedSymbols.map((symbol, index) => this.optionOf(symbol, index)));
     this.status.textContent = strings.sourceEditor.symbolCount(symbols.length);
-    this.dialog.ready = symbols.length > 0;
+    this.dialog.isReady = symbols.length > 0;
     this.choose(0);
   }
 

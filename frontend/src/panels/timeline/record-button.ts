@@ -58,14 +58,14 @@ export class RecordButton {
       {
         label: texts.saveMinutes(extent ? formatLength(extent.end - extent.start) : ""),
         hint: texts.saveHint,
-        separate: true,
-        disabled: isSaving || extent === null,
+        hasLineAbove: true,
+        isDisabled: isSaving || extent === null,
         run: () => recording.save(null, null),
       },
       {
         label: texts.savePart(mark ? formatLength(mark.end - mark.start) : ""),
         hint: mark ? texts.saveHint : texts.markHint,
-        disabled: isSaving || mark === null,
+        isDisabled: isSaving || mark === null,
         run: () => mark && recording.save(mark.start, mark.end),
       },
       { label: texts.markStart, keys: "[", hint: texts.markHint, run: () => timeline.markHere("start") },
@@ -81,7 +81,7 @@ export class RecordButton {
           label: texts.fetch(file.name),
           hint: `${file.path}\n${formatAmount(file.length, file.size)}`,
           icon: "download",
-          separate: index === 0,
+          hasLineAbove: index === 0,
           run: () => downloadFile(file),
         }),
       ),
@@ -111,7 +111,7 @@ export class RecordButton {
         { label: strings.shell.ok },
         {
           label: texts.openHere,
-          main: true,
+          isMain: true,
           run: () => {
             this.session.recording.viewRequested.emit(file);
             return undefined;

@@ -17,7 +17,7 @@ export function chooseTopics(session: Session): void {
       { label: strings.shell.cancel },
       {
         label: texts.begin,
-        main: true,
+        isMain: true,
         run: () => {
           session.recording.record([...chosenTopics]);
           return undefined;
@@ -29,7 +29,7 @@ export function chooseTopics(session: Session): void {
   const fill = (): void => {
     // Listed rows must not move under the mouse: only new topics are added.
     const listedNames = new Set([...list.querySelectorAll("input")].map(({ value }) => value));
-    list.append(...topics.topics.filter(({ name }) => !listedNames.has(name)).map((topic) => createRow(topic, chosenTopics, () => (dialog.ready = chosenTopics.size > 0))));
+    list.append(...topics.topics.filter(({ name }) => !listedNames.has(name)).map((topic) => createRow(topic, chosenTopics, () => (dialog.isReady = chosenTopics.size > 0))));
   };
   topics.watchList(dialog, true);
   const unsubscribe = topics.listChanged.on(fill);
@@ -38,7 +38,7 @@ export function chooseTopics(session: Session): void {
     topics.watchList(dialog, false);
   });
   fill();
-  dialog.ready = false;
+  dialog.isReady = false;
   dialog.open(list.querySelector("input") ?? undefined);
 }
 

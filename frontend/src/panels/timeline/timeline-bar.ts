@@ -1,4 +1,4 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { HistoryExtent } from "../../protocol";
 import { TAKES_LETTERS } from "../../scene/keyboard";
@@ -87,7 +87,7 @@ export class TimelineBar {
     );
     timeline.changed.on(() => this.show());
     session.recording.changed.on(() => this.updateVisibility());
-    timeline.moved.on(coalesced(() => this.showPosition()));
+    timeline.moved.on(coalesce(() => this.showPosition()));
     new ResizeObserver(() => this.drawMarks()).observe(this.track);
     this.bindKeys();
     this.bindSceneKeys();

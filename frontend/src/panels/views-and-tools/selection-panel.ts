@@ -63,7 +63,7 @@ function createRow(key: string, { name, value = "", children }: DescriptionRow, 
     kind: "group",
     value,
     description: "",
-    expanded: isExpanded,
+    isExpanded,
     ...(children ? { children: () => children.map((child) => createRow(`${key}/${child.name}`, child, false)) } : {}),
   };
 }

@@ -1,7 +1,7 @@
 import { h } from "../../dom";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { propertyItem } from "../../tree/property-item";
+import { createPropertyItem } from "../../tree/property-item";
 import type { TreeItem } from "../../tree/tree-item";
 import { TreeView } from "../../tree/tree-view";
 import { translateToolName } from "../over-scene/toolbar";
@@ -36,9 +36,9 @@ export class ToolPropertiesPanel implements Panel {
         kind: "group",
         value: "",
         description: "",
-        strong: true,
-        expanded: true,
-        children: () => tool.rows.nodes.map((node) => propertyItem(node, (id, value) => tools.setProperty(id, value))),
+        isStrong: true,
+        isExpanded: true,
+        children: () => tool.rows.nodes.map((node) => createPropertyItem(node, (id, value) => tools.setProperty(id, value))),
       }));
     this.emptyHint.hidden = items.length > 0;
     return items;

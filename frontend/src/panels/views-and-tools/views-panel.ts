@@ -65,7 +65,7 @@ export class ViewsPanel implements Panel {
       ),
     );
     tree.element.addEventListener("keydown", (event) => this.onKeyDown(event), true);
-    tree.selected.on((item) => {
+    tree.itemSelected.on((item) => {
       const [owner] = item.key.split("|");
       this.chosenId = owner === CURRENT ? null : (owner ?? null);
       this.update();
@@ -102,8 +102,8 @@ export class ViewsPanel implements Panel {
         kind: "group",
         value: shortName(current.cls),
         description: "",
-        strong: true,
-        expanded: true,
+        isStrong: true,
+        isExpanded: true,
         children: () => createRows(CURRENT, view.properties, current.values, set),
       },
       ...view.savedViews.map(({ id, view: savedView }): TreeItem => ({

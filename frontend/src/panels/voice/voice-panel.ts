@@ -4,7 +4,7 @@ import type { ConversationPart } from "../../protocol";
 import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
 import { strings } from "../../strings";
-import { choice, textField, tickBox } from "../../widgets/controls";
+import { createSelect, createTextField, createTickBox } from "../../widgets/controls";
 import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { createEnrollHereButton, proposesEnrolling } from "./enroll-here";
@@ -23,11 +23,11 @@ export class VoicePanel implements Panel {
   private readonly meter = new LevelMeter(strings.voice.level);
   private readonly state = h("div", { class: "voice-state", role: "status" });
   private readonly history = h("div", { class: "voice-history", role: "log", tabIndex: 0, aria: { label: strings.voice.history } });
-  private readonly openMicrophoneBox: ReturnType<typeof tickBox>;
+  private readonly openMicrophoneBox: ReturnType<typeof createTickBox>;
   private readonly enrollProposal: HTMLElement;
   private readonly wordsBox: WordsBox;
   private readonly textNote = h("p", { class: "note" }, strings.voice.noTextListener);
-  private readonly speakBox: ReturnType<typeof tickBox>;
+  private readonly speakBox: ReturnType<typeof createTickBox>;
   private readonly voiceSelect: HTMLSelectElement;
   private readonly noVoicesNote = h("p", { class: "note" }, strings.voice.noVoices);
 
@@ -37,9 +37,9 @@ export class VoicePanel implements Panel {
   ) {
     const texts = strings.voice;
     const { speaker } = voice;
-    this.openMicrophoneBox = tickBox(texts.open, texts.openHint, (isTicked) => voice.setOpen(isTicked));
-    this.speakBox = tickBox(texts.speak, texts.speakHint, (isTicked) => speaker.configure({ on: isTicked }));
-    this.voiceSelect = choice(texts.voice, [], (voiceUri) => speaker.configure({ voice: voiceUri }));
+    this.openMicrophoneBox = createTickBox(texts.open, texts.openHint, (isTicked) => voice.setOpen(isTicked));
+    this.speakBox = createTickBox(texts.speak, texts.speakHint, (isTicked) => speaker.configure({ on: isTicked }));
+    this.voiceSelect = createSelect(texts.voice, [], (voiceUri) => speaker.configure({ voice: voiceUri }));
     const wordsBox = (this.wordsBox = new WordsBox(words, voice));
     this.enrollProposal = h("div", { class: "voice-proposal", role: "status" }, h("span", {}, texts.words.proposal), createEnrollHereButton(words));
     const clearButton = button(texts.clearHint, () => voice.clear(), "tool bare", icon("clear"));
@@ -84,7 +84,7 @@ export class VoicePanel implements Panel {
       this.voice.sendCommand(text);
       field.value = "";
     };
-    const field = textField(texts.command, () => undefined);
+    const field = createTextField(texts.command, () => undefined);
     field.placeholder = texts.commandShort;
     field.maxLength = 200;
     field.addEventListener("keydown", (event) => {

@@ -4,7 +4,7 @@ import type { EnrolledWord, TakeJudged } from "../../protocol";
 import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
 import { strings } from "../../strings";
-import { textField } from "../../widgets/controls";
+import { createTextField } from "../../widgets/controls";
 import { askName } from "../../widgets/dialog";
 import { saveText } from "../../widgets/save-file";
 import { describeObstacle } from "./voice-words";
@@ -35,7 +35,7 @@ export class WordsBox {
       words.addWord(field.value);
       field.value = "";
     };
-    const field = (this.field = textField(texts.choose, () => undefined));
+    const field = (this.field = createTextField(texts.choose, () => undefined));
     field.maxLength = 100;
     const suggestions = h("datalist", {}, ...texts.suggestions.map((suggestion) => new Option(suggestion)));
     suggestions.id = "voice-word-suggestions";
