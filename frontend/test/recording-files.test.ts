@@ -1,6 +1,6 @@
 import { describe, expect, it, vi } from "vitest";
-import { socketUrl } from "../src/connection/connection";
-import { withRecording, recordingIn } from "../src/connection/recording-address";
+import { createSocketUrl } from "../src/connection/connection";
+import { setRecordingName, readRecordingName } from "../src/connection/recording-address";
 import { findRecording } from "../src/shell/recording-files";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en, language: "en" }));
@@ -30,9 +30,9 @@ describe("dropped files", () => {
 
 describe("the page of a recording", () => {
   it("has a name in its address and that of its socket", () => {
-    const address = withRecording("http://localhost:7448/?displays=own", "abc");
-    expect(recordingIn(address)).toBe("abc");
-    expect(socketUrl(address)).toBe("ws://localhost:7448/ws?recording=abc");
-    expect(withRecording(address, null)).toBe("http://localhost:7448/?displays=own");
+    const address = setRecordingName("http://localhost:7448/?displays=own", "abc");
+    expect(readRecordingName(address)).toBe("abc");
+    expect(createSocketUrl(address)).toBe("ws://localhost:7448/ws?recording=abc");
+    expect(setRecordingName(address, null)).toBe("http://localhost:7448/?displays=own");
   });
 });

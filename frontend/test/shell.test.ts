@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { socketUrl } from "../src/connection/connection";
+import { createSocketUrl } from "../src/connection/connection";
 import { addressFor, hasOwnDisplays, ensureOwnKey } from "../src/shell/own-displays";
 import { chooseSaved } from "../src/shell/file-keys";
 import { ThemeState } from "../src/state/theme";
@@ -25,7 +25,7 @@ describe("own displays of a page", () => {
     expect(key).toMatch(/^[0-9a-f]{32}$/);
     expect(ensureOwnKey(tab)).toBe(key);
     expect(ensureOwnKey(storage())).not.toBe(key);
-    expect(socketUrl("http://localhost:7447/?token=abc&displays=own", key)).toBe(
+    expect(createSocketUrl("http://localhost:7447/?token=abc&displays=own", key)).toBe(
       `ws://localhost:7447/ws?own=${key}`,
     );
   });

@@ -1,4 +1,4 @@
-import { withRecording, recordingIn } from "../connection/recording-address";
+import { setRecordingName, readRecordingName } from "../connection/recording-address";
 import type { Tokens } from "../connection/tokens";
 import { RefusedError, Upload } from "../connection/upload";
 import { h } from "../dom";
@@ -90,7 +90,7 @@ export class RecordingDrop {
     dialog.open();
     try {
       const recording = await requestRecording(upload);
-      if (recording !== null) location.assign(withRecording(location.href, recording));
+      if (recording !== null) location.assign(setRecordingName(location.href, recording));
     } catch (error) {
       isFinished = true;
       dialog.close();
@@ -104,8 +104,8 @@ export class RecordingDrop {
 
   /** Returns to the live page, because the server closes recordings that no page has viewed for a while. */
   private leaveClosed(isLive: boolean): void {
-    if (!isLive || recordingIn(location.href) === null) return;
-    history.replaceState(history.state, "", withRecording(location.href, null));
+    if (!isLive || readRecordingName(location.href) === null) return;
+    history.replaceState(history.state, "", setRecordingName(location.href, null));
     showNotice(strings.recording.gone, strings.recording.goneHint);
   }
 }

@@ -1,5 +1,5 @@
 import type { Connection } from "../connection/connection";
-import { tokenOf, type Tokens } from "../connection/tokens";
+import { extractToken, type Tokens } from "../connection/tokens";
 import { button, h } from "../dom";
 import { strings } from "../strings";
 import { createLogo } from "../widgets/logo";
@@ -64,7 +64,7 @@ export class TokenScreen {
   }
 
   private submit(): void {
-    const token = tokenOf(this.field.value);
+    const token = extractToken(this.field.value);
     this.problem.textContent = token === null ? strings.door.noToken : "";
     if (token === null) {
       this.field.focus();
