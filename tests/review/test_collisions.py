@@ -46,6 +46,13 @@ def test_collision_at_home_is_reported(solid, compare):
     assert "links 'upper' and 'lower' collide at home" in collisions(compare, solid, text)
 
 
+@pytest.mark.parametrize("name", ["upper", "${prefix}upper"])
+def test_collision_that_a_semantic_description_disables_is_not_reported(solid, compare, name):
+    text = f'<robot name="arm"><disable_collisions link1="{name}" link2="lower" reason="Never"/></robot>'
+    solid.commit({"arm_description/srdf/arm.srdf.xacro": text})
+    assert collisions(compare, solid, SOLID.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"')) == []
+
+
 def test_existing_collision_is_not_reported(solid, compare):
     free = SOLID.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"')
     solid.commit({SEGMENT: free})

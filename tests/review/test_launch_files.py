@@ -71,13 +71,14 @@ YAML = """launch:
     ("old", "new", "expected", "is_breaking"),
     [
         ('"front")), actions', '"back")), actions',
-         ("remapping of 'scan' for all nodes, parameter 'use_sim_time' of all nodes, node 'lidar/driver', "
-          "node 'lidar/filter': condition if $(var front) -> if $(var back)"), False),
+         ("remapping of 'scan' for the nodes that follow, parameter 'use_sim_time' of the nodes that follow, "
+          "node 'lidar/driver', node 'lidar/filter': condition if $(var front) -> if $(var back)"), False),
         ('PushRosNamespace("front")', 'PushRosNamespace("back")',
          "node 'lidar/driver', node 'lidar/filter': namespace front -> back", True),
-        ('"scan_front"', '"scan_back"', "remapping of 'scan' for all nodes: to scan_front -> scan_back", True),
+        ('"scan_front"', '"scan_back"',
+         "remapping of 'scan' for the nodes that follow: to scan_front -> scan_back", True),
         ('"use_sim_time", True', '"use_sim_time", False',
-         "parameter 'use_sim_time' of all nodes: value True -> False", False),
+         "parameter 'use_sim_time' of the nodes that follow: value True -> False", False),
         ('"models"', '"worlds"', "environment variable 'GZ_SIM_RESOURCE_PATH': value models -> worlds", False),
         ('["fast", "slow"]', '["fast"]', "argument 'mode': choices [fast, slow] -> [fast]", True),
         ('{"min": 1}', '{"min": 2}', "node 'lidar/filter': parameter range.min 1 -> 2", False),
@@ -153,10 +154,11 @@ def test_launch_file_with_name_of_a_test_is_compared(changes_of):
         ('if="$(arg real)"', 'unless="$(arg real)"',
          "node 'arm/driver.py', include of 'other.launch': condition if $(arg real) -> unless $(arg real)", True),
         ('ns="left"', 'ns="right"', "node 'arm/driver.py': namespace left -> right", True),
-        ('to="front/scan"', 'to="back/scan"', "remapping of 'scan' for all nodes: to front/scan -> back/scan", True),
+        ('to="front/scan"', 'to="back/scan"',
+         "remapping of 'scan' for the nodes that follow: to front/scan -> back/scan", True),
         ('  <rosparam command="load" file="drive.yaml"/>\n', "", "parameters of 'drive.yaml' removed", False),
         ('"use_sim_time" value="true"', '"use_sim_time" value="false"',
-         "parameter 'use_sim_time' of all nodes: value true -> false", False),
+         "parameter 'use_sim_time' of the nodes that follow: value true -> false", False),
         ('"ROBOT" value="arm"', '"ROBOT" value="leg"', "environment variable 'ROBOT': value arm -> leg", False),
         ('<arg name="ur" default="$(arg ur)"/>', '<arg name="ur" default="ur10"/>',
          "include of 'other.launch': ur $(arg ur) -> ur10", False),
@@ -423,3 +425,47 @@ def test_added_launch_file_is_described_by_its_actions(repository, compare):
     repository.write({"arm/launch/part.launch.py": PYTHON})
     (sentence,) = sentences(subject(compare(repository), "arm/launch/part.launch.py"))
     assert sentence.startswith("launch file added: node 'lidar/driver', node 'lidar/filter', node 'arm/teleop'")
+
+
+FAILING = """import os, sys
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    model = os.environ.get("MODEL", "a")
+    return LaunchDescription([
+        Node(package="arm", executable="driver",
+             parameters=[{"rate": 10, "id": "1", "frame_name": "tool", "on": True}]),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("    return L", '    if model == "x":\n        raise RuntimeError("no such model")\n    return L',
+         "added: raise RuntimeError('no such model')", True),
+        ("    return L", '    if not model:\n        sys.exit("no model")\n    return L',
+         "added: sys.exit('no model')", True),
+        ("    return L", '    if model:\n        print(model)\n    return L',
+         "other code added: if model: ... and 1 more statement", False),
+        ('"rate": 10', '"rate": 10.0', "node 'arm/driver': parameter rate 10 -> 10.0", True),
+        ('"rate": 10', '"rate": 20', "node 'arm/driver': parameter rate 10 -> 20", False),
+        ('"id": "1"', '"id": 1', "node 'arm/driver': parameter id '1' -> 1", True),
+        ('"on": True', '"on": "true"', "node 'arm/driver': parameter on True -> 'true'", True),
+        ('"rate": 10', '"rate": model', "node 'arm/driver': parameter rate 10 -> os.environ.get(MODEL, a)", False),
+        ('"frame_name": "tool"', '"frame_name": 3', "node 'arm/driver': parameter frame_name tool -> 3", False),
+    ],
+)  # fmt: skip
+def test_failures_and_types_of_parameters_are_breaking(changes_of, old, new, expected, is_breaking):
+    changes, found_breaking = changes_of("arm.launch.py", FAILING, old, new)
+    assert changes == [expected]
+    assert bool(found_breaking) is is_breaking
+
+
+def test_other_message_of_an_exception_is_no_new_failure(changes_of):
+    check = '    if model == "x":\n        raise RuntimeError("no such model")\n    return L'
+    text = FAILING.replace("    return L", check)
+    changes, found_breaking = changes_of("arm.launch.py", text, "no such model", "no model of this name")
+    assert len(changes) == 1
+    assert not found_breaking

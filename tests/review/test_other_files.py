@@ -285,6 +285,17 @@ def test_interface_changes_are_reported(repository, compare, old, new, sentence,
     assert (breaking(result) == [sentence]) is is_breaking
 
 
+def test_renumbered_constants_are_one_change(repository, compare):
+    text = "uint8 OFF=0\nuint8 ON=1\nuint8 FAULT=2\nuint8 UNKNOWN=3\nuint8 state\n"
+    repository.commit({"m/msg/State.msg": text})
+    new = "uint8 OFF=0\nuint8 IDLE=1\nuint8 ON=2\nuint8 FAULT=3\nuint8 UNKNOWN=4\nuint8 state\n"
+    repository.write({"m/msg/State.msg": new})
+    renumbered = "3 constants have other values: ON 1 -> 2, FAULT 2 -> 3, UNKNOWN 3 -> 4"
+    result = compare(repository)
+    assert sentences(subject(result, "m/msg/State.msg")) == ["constant 'IDLE' = 1 added", renumbered]
+    assert breaking(result) == [renumbered]
+
+
 def test_comment_in_interface_is_not_reported(repository, compare):
     repository.commit({"m/msg/Count.msg": "int32 count\n"})
     repository.write({"m/msg/Count.msg": "# How many\nint32 count\n"})
@@ -454,3 +465,42 @@ def test_files_that_are_not_compared_have_their_states(package, compare):
         "  a/same.txt",
         "  a/textures/ (5 files, added)",
     ]
+
+
+YARD = """<sdf version="1.9"><world name="yard"><plugin name="p" filename="gz-sim-physics-system"/>
+  <model name="box"><link name="l"/></model>
+  <include><uri>model://sun</uri></include><include><name>gate</name><uri>model://door</uri></include></world></sdf>"""
+CAR = """<sdf version="1.9"><model name="car"><link name="body"/><link name="wheel"/>
+  <joint name="axle" type="revolute"><parent>body</parent><child>wheel</child></joint></model></sdf>"""
+RVIZ = """Visualization Manager:
+  Displays:
+    - {Class: rviz_default_plugins/Grid, Name: Grid}
+    - {Class: rviz_default_plugins/LaserScan, Name: Laser, Topic: {Value: /scan}}
+"""
+SRDF = '<robot name="arm"><group name="arm"/><group_state name="home" group="arm"/></robot>'
+BRIDGE = "- {ros_topic_name: /scan, gz_topic_name: /lidar, ros_type_name: a/msg/B, gz_type_name: gz.msgs.C}\n"
+CUBE = "v 0 0 0\nv 2 0 0\nv 0 3 0\nf 1 2 3\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "expected"),
+    [
+        ("worlds/yard.sdf", YARD, "world added: models box, sun, gate, plugin 'p'"),
+        ("models/car/model.sdf", CAR, "world added: links body, wheel, joints axle"),
+        ("msg/Count.msg", "uint8 MAX=3\nint32 count\nstring[] names\n",
+         "interface added: int32 count, string[] names"),
+        ("srv/Ask.srv", "int32 a\n---\nbool b\n", "interface added: int32 request a, bool response b"),
+        ("config/nav.yaml", "amcl:\n  ros__parameters: {alpha1: 0.1, alpha2: 0.2}\n",
+         "parameter file added: parameters of amcl (2)"),
+        ("config/settings.yaml", "speed: 1\nnames: [a, b]\n", "parameter file added: speed, names"),
+        ("config/bridge.yaml", BRIDGE, "parameter file added: bridged topics /scan"),
+        ("rviz/arm.rviz", RVIZ, "RViz configuration added: displays Grid, Laser /scan"),
+        ("srdf/arm.srdf", SRDF, "semantic description added: group 'arm', group_state 'arm/home'"),
+        ("meshes/cube.obj", CUBE, "mesh added: 1 triangle, 2 x 3 x 0 in the units of the file"),
+        ("rviz/broken.rviz", "a: [", "RViz configuration added"),
+    ],
+)  # fmt: skip
+def test_added_file_is_described_by_its_contents(repository, compare, name, text, expected):
+    repository.commit({"p/package.xml": PACKAGE_XML.replace("arm_description", "p")})
+    repository.write({f"p/{name}": text})
+    assert sentences(subject(compare(repository), f"p/{name}")) == [expected]

@@ -10,7 +10,7 @@ from html.parser import HTMLParser
 import pytest
 
 from linkwright.cli import main
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import Diagnostic, SourceText, phrase
 from linkwright.review import Change, Review, Subject, SubjectKind
 from linkwright.review.reports import as_data, as_diagnostics, as_html, as_markdown, as_text
 from tests.repositories import ARM, MACRO
@@ -239,3 +239,12 @@ def test_only_the_arguments_that_differ_are_named():
     cases = ["dof:=7 tool:=none pose:=0 0 1", "dof:=7 tool:=probe pose:=0 0 1"]
     subject = Subject(SubjectKind.DESCRIPTION, "a.urdf", "a.urdf", "a.urdf", [change], cases=cases)
     assert "a change (with tool:=probe)" in as_text(Review("a", "b", [subject]))
+
+
+def test_equal_findings_at_several_lines_are_one_line():
+    spans = [SourceText("a.urdf", "x\n" * 5).span(offset, offset + 1) for offset in (0, 2, 4)]
+    findings = [Diagnostic("URDF999", phrase("wrong"), span=span) for span in spans]
+    report = as_text(Review("a", "b", new_findings=[*findings, Diagnostic("URDF999", phrase("odd"), span=spans[0])]))
+    lines = report.splitlines()
+    assert lines[1:3] == ["  a.urdf:1: error[URDF999] wrong (3 times)", "  a.urdf:1: error[URDF999] odd"]
+    assert "4 new findings" in lines[-1]

@@ -57,3 +57,19 @@ def test_changed_mesh_is_shown(images_of):
     images = images_of("w/meshes/m.stl", stl(1.0), stl(2.0))
     assert len(images) == 4
     assert images[0].old != images[0].new
+
+
+@pytest.mark.parametrize(("path", "data"), [("w/worlds/w.sdf", world(FIXED)), ("w/meshes/m.stl", stl(1.0))])
+def test_world_and_mesh_of_one_version_are_shown(repository, path, data):
+    repository.commit({"README.md": "w"})
+    repository.commit({path: data})
+    repository.commit({path: None})
+    for revisions, names in (("HEAD~2..HEAD~1", ("new", "old")), ("HEAD~1..HEAD", ("old", "new"))):
+        versions = open_versions(repository.root, revisions)
+        try:
+            (subject,) = review(versions, with_images=True).subjects
+        finally:
+            versions.close()
+        shown, missing = names
+        assert len(subject.images) == 4
+        assert all(getattr(view, shown) and not getattr(view, missing) for view in subject.images)

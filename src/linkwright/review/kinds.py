@@ -12,15 +12,15 @@ from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import SubjectKind
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.cmake_files import CMAKE_FILE, compare_cmake_files
-from linkwright.review.files.interfaces import compare_interfaces
+from linkwright.review.files.interfaces import compare_interfaces, interface_contents
 from linkwright.review.files.manifests import compare_manifests
 from linkwright.review.files.maps import compare_maps
-from linkwright.review.files.meshes import compare_meshes
-from linkwright.review.files.parameter_files import compare_parameter_files
-from linkwright.review.files.rviz_files import compare_rviz_files
-from linkwright.review.files.semantics import compare_semantics
+from linkwright.review.files.meshes import compare_meshes, mesh_contents
+from linkwright.review.files.parameter_files import compare_parameter_files, parameter_contents
+from linkwright.review.files.rviz_files import compare_rviz_files, rviz_contents
+from linkwright.review.files.semantics import compare_semantics, semantic_contents
 from linkwright.review.files.setup_files import SETUP_FILE, compare_setup_files
-from linkwright.review.files.worlds import compare_worlds
+from linkwright.review.files.worlds import compare_worlds, world_contents
 from linkwright.review.launches.contents import launch_contents
 from linkwright.review.launches.files import compare_launch_files
 from linkwright.review.robots.descriptions import compare_descriptions
@@ -69,6 +69,7 @@ _RULES = (
         phrase("world added"),
         phrase("world removed"),
         phrase("launch files and users that name the file do not find it"),
+        contents=world_contents,
     ),
     KindRule(
         SubjectKind.LAUNCH_FILE,
@@ -86,6 +87,7 @@ _RULES = (
         phrase("interface added"),
         phrase("interface removed"),
         phrase("programs that use the type do not build or start"),
+        contents=interface_contents,
     ),
     KindRule(
         SubjectKind.MANIFEST,
@@ -116,6 +118,7 @@ _RULES = (
         phrase("semantic description added"),
         phrase("semantic description removed"),
         phrase("launch files and programs that name the file do not find it"),
+        contents=semantic_contents,
     ),
     KindRule(
         SubjectKind.RVIZ,
@@ -124,14 +127,24 @@ _RULES = (
         phrase("RViz configuration added"),
         phrase("RViz configuration removed"),
         phrase("launch files and users that name the file do not find it"),
+        contents=rviz_contents,
     ),
-    KindRule(SubjectKind.MAP, compare_maps, (".pgm",), phrase("map added"), phrase("map removed")),
+    KindRule(
+        SubjectKind.MAP,
+        compare_maps,
+        (".pgm",),
+        phrase("map added"),
+        phrase("map removed"),
+        phrase("launch files and users that name the file do not find it"),
+    ),
     KindRule(
         SubjectKind.PARAMETERS,
         compare_parameter_files,
         _YAML_SUFFIXES,
         phrase("parameter file added"),
         phrase("parameter file removed"),
+        phrase("launch files and users that name the file do not find it"),
+        contents=parameter_contents,
     ),
     KindRule(
         SubjectKind.MESH,
@@ -140,6 +153,7 @@ _RULES = (
         phrase("mesh added"),
         phrase("mesh removed"),
         phrase("descriptions of other packages that name the file do not find it"),
+        contents=mesh_contents,
     ),
 )
 

@@ -19,7 +19,8 @@ from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind, ViewImages, nesting_problem
 from linkwright.review.drawings.images import lone_images
-from linkwright.review.file_pair import Drawings, FilePair
+from linkwright.review.drawings.scene_images import lone_scene_images
+from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.mesh_groups import grouped_meshes
 from linkwright.review.files.plugin_files import plugin_subjects
@@ -291,14 +292,20 @@ def _compare(
 
 def _added_text(rule: KindRule, version: Version, path: str) -> Phrase:
     """Return the line about an added file, with its contents where they are known."""
-    contents = None if rule.contents is None else rule.contents(version, path)
+    try:
+        contents = None if rule.contents is None else rule.contents(version, path)
+    except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError, MemoryError):
+        contents = None
     return rule.added if contents is None else phrase("{change}: {items}", change=rule.added, items=contents)
 
 
 def _lone_contents(
     version: Version, kind: SubjectKind, path: str, drawings: Drawings
 ) -> tuple[list[Change], list[ViewImages]]:
-    """Return the line about the robot of a description that only one version has, and images of it."""
+    """Return the line about the robot of a description that only one version has, and images of what it shows."""
+    if kind in (SubjectKind.WORLD, SubjectKind.MESH):
+        is_mesh = kind is SubjectKind.MESH
+        return [], lone_scene_images(version, path, is_mesh=is_mesh) if drawings.images else []
     found = read_lone_robot(version, path) if kind is SubjectKind.DESCRIPTION else None
     if found is None:
         return [], []

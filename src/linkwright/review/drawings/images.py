@@ -11,7 +11,7 @@ from linkwright.descriptions.comparison import Comparison
 from linkwright.descriptions.pairs import Model, Pair
 from linkwright.geometry.shapes import Placement
 from linkwright.images.png import png
-from linkwright.picture import OUTLINE_COLOR, VIEWS, SurfaceLibrary, camera_for, render, robot_scene
+from linkwright.picture import OUTLINE_COLOR, VIEWS, Scene, SurfaceLibrary, camera_for, render, robot_scene
 from linkwright.picture.link_frames import exact_placement
 from linkwright.review.changes import ViewImages
 from linkwright.review.frames import SharedFrames
@@ -62,7 +62,11 @@ def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison, fr
 
 def lone_images(model: Model, robot: Robot, *, is_old: bool) -> list[ViewImages]:
     """Return images from four sides of a robot that only one version has, or none if it has no visuals."""
-    scene = robot_scene(robot, model.finder, folder=model.path.parent)
+    return images_of_scene(robot_scene(robot, model.finder, folder=model.path.parent), is_old=is_old)
+
+
+def images_of_scene(scene: Scene, *, is_old: bool) -> list[ViewImages]:
+    """Return images from four sides of a scene that only one version has, or none if it is empty."""
     if not len(scene.mesh.faces):
         return []
     images = []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from linkwright.picture.bodies import Body, Surface
 from linkwright.picture.camera import fitting_camera
 from linkwright.picture.worlds import world_scene
 from linkwright.review.changes import ViewImages
+from linkwright.review.drawings.images import images_of_scene
 from linkwright.review.file_pair import FilePair
 from linkwright.review.versions import Version
 from linkwright.sdf.frames import FrameError
@@ -48,6 +50,20 @@ def mesh_images(pair: FilePair) -> list[ViewImages]:
     except LinkwrightError:
         return []
     return _images(old, new, outline=False)
+
+
+def lone_scene_images(version: Version, path: str, *, is_mesh: bool) -> list[ViewImages]:
+    """Return images from four sides of a world, model or mesh that only one version has, or none if it is not drawn."""
+    file = version.file(path)
+    scene: Scene | None = None
+    if is_mesh:
+        with suppress(LinkwrightError):
+            scene = _mesh_scene(file)
+    else:
+        scene = _world_scene(version, file, SurfaceLibrary())
+    if scene is None or len(scene.mesh.faces) > _MAX_FACES:
+        return []
+    return images_of_scene(scene, is_old=version.is_old)
 
 
 def _world_scene(version: Version, file: Path, library: SurfaceLibrary) -> Scene | None:

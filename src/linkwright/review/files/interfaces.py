@@ -6,14 +6,19 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.messages.definitions.interfaces import Constant, Definition, Field, structures_of
 from linkwright.messages.definitions.library import TrustedMessages, parse_source, read_source
 from linkwright.packages import enclosing_package
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
+from linkwright.review.versions import Version
 
 _SEPARATOR = "---"
+_MAX_FIELDS = 10
+"""The number of fields that the line about an added interface names."""
+_MIN_RENUMBERED = 3
+"""The number of constants with other values from which they are one line. An inserted value renumbers those below."""
 _PARTS = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
 """The names of the structures of a message, a service and an action, in front of the names of fields."""
 
@@ -32,6 +37,17 @@ def compare_interfaces(pair: FilePair) -> None:
         places = _Places(pair, index)
         _compare_fields(pair, old_part.fields, new_part.fields, name, places)
         _compare_constants(pair, old_part.constants, new_part.constants, name, places)
+
+
+def interface_contents(version: Version, path: str) -> Phrase | None:
+    """Return the fields of an interface with their types, or None if there are none."""
+    parts = structures_of(_read(version.file(path)))
+    names = [
+        f"{field.type.to_msg_text()} {part}{field.name}"
+        for structure, part in zip(parts, _PARTS[len(parts)], strict=True)
+        for field in structure.fields
+    ]
+    return joined_first(names, _MAX_FIELDS) if names else None
 
 
 def _read(file: Path) -> Definition:
@@ -111,16 +127,25 @@ def _compare_constants(
     pair: FilePair, old: Sequence[Constant], new: Sequence[Constant], part: str, places: _Places
 ) -> None:
     old_values, new_values = ({constant.name: constant.value for constant in constants} for constants in (old, new))
-    for name in dict.fromkeys([*new_values, *old_values]):
-        before, after = old_values.get(name), new_values.get(name)
+    for name, value in new_values.items():
         if name not in old_values:
-            text = phrase("constant '{name}' = {value} added", name=part + name, value=str(after))
-            pair.add(text, places.of(name))
-        elif name not in new_values:
+            pair.add(phrase("constant '{name}' = {value} added", name=part + name, value=str(value)), places.of(name))
+    for name in old_values:
+        if name not in new_values:
             reason = phrase("programs that use the constant do not build or start")
             text = phrase("constant '{name}' removed", name=part + name)
             pair.add(text, places.of(name, is_old=True), reason)
-        elif before != after:
-            reason = phrase("programs that were built with the old value send or expect another one")
-            text = phrase("constant '{name}': {old} -> {new}", name=part + name, old=str(before), new=str(after))
+    changes = [
+        (name, str(old_values[name]), str(value))
+        for name, value in new_values.items()
+        if name in old_values and old_values[name] != value
+    ]
+    reason = phrase("programs that were built with the old value send or expect another one")
+    if len(changes) < _MIN_RENUMBERED:
+        for name, before, after in changes:
+            text = phrase("constant '{name}': {old} -> {new}", name=part + name, old=before, new=after)
             pair.add(text, places.of(name), reason)
+        return
+    items = ", ".join(f"{part}{name} {before} -> {after}" for name, before, after in changes)
+    text = phrase("{count} constants have other values: {changes}", count=len(changes), changes=items)
+    pair.add(text, places.of(changes[0][0]), reason)

@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 from linkwright.descriptions.comparison import has_same_bytes
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.files.git_repository import lfs_hash
 from linkwright.geometry.meshes import TriangleMesh, read_mesh
 from linkwright.review.changes import Figure
 from linkwright.review.drawings.scene_images import mesh_images
 from linkwright.review.file_pair import FilePair, LimitError
+from linkwright.review.versions import Version
 
-MESH_SUFFIXES = (".stl", ".dae", ".obj", ".glb", ".gltf")
 _MAX_BYTES = 100 << 20
 """Larger meshes are compared by their sizes in bytes only."""
 _TOLERANCE = 1e-6
@@ -45,6 +45,19 @@ def compare_meshes(pair: FilePair) -> None:
             pair.figures.append(Figure(name, old_text, new_text))
     if not pair.figures:
         pair.add(phrase("contents changed, with the same triangles and size"), None)
+
+
+def mesh_contents(version: Version, path: str) -> Phrase:
+    """Return the number of triangles and the size of a mesh, in the units of the file."""
+    mesh = _read(version.file(path))
+    low, high = mesh.bounds
+    size = " x ".join(f"{b - a:.3g}" for a, b in zip(low, high, strict=True))
+    return counted(
+        "{count} triangle, {size} in the units of the file",
+        "{count} triangles, {size} in the units of the file",
+        mesh.count,
+        size=size,
+    )
 
 
 def _read(file: Path) -> TriangleMesh:

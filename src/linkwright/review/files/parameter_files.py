@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import yaml
 
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.files.bridges import compare_bridges, read_bridges
@@ -15,6 +17,7 @@ from linkwright.review.files.parameter_names import (
     NameRules,
     has_other_type,
     is_parameter,
+    node_of_parameter,
     part_names,
     renamed_node_reason,
     renamed_parts,
@@ -22,8 +25,11 @@ from linkwright.review.files.parameter_names import (
 from linkwright.review.files.value_changes import ValueChange, merged_values
 from linkwright.review.files.yaml_lists import item_labels
 from linkwright.review.files.yaml_values import YamlType, YamlValue, composed, yaml_values
+from linkwright.review.versions import Version
 
 _MAX_BYTES = 4 << 20
+_MAX_NAMES = 8
+"""The number of nodes, topics or keys that the line about an added file names."""
 
 
 def compare_parameter_files(pair: FilePair) -> None:
@@ -40,6 +46,24 @@ def compare_parameter_files(pair: FilePair) -> None:
     roots = pair.read(lambda file: _root(texts[file == pair.new_file]))
     if roots is not None:
         pair.changes += merged_values(_changes(pair, *roots))
+
+
+def parameter_contents(version: Version, path: str) -> Phrase | None:
+    """Return the nodes with the numbers of their parameters, or the top-level keys of other files; None for others."""
+    text = _read(version.file(path))
+    bridges = read_bridges(text)
+    if bridges:
+        return phrase("bridged topics {names}", names=joined_first([bridge.topic for bridge in bridges], _MAX_NAMES))
+    root = _root(text)
+    if not isinstance(root, yaml.MappingNode):
+        return None
+    values = yaml_values(root, {})
+    counts = Counter(node for node in map(node_of_parameter, values) if node is not None)
+    if counts:
+        names = [f"{node} ({count})" for node, count in counts.items()]
+        return phrase("parameters of {names}", names=joined_first(names, _MAX_NAMES))
+    keys = dict.fromkeys(re.split(r"[.\[]", name, maxsplit=1)[0] for name in values)
+    return joined_first(list(keys), _MAX_NAMES) if keys else None
 
 
 def _root(text: str) -> yaml.Node | None:

@@ -63,15 +63,7 @@ class NameRules:
             return name_reason(", ".join(sorted(gone)))
         if gone and _PLUGINS.search(parameter):
             return _plugin_reason(gone)
-        return self._type_reason(parameter, old_value, new_value)
-
-    def _type_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
-        """Return why another type is breaking: a node that declares a parameter refuses values of other types."""
-        if not _NODE.match(parameter) or not has_other_type(old, new):
-            return None
-        return phrase(
-            "a node that declares the parameter as {old} does not accept {new}", old=old.type_name, new=new.type_name
-        )
+        return type_reason(old_value, new_value) if is_parameter(parameter) else None
 
     def removal_reason(self, parameter: str, old: str) -> Phrase | None:
         """Return why a removed parameter is breaking, or None if it is not.
@@ -113,11 +105,26 @@ def is_parameter(name: str) -> bool:
     return _NODE.match(name) is not None
 
 
+def node_of_parameter(name: str) -> str | None:
+    """Return the name of the node in the path of a parameter, or None for another path."""
+    match = _NODE.match(name)
+    return None if match is None else match["node"]
+
+
 def has_other_type(old: YamlValue, new: YamlValue) -> bool:
     """Return whether two values have types that differ. Empty values fit all types."""
     if old.is_list != new.is_list and None not in (old.type, new.type):
         return True
     return None not in (old.type, new.type) and old.type is not new.type
+
+
+def type_reason(old: YamlValue, new: YamlValue) -> Phrase | None:
+    """Return why it is breaking that a parameter has a value of another type, or None if the type is the same."""
+    if not has_other_type(old, new):
+        return None
+    return phrase(
+        "a node that declares the parameter as {old} does not accept {new}", old=old.type_name, new=new.type_name
+    )
 
 
 def _plugin_reason(names: Collection[str]) -> Phrase:

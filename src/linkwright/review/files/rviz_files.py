@@ -8,10 +8,11 @@ from pathlib import Path
 
 import yaml
 
-from linkwright.diagnostics import Phrase, counted, joined, phrase, quoted_names
+from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase, quoted_names
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.files.yaml_values import composed, read_yaml_values
+from linkwright.review.versions import Version
 
 _MANAGER = "Visualization Manager"
 _GLOBAL = f"{_MANAGER}.Global Options."
@@ -20,6 +21,8 @@ _IGNORED = frozenset({"Class", "Name", "Value", "Displays", "Links", "Frames", "
 """The properties of displays that are shown elsewhere, or that RViz fills from the data that it received."""
 _COMPUTED = frozenset({"Min Intensity", "Max Intensity", "Min Value", "Max Value", "Min Color", "Max Color"})
 _TOPIC = "Topic"
+_MAX_DISPLAYS = 10
+"""The number of displays that the line about an added configuration names."""
 _MAX_PROPERTIES = 4
 """The number of properties of a display that a line shows."""
 
@@ -69,6 +72,13 @@ def compare_rviz_files(pair: FilePair) -> None:
         ((old.panels, new.panels), phrase("panels")),
     ):
         _compare_classes(pair, *items, title)
+
+
+def rviz_contents(version: Version, path: str) -> Phrase | None:
+    """Return the displays of a configuration with their topics, or None if there are none."""
+    displays = _read(version.file(path)).displays
+    names = [f"{display.name} {display.topic}".rstrip() for display in displays]
+    return phrase("displays {names}", names=joined_first(names, _MAX_DISPLAYS)) if names else None
 
 
 def _read(file: Path) -> _Configuration:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.diagnostics import Phrase, counted, joined_first, phrase, term
+from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined_first, phrase, term
 from linkwright.review.file_pair import FilePair
+from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element
 
 _NAMED = ("group", "group_state", "end_effector", "virtual_joint", "passive_joint")
 _PAIRS = ("disable_collisions", "enable_collisions")
+_EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)")
 _MAX_PARTS = 8
 """The number of joints, members or pairs of links that a line names."""
 
@@ -56,6 +60,28 @@ def compare_semantics(pair: FilePair) -> None:
             pair.add(phrase("{entry} removed", entry=_title(entry)), location, removal_reason(entry.tag, entry.name))
     for tag in _PAIRS:
         _compare_pairs(pair, tag, *(_pairs(root, tag) for root in roots))
+
+
+def semantic_contents(version: Version, path: str) -> Phrase | None:
+    """Return the groups, states and other named elements of a semantic description, or None if there are none."""
+    titles = [_title(entry) for entry in _entries(_root(version.file(path)))]
+    return joined_first(titles, _MAX_PARTS) if titles else None
+
+
+def disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
+    """Return the pairs of links whose collisions the semantic descriptions below a folder disable.
+
+    Expressions of xacro in the names of links, such as prefixes, count as empty.
+    """
+    pairs: set[frozenset[str]] = set()
+    for file in (path for suffix in (".srdf", ".srdf.xacro") for path in folder.rglob(f"*{suffix}")):
+        with suppress(LinkwrightError, OSError):
+            pairs |= {
+                frozenset(_EXPRESSION.sub("", element.attributes.get(name, "")) for name in ("link1", "link2"))
+                for element in read_document(str(file)).root.walk()
+                if element.tag == "disable_collisions"
+            }
+    return frozenset(pairs)
 
 
 def removal_reason(tag: str, name: str) -> Phrase | None:

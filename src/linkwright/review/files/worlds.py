@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.descriptions.comparison import Difference, ElementComparison
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, joined, joined_first, phrase
 from linkwright.review.breaking import plugin_name_reason
 from linkwright.review.changes import Change, Location
 from linkwright.review.drawings.scene_images import world_images
@@ -16,6 +16,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.files.merged_paths import MergedPaths, differing_parts, path_pattern
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
+from linkwright.review.versions import Version
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
@@ -24,6 +25,8 @@ _NAMED = re.compile(r"(?:^|.* )(?P<tag>world|model|include|link|joint|sensor|fra
 """The path of an element whose name programs and other models use."""
 _INCLUDED_NAME = re.compile(r"(?:^|.* )include \S+ name")
 """The path of the name of an included model."""
+_MAX_NAMES = 8
+"""The number of models, links or joints that the line about an added world names."""
 _MIN_ALIKE = 3
 """The number of equal changes of elements at different places from which they are one line."""
 
@@ -51,6 +54,33 @@ def compare_worlds(pair: FilePair) -> None:
     _add_alone(pair, alone)
     if differences and pair.drawings.images:
         pair.images += world_images(pair)
+
+
+def world_contents(version: Version, path: str) -> Phrase | None:
+    """Return the models of a world, or the links and joints of a model, and the plugins and sensors, or None."""
+    parts: list[Phrase] = []
+    for element in _elements(version.file(path)):
+        names = {
+            tag: [_name(child) for child in element.elements(tag)] for tag in ("model", "include", "link", "joint")
+        }
+        models = [*names["model"], *names["include"]]
+        if models:
+            parts.append(phrase("models {names}", names=joined_first(models, _MAX_NAMES)))
+        if names["link"]:
+            parts.append(phrase("links {names}", names=joined_first(names["link"], _MAX_NAMES)))
+        if names["joint"]:
+            parts.append(phrase("joints {names}", names=joined_first(names["joint"], _MAX_NAMES)))
+        contents = contents_text(element)
+        if contents is not None:
+            parts.append(contents)
+    return joined(parts) if parts else None
+
+
+def _name(element: Element) -> str:
+    """Return the name of an element, or the last part of the URI of an included model without a name."""
+    texts = (element.first(tag) for tag in ("name", "uri"))
+    included = next((text.text().strip().rstrip("/") for text in texts if text is not None), "")
+    return element.attributes.get("name") or included.rpartition("/")[2]
 
 
 @dataclass(frozen=True)

@@ -96,6 +96,17 @@ def composed(text: str) -> yaml.Node | None:
         raise UnreadableFileError(foreign(" ".join(str(error).split()))) from None
 
 
+def value_of_text(text: str) -> YamlValue | None:
+    """Return the scalar, or the list of scalars, that a text is in YAML; None for other texts."""
+    try:
+        root = composed(text)
+    except UnreadableFileError:
+        return None
+    if root is None or isinstance(root, yaml.MappingNode) or is_structured_list(root):
+        return None
+    return next(value for _, value in _values(root, "", {}))
+
+
 def _values(node: yaml.Node, path: str, labels: Mapping[int, str]) -> Iterator[tuple[str, YamlValue]]:
     if isinstance(node, yaml.MappingNode):
         for key, value in node.value:

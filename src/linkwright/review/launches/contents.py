@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.diagnostics import LinkwrightError, Phrase, joined_first
-from linkwright.review.file_pair import UnreadableFileError
+from linkwright.diagnostics import Phrase, joined_first
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.titles import title
 from linkwright.review.versions import Version
@@ -18,11 +17,11 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
     Args:
         version: the version that has the file.
         path: the path of the file, relative to the root.
+
+    Raises:
+        LinkwrightError: the file cannot be read; also as `UnreadableFileError`, `OSError` and `ValueError`.
     """
-    try:
-        entries = read_outline(version.file(path), version.root).entries
-    except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError, MemoryError):
-        return None
+    entries = read_outline(version.file(path), version.root).entries
     shown = sorted((entry for entry in entries if entry.kind in _KINDS), key=lambda entry: _KINDS.index(entry.kind))
     titles = list(dict.fromkeys(map(title, shown)))
     return joined_first(titles, _MAX_TITLES) if titles else None

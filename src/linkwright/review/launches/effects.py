@@ -8,7 +8,8 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.breaking import name_reason
-from linkwright.review.files.parameter_names import offers_frame
+from linkwright.review.files.parameter_names import offers_frame, type_reason
+from linkwright.review.files.yaml_values import YamlType, YamlValue, value_of_text
 from linkwright.review.launches.conditions import condition_holds
 from linkwright.review.launches.outlines import (
     CONDITION,
@@ -155,7 +156,7 @@ def setting_reason(
 def _parameter_reason(
     setting: str, old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
-    """Return why a changed parameter is breaking: other programs use the frame that it names."""
+    """Return why a changed parameter is breaking: others use the frame that it names, or it has another type."""
     if setting == _FRAME_PREFIX:
         old_prefix, new_prefix = old_outline.resolved(old or ""), new_outline.resolved(new or "")
         is_unknown = any(_CODE.search(prefix) or setting.endswith(f" {prefix}") for prefix in (old_prefix, new_prefix))
@@ -166,7 +167,17 @@ def _parameter_reason(
         return None
     old_name, new_name = old_outline.resolved(old), new_outline.resolved(new)
     is_frame = offers_frame(setting.removeprefix(PARAMETER)) and "$(" not in old_name
-    return name_reason(old_name) if is_frame and old_name != new_name else None
+    if is_frame and old_name != new_name:
+        return name_reason(old_name)
+    old_value, new_value = _literal_value(old_name), _literal_value(new_name)
+    return type_reason(old_value, new_value) if old_value and new_value else None
+
+
+def _literal_value(text: str) -> YamlValue | None:
+    """Return the value of a parameter, or None if its type is unknown: a word may be the name of a variable."""
+    value = None if "$(" in text else value_of_text(text)
+    is_word = value is not None and value.type in (YamlType.TEXT, YamlType.MIXED) and not text.startswith(("'", '"'))
+    return None if is_word else value
 
 
 def _argument_reason(

@@ -146,6 +146,9 @@ def _compare_code(pair: FilePair, old: Sequence[CodePart], new: Sequence[CodePar
     gone, come = _without_common(old, new), _without_common(new, old)
     if _differ_in_names(gone, come):
         return
+    come = _without_failures(pair, gone, come)
+    if not gone and not come:
+        return
     location = pair.location(come[0].span) if come else None
     if gone and not come:
         location = pair.location(gone[0].span, is_old=True)
@@ -155,6 +158,20 @@ def _compare_code(pair: FilePair, old: Sequence[CodePart], new: Sequence[CodePar
             pair.add(phrase("other code: {old} -> {new}", old=before, new=after), pair.location(new_part.span))
     else:
         pair.add(_code_text(gone, come), location)
+
+
+def _without_failures(pair: FilePair, gone: Sequence[CodePart], come: Sequence[CodePart]) -> list[CodePart]:
+    """Add the new conditions under which the launch ends with an error, and return the other new statements."""
+    known = {part.failing_condition for part in gone}
+    others = list(come)
+    for part in come:
+        condition = part.failing_condition
+        if condition and condition not in known:
+            source = part.source if len(part.source) <= _MAX_SOURCE else f"{part.source[:_MAX_SOURCE]}..."
+            reason = phrase("the launch file fails if `{condition}`", condition=condition)
+            pair.add(phrase("added: {code}", code=source), pair.location(part.span), reason)
+            others = [other for other in others if other is not part and other.source != f"if {condition}: ..."]
+    return others
 
 
 def _code_text(gone: Sequence[CodePart], come: Sequence[CodePart]) -> Phrase:

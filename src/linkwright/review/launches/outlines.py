@@ -65,11 +65,14 @@ class CodePart:
         text: a form without names of variables, comments and layout.
         source: the statement as it is written.
         span: where it is.
+        failing_condition: the condition under which the statement ends the launch with an error; empty for other
+            statements.
     """
 
     text: str
     source: str
     span: Span
+    failing_condition: str = ""
 
 
 @dataclass(frozen=True)

@@ -374,7 +374,8 @@ class _Reader:
         files = []
         for item in items:
             resolved = self.python.resolved(item)
-            pairs = self.texts.pairs(resolved) if isinstance(resolved, (ast.Dict, ast.Call)) else None
+            is_mapping = isinstance(resolved, (ast.Dict, ast.Call))
+            pairs = self.texts.pairs(resolved, of_parameters=True) if is_mapping else None
             if pairs is None:
                 files.append(self.texts.text(item))
             else:

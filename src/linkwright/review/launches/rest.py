@@ -18,6 +18,8 @@ _ADDITIONS = ("append", "extend")
 """The methods that put actions into lists."""
 _CONTENTS = ("actions", "composable_node_descriptions", None)
 """The arguments of these calls that contain actions."""
+_EXITS = ("sys.exit", "exit", "quit", "os._exit")
+"""The calls that end the process."""
 _BODIES = ("body", "orelse", "finalbody", "handlers", "cases")
 """The fields of statements with other statements."""
 _UNCOMPARED_FIELDS = frozenset({"ctx", "returns", "annotation", "type_comment", "type_params", "kind"})
@@ -31,11 +33,35 @@ def rest_of(python: PythonFile, covered: Collection[int]) -> list[CodePart]:
         covered: the identities of the calls that make actions.
     """
     rest = _Rest(python, covered)
+    conditions = _failing_conditions(python.tree)
     parts = (
-        CodePart(rest.statement_text(node), " ".join(ast.unparse(_header(node)).split()), python.span(node))
+        CodePart(rest.statement_text(node), _source(_header(node)), python.span(node), conditions.get(id(node), ""))
         for node in sorted(_statements(python.tree), key=lambda node: (node.lineno, node.col_offset))
     )
     return [part for part in parts if part.text]
+
+
+def _source(node: ast.AST) -> str:
+    return " ".join(ast.unparse(node).split())
+
+
+def _failing_conditions(tree: ast.AST) -> dict[int, str]:
+    """Return the conditions of the ``if`` statements whose bodies end the launch, by the identity of the statement."""
+    return {
+        id(statement): _source(branch.test)
+        for branch in ast.walk(tree)
+        if isinstance(branch, ast.If)
+        for statement in branch.body
+        if _ends_launch(statement)
+    }
+
+
+def _ends_launch(statement: ast.stmt) -> bool:
+    """Return whether a statement raises an exception or ends the process."""
+    if isinstance(statement, ast.Raise):
+        return True
+    value = statement.value if isinstance(statement, ast.Expr) else None
+    return isinstance(value, ast.Call) and called_name(value) in _EXITS
 
 
 def _statements(tree: ast.AST) -> list[ast.stmt]:

@@ -19,6 +19,8 @@ _COMPARISONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals
 _TEXT_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
 _PROGRAM = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
 """The program of a command, which is found without `FindExecutable`, too."""
+_OTHER_TYPES = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?|true|false|yes|no|on|off|\[.*\]|", re.IGNORECASE)
+"""Texts that are, without quotes, numbers, truth values, lists, or nothing."""
 _ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
 
 
@@ -105,36 +107,48 @@ class ExpressionTexts:
                 return f"if $(var {self.text(arguments[0])}) {_COMPARISONS[function]} {self.text(arguments[1])}"
         return f"if {self.text(node)}"
 
-    def pairs(self, node: ast.expr) -> list[tuple[str, str]] | None:
-        """Return the keys and values of a dictionary, of its ``items()``, or of a list of pairs; None for others."""
+    def parameter_text(self, node: ast.expr) -> str:
+        """Return the value of a parameter as text. A string that looks like a value of another type is in quotes."""
+        node, text = self._python.resolved(node), self.text(node)
+        is_string = isinstance(node, ast.Constant) and isinstance(node.value, str)
+        return f"'{text}'" if is_string and _OTHER_TYPES.fullmatch(text) else text
+
+    def pairs(self, node: ast.expr, *, of_parameters: bool = False) -> list[tuple[str, str]] | None:
+        """Return the keys and values of a dictionary, of its ``items()``, or of a list of pairs; None for others.
+
+        Args:
+            node: the expression.
+            of_parameters: whether the values are parameters, whose types are shown; see `parameter_text`.
+        """
+        value_text = self.parameter_text if of_parameters else self.text
         node = self._python.resolved(node)
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "items":
             node = self._python.resolved(node.func.value)
         if isinstance(node, ast.Call) and called_name(node) == "dict" and not node.args:
-            return [(keyword.arg or "", self.text(keyword.value)) for keyword in node.keywords]
+            return [(keyword.arg or "", value_text(keyword.value)) for keyword in node.keywords]
         if isinstance(node, ast.Dict):
-            return list(self._items(node, ""))
+            return list(self._items(node, "", value_text))
         if not isinstance(node, (ast.List, ast.Tuple, ast.Set)):
             return None
         pairs = [self._python.resolved(item) for item in node.elts]
         if not all(isinstance(pair, (ast.Tuple, ast.List)) and len(pair.elts) == 2 for pair in pairs):
             return None
         return [
-            (self.text(pair.elts[0]), self.text(pair.elts[1]))
+            (self.text(pair.elts[0]), value_text(pair.elts[1]))
             for pair in pairs
             if isinstance(pair, (ast.Tuple, ast.List))
         ]
 
-    def _items(self, node: ast.Dict, path: str) -> Iterator[tuple[str, str]]:
+    def _items(self, node: ast.Dict, path: str, value_text: Callable[[ast.expr], str]) -> Iterator[tuple[str, str]]:
         for key, value in zip(node.keys, node.values, strict=True):
             if key is None:
                 yield f"{path}**", self.text(value)
                 continue
             name, resolved = f"{path}{self.text(key)}", self._python.resolved(value)
             if isinstance(resolved, ast.Dict) and resolved.keys:
-                yield from self._items(resolved, f"{name}.")
+                yield from self._items(resolved, f"{name}.", value_text)
             else:
-                yield name, self.text(resolved)
+                yield name, value_text(resolved)
 
     def _text(self, node: ast.expr, depth: int) -> str:
         def part(item: ast.expr | None) -> str:

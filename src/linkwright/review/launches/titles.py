@@ -37,9 +37,9 @@ def title(entry: Entry) -> Phrase:
     if entry.kind == "include":
         return phrase("include of '{file}'", file=name)
     if entry.kind == "remapping":
-        return phrase("remapping of '{name}' for all nodes", name=name)
+        return phrase("remapping of '{name}' for the nodes that follow", name=name)
     if entry.kind == "parameter":
-        return phrase("parameter '{name}' of all nodes", name=name)
+        return phrase("parameter '{name}' of the nodes that follow", name=name)
     if entry.kind == "parameters":
         return phrase("parameters of '{file}'", file=name)
     if entry.kind == "handler":

@@ -16,6 +16,7 @@ from linkwright.review.reports.sections import (
     alike_text,
     breaking_changes,
     cases_text,
+    grouped_findings,
     other_files,
     paths_text,
     repeated_text,
@@ -168,7 +169,7 @@ def _lone_image(view: ViewImages) -> str:
 
 def _findings(title: Phrase, findings: Sequence[Diagnostic]) -> Iterator[str]:
     items = []
-    for finding in findings:
+    for finding in grouped_findings(findings):
         place = (
             ""
             if finding.span is None

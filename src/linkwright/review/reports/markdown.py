@@ -14,6 +14,7 @@ from linkwright.review.reports.sections import (
     alike_text,
     breaking_changes,
     cases_text,
+    grouped_findings,
     other_files,
     paths_text,
     repeated_text,
@@ -73,9 +74,8 @@ def _parts(review: Review) -> Iterator[str]:
         (phrase("Fixed findings"), review.fixed_findings),
     ):
         if findings:
-            yield _details(
-                _escape(phrase("{title} ({count})", title=title, count=len(findings))), map(_finding, findings)
-            )
+            heading = _escape(phrase("{title} ({count})", title=title, count=len(findings)))
+            yield _details(heading, map(_finding, grouped_findings(findings)))
     if review.other_files:
         title = phrase("Other changed files ({count})", count=len(review.other_files))
         yield _details(

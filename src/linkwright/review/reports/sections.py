@@ -7,7 +7,8 @@ from collections import Counter
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
-from linkwright.diagnostics import Phrase, counted, joined_first, phrase, quoted_names
+from linkwright.diagnostics import Diagnostic, Phrase, counted, joined_first, phrase, quoted_names
+from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.changes import Change, Effect, Review, Subject
 from linkwright.review.other_files import grouped_files
 
@@ -114,7 +115,7 @@ def sentence_of(change: Change) -> Phrase:
     """Return a change in one line, with the other links or joints to which it applies, or the number of its places."""
     names = change.other_names
     if not names and change.other_locations:
-        return phrase("{change} ({count} times)", change=change.sentence, count=1 + len(change.other_locations))
+        return _times(change.sentence, 1 + len(change.other_locations))
     if not names:
         return change.sentence
     limit = _MAX_BREAKING_NAMES if change.effect is Effect.BREAKING else _MAX_NAMES
@@ -185,6 +186,22 @@ def repeated_text(path: str, count: int) -> Phrase:
         count,
         path=path,
     )
+
+
+def grouped_findings(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Return findings in which equal ones at several lines of a file are one, with their number in the message."""
+    groups: dict[Hashable, list[Diagnostic]] = {}
+    for finding in findings:
+        file = None if finding.span is None else finding.span.file
+        groups.setdefault((finding.code, file, str(finding.message)), []).append(finding)
+    return [
+        first if not others else first.with_changes(message=_times(as_phrase(first.message), 1 + len(others)))
+        for first, *others in groups.values()
+    ]
+
+
+def _times(text: Phrase, count: int) -> Phrase:
+    return phrase("{change} ({count} times)", change=text, count=count)
 
 
 def paths_text(paths: Sequence[str]) -> Phrase:

@@ -12,6 +12,7 @@ from linkwright.review.reports.sections import (
     Section,
     alike_text,
     cases_text,
+    grouped_findings,
     other_files,
     repeated_text,
     sections_of,
@@ -48,7 +49,7 @@ def _lines(review: Review) -> Iterator[str]:
     ):
         if findings:
             yield localized(title)
-            yield from map(_finding, findings)
+            yield from map(_finding, grouped_findings(findings))
             yield ""
     for note in review.notes:
         yield localized(phrase("note: {text}", text=note))

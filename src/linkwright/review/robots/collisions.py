@@ -6,7 +6,7 @@ are left out: they touch where they are connected.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from importlib.util import find_spec
 from itertools import chain
 from typing import Any
@@ -49,7 +49,9 @@ def may_change_collisions(differences: Iterable[Difference]) -> bool:
     )
 
 
-def collision_changes(old: RobotMeasures, new: RobotMeasures, links: Mapping[str, str]) -> Iterator[Change]:
+def collision_changes(
+    old: RobotMeasures, new: RobotMeasures, links: Mapping[str, str], disabled: Collection[frozenset[str]]
+) -> Iterator[Change]:
     """Yield the pairs of links that collide in the new version only.
 
     Nothing is found without MuJoCo (extra ``sim``), or of links that the old version does not have.
@@ -58,6 +60,7 @@ def collision_changes(old: RobotMeasures, new: RobotMeasures, links: Mapping[str
         old: the old robot.
         new: the new robot.
         links: the new names of the links that both robots have, by old name.
+        disabled: the pairs of links whose collisions do not count, such as those of a semantic description (SRDF).
     """
     if find_spec("mujoco") is None or not any(link.collisions for link in new.robot.links.values()):
         return
@@ -69,7 +72,7 @@ def collision_changes(old: RobotMeasures, new: RobotMeasures, links: Mapping[str
     known = set(links.values())
     for pair, (is_home, count) in new_counts.items():
         was_home, old_count = old_counts.get(frozenset(pair), (False, 0))
-        if not known.issuperset(pair):
+        if not known.issuperset(pair) or frozenset(pair) in disabled:
             continue
         if is_home and not was_home:
             yield Change(phrase("links '{first}' and '{second}' collide at home", first=pair[0], second=pair[1]))

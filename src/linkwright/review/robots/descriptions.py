@@ -13,8 +13,9 @@ from linkwright.review.breaking import breaking_reason, frame_reason
 from linkwright.review.robots.cases import Case, cases, switched_cases
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.robots.collisions import collision_changes, may_change_collisions
+from linkwright.review.files.semantics import disabled_collisions
 from linkwright.review.robots.figures import RobotMeasures, figures_of
-from linkwright.review.robots.joined_values import has_joined_values, joined_sentence, with_joined_values
+from linkwright.review.robots.joined_values import JoinedDifferences, with_joined_values
 from linkwright.review.file_pair import FilePair
 from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.drawings.images import view_images
@@ -55,7 +56,8 @@ def compare_descriptions(pair: FilePair) -> None:
             new = RobotMeasures(case.new.robot, case.models.new, frames.new_root, frames.new, old_joints)
             pair.figures += figures_of(old, new)
             if may_change_collisions(comparison.differences):
-                collisions = list(collision_changes(old, new, comparison.links))
+                disabled = disabled_collisions(pair.versions.new.root)
+                collisions = list(collision_changes(old, new, comparison.links, disabled))
     pair.changes += merged(group.change(pair.cases) for group in _united(groups.values()))
     pair.changes += collisions
 
@@ -158,8 +160,8 @@ def _location(pair: FilePair, difference: Difference) -> Location | None:
 
 def sentence_of_difference(difference: Difference) -> Phrase:
     """Return a difference in one line. A moved or rotated frame also has the distance or angle."""
-    if has_joined_values(difference):
-        return joined_sentence(difference)
+    if isinstance(difference, JoinedDifferences):
+        return difference.sentence()
     text = sentence(difference)
     old_path = path_of_renamed(difference, difference.property)
     if old_path is not None:

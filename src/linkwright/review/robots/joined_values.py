@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass
 from itertools import groupby
 
 from linkwright.descriptions.comparison import Difference
@@ -11,35 +11,46 @@ from linkwright.diagnostics import Phrase, phrase, term
 
 _BLOCKS = ("inertial", "limit")
 """The properties whose values are joined: those of ``<inertial>`` and those of ``<limit>``."""
-_SEPARATOR = ", "
+
+
+@dataclass(frozen=True, slots=True)
+class JoinedDifferences(Difference):
+    """The differences of several values of a block. The locations are those of the first one.
+
+    Attributes:
+        values: the differences of the values, which both versions have.
+    """
+
+    values: tuple[Difference, ...] = ()
+
+    def sentence(self) -> Phrase:
+        """Return the differences in one line."""
+        return phrase(
+            "{subject} '{name}': {property}: {new}",
+            subject=term(self.subject),
+            name=self.name,
+            property=self.property,
+            new=", ".join(map(_value_text, self.values)),
+        )
 
 
 def with_joined_values(differences: Iterable[Difference]) -> Iterator[Difference]:
     """Yield differences in which those of the inertial of a link, or of the limits of a joint, are one."""
     for key, group in groupby(differences, _block_of):
-        if key is None:
-            yield from group
+        values = tuple(group)
+        if key is None or len(values) == 1:
+            yield from values
             continue
-        first, *others = group
-        yield _joined(key[1], [first, *others]) if others else first
-
-
-def has_joined_values(difference: Difference) -> bool:
-    """Return whether a difference joins those of several values."""
-    return difference.property in _BLOCKS and bool(difference.old and difference.new)
-
-
-def joined_sentence(difference: Difference) -> Phrase:
-    """Return the joined differences in one line."""
-    pairs = zip((difference.old or "").split(_SEPARATOR), (difference.new or "").split(_SEPARATOR), strict=True)
-    words = ((old.split(" "), new) for old, new in pairs)
-    return phrase(
-        "{subject} '{name}': {property}: {new}",
-        subject=term(difference.subject),
-        name=difference.name,
-        property=difference.property,
-        new=_SEPARATOR.join(f"{name} {' '.join(old)} -> {new}" for (name, *old), new in words),
-    )
+        first = values[0]
+        yield JoinedDifferences(
+            first.subject,
+            first.name,
+            first.kind,
+            property=key[1],
+            old_place=first.old_place,
+            new_place=first.new_place,
+            values=values,
+        )
 
 
 def _block_of(difference: Difference) -> tuple[str, str] | None:
@@ -49,14 +60,8 @@ def _block_of(difference: Difference) -> tuple[str, str] | None:
     return (difference.name, block) if is_value and difference.old and difference.new else None
 
 
-def _joined(block: str, differences: list[Difference]) -> Difference:
-    """Return the differences of a block as one, whose old value has the names and whose new one has the units."""
-    old = _SEPARATOR.join(f"{_quantity(difference.property)} {difference.old}" for difference in differences)
-    new = _SEPARATOR.join(" ".join(filter(None, (difference.new, difference.unit))) for difference in differences)
-    return replace(differences[0], property=block, old=old, new=new, unit="")
-
-
-def _quantity(property_name: str) -> str:
-    """Return the name of a quantity in one word, such as ``mass``, ``center``, ``ixx`` or ``lower``."""
-    name = property_name.rpartition(" ")[2]
-    return "center" if name == "xyz" else name
+def _value_text(difference: Difference) -> str:
+    """Return the change of a value with its unit, such as ``mass 2 -> 3 kg`` or ``upper 1 -> 2 rad``."""
+    name = difference.property.rpartition(" ")[2]
+    words = "center" if name == "xyz" else name, difference.old, "->", difference.new, difference.unit
+    return " ".join(filter(None, words))
