@@ -106,7 +106,7 @@ export class TitleBar {
         label: shorten(path),
         hint: path,
         icon: "recent" as const,
-        separate: index === 0,
+        hasLineAbove: index === 0,
         run: () => files.open(path),
       })),
     ];
@@ -121,7 +121,7 @@ export class TitleBar {
         .filter((id) => id !== "program" || this.session.terminals.programs.length > 0)
         .map((id) => ({
           label: strings.panels[id],
-          checked: dock.isOpen(id),
+          isChecked: dock.isOpen(id),
           run: () => (dock.isOpen(id) ? dock.close(id) : dock.open(id)),
         })),
       { label: strings.shell.resetLayout, hasLineAbove: true, icon: "reset", run: () => dock.reset() },
@@ -187,7 +187,7 @@ function createThemeButton(theme: ThemeState): HTMLButtonElement {
   const choose = (): void => {
     const entries = THEME_CHOICES.map((choice) => ({
       label: texts.themes[choice],
-      checked: theme.choice === choice,
+      isChecked: theme.choice === choice,
       run: () => theme.choose(choice),
     }));
     openMenu(element, entries);

@@ -153,7 +153,7 @@ function createStatusItem(
         value: row.text,
         description: row.text,
         level: level === "loading" && row.level === "ok" ? level : row.level,
-        showLevelIcon: true,
+        showsLevelIcon: true,
       })),
   };
 }

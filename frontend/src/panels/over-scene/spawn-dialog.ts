@@ -37,7 +37,7 @@ export class SpawnDialog {
       h("div", { class: "spawn-row" }, h("span", {}, texts.position), h("span", { class: "spawn-places" }, ...this.positionFields)),
       this.problem,
     ];
-    const choices = [{ label: strings.shell.cancel }, { label: texts.spawn, main: true, run: () => this.run() }];
+    const choices = [{ label: strings.shell.cancel }, { label: texts.spawn, isMain: true, run: () => this.run() }];
     this.dialog = new Dialog(texts.spawnTitle, rows, choices, "spawn-dialog");
     const unsubscribers = [
       modeling.modelsArrived.on((models) => {
