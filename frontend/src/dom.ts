@@ -30,8 +30,8 @@ export function h<K extends keyof HTMLElementTagNameMap>(
 
 /** Creates a push button; `label` is its tooltip, and its accessible name if it has no text. */
 export function button(label: string, onClick: () => void, className: string, ...children: readonly Child[]): HTMLButtonElement {
-  const named = children.some((child) => typeof child === "string");
-  const aria = named ? {} : { label };
+  const hasText = children.some((child) => typeof child === "string");
+  const aria = hasText ? {} : { label };
   const element = h("button", { class: className, title: label, aria, onClick }, ...children);
   element.type = "button";
   return element;
@@ -42,15 +42,15 @@ export function isFramed(): boolean {
   return window.parent !== window;
 }
 
-/** Returns a function that runs `work` once before the next paint, however often it is called. */
-export function coalesced(work: () => void): () => void {
-  let due = false;
+/** Returns a function that calls `run` once before the next paint, however often it is called itself. */
+export function coalesce(run: () => void): () => void {
+  let isScheduled = false;
   return () => {
-    if (due) return;
-    due = true;
+    if (isScheduled) return;
+    isScheduled = true;
     requestAnimationFrame(() => {
-      due = false;
-      work();
+      isScheduled = false;
+      run();
     });
   };
 }

@@ -16,9 +16,9 @@ import "./styles/timeline.css";
 import "./styles/comparison.css";
 import "./styles/editing.css";
 import "./styles/learning.css";
-import { Connection, socketUrl } from "./connection/connection";
+import { Connection, createSocketUrl } from "./connection/connection";
 import { Tokens, type AddressBar } from "./connection/tokens";
-import { button, coalesced, h, isFramed } from "./dom";
+import { button, coalesce, h, isFramed } from "./dom";
 import { publishInspection } from "./inspection";
 import { ComparisonPanel } from "./panels/description/comparison-panel";
 import { DiagnosticsPanel } from "./panels/description/diagnostics-panel";
@@ -67,10 +67,10 @@ import { WorldHandling } from "./scene/world-handling";
 import { TokenScreen } from "./shell/token-screen";
 import { FileCommands } from "./shell/file-commands";
 import { bindFileKeys } from "./shell/file-keys";
-import { fullScreenOnF11 } from "./shell/full-screen";
+import { bindFullScreenKey } from "./shell/full-screen";
 import { KeySheet } from "./shell/key-sheet";
-import { noWebgl } from "./shell/no-webgl";
-import { hasOwnDisplays, ownKey } from "./shell/own-displays";
+import { createNoWebglNotice } from "./shell/no-webgl";
+import { hasOwnDisplays, ensureOwnKey } from "./shell/own-displays";
 import { RecordingDrop } from "./shell/recording-drop";
 import { ShareMenu } from "./shell/share-menu";
 import { StatusBar } from "./shell/status-bar";
@@ -79,7 +79,7 @@ import type { CourseState } from "./state/course";
 import { Session } from "./state/session";
 import { THEME_CHOICES, ThemeState } from "./state/theme";
 import { takeRequested } from "./requested-settings";
-import { browserStorage } from "./storage";
+import { openBrowserStorage } from "./storage";
 import { language, languageChosen, languageTag, strings } from "./strings";
 import { matches, SHORTCUTS } from "./widgets/shortcuts";
 
@@ -89,13 +89,13 @@ const CONFIGURATION_PANELS: readonly PanelId[] = ["displays", "views", "tool-pro
 
 function start(app: HTMLElement): void {
   document.documentElement.lang = languageTag;
-  const theme = new ThemeState(document.documentElement, browserStorage(), matchMedia("(prefers-color-scheme: light)"));
+  const theme = new ThemeState(document.documentElement, openBrowserStorage(), matchMedia("(prefers-color-scheme: light)"));
   const requestedTheme = takeRequested("theme", location, history);
-  const themeChoice = THEME_CHOICES.find((each) => each === requestedTheme);
+  const themeChoice = THEME_CHOICES.find((choice) => choice === requestedTheme);
   if (themeChoice) theme.choose(themeChoice);
-  const own = hasOwnDisplays(location.href) ? ownKey(browserStorage("sessionStorage")) : null;
-  const tokens = new Tokens(addressBar(), browserStorage());
-  const connection = new Connection(socketUrl(location.href, own, language), tokens);
+  const ownKey = hasOwnDisplays(location.href) ? ensureOwnKey(openBrowserStorage("sessionStorage")) : null;
+  const tokens = new Tokens(createAddressBar(), openBrowserStorage());
+  const connection = new Connection(createSocketUrl(location.href, ownKey, language), tokens);
   const door = new TokenScreen(connection, tokens, app);
   // Connect before drawing anything: the answer takes a moment.
   connection.open();
@@ -148,7 +148,7 @@ function start(app: HTMLElement): void {
     ...createLivePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
   ];
   preserveSearches(panels, session.memory);
-  const dock = new Dock(dockBox, panels, new Layouts(browserStorage()), browserStorage());
+  const dock = new Dock(dockBox, panels, new Layouts(openBrowserStorage()), openBrowserStorage());
   followAvailability(dock, session);
   new FilePanels(connection, dock);
 
@@ -175,7 +175,7 @@ function start(app: HTMLElement): void {
 
   session.editing.editRequested.on(() => dock.open("editing"));
 
-  const stage = makeStage(scene.container, session, dock.displayPanels, theme);
+  const stage = createStage(scene.container, session, dock.displayPanels, theme);
   if (stage) scene.connectScene(stage.freeRoom);
   commands.bindKeys();
   const toolbox = stage && connectTools(stage, session, (event) => {
@@ -183,8 +183,8 @@ function start(app: HTMLElement): void {
     return modeler ? modeler.onPointer(event) : event;
   });
   if (stage) {
-    loadModeler(stage, session, (made) => (modeler = made));
-    loadPartHandles(stage, session, (made) => (handles = made));
+    loadModeler(stage, session, (newModeler) => (modeler = newModeler));
+    loadPartHandles(stage, session, (newHandles) => (handles = newHandles));
   }
   const files = new FileCommands(session.configuration);
   const titleBar = new TitleBar(session, dock, files, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens));
@@ -199,10 +199,10 @@ function start(app: HTMLElement): void {
   const fold = new TimeFold(session.time, dock.strip);
   app.append(h("div", { class: "foot" }, new TimelineBar(session).element, fold.element, new StatusBar(session, stage).element));
   document.body.append(door.element);
-  fullScreenOnF11(scene.box);
+  bindFullScreenKey(scene.box);
   document.addEventListener("keydown", (event) => {
-    const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLTextAreaElement;
-    if (event.key === "?" && !typing) sheet.toggle();
+    const isTyping = event.target instanceof HTMLInputElement || event.target instanceof HTMLTextAreaElement;
+    if (event.key === "?" && !isTyping) sheet.toggle();
   });
   bindTalkKey(session.voice, TAKES_LETTERS);
   publishInspection(session, stage, toolbox, {
@@ -216,7 +216,7 @@ function start(app: HTMLElement): void {
   });
 }
 
-function addressBar(): AddressBar {
+function createAddressBar(): AddressBar {
   return {
     get href() {
       return location.href;
@@ -225,7 +225,7 @@ function addressBar(): AddressBar {
   };
 }
 
-/** Opens and closes the panels that depend on available data, in whichever arrangement is shown. */
+/** Opens and closes the panels that depend on available data, in any arrangement. */
 function followAvailability(dock: Dock, session: Session): void {
   const followJoints = openWhile(dock, "joints", () => session.joints.controls !== null);
   const followWorld = openWhile(dock, "world", () => session.modeling.isActive);
@@ -236,7 +236,7 @@ function followAvailability(dock: Dock, session: Session): void {
   const { displays } = session;
   const pruneDisplayPanels = (): void => dock.displayPanels.prune(displays.displays.map(({ id }) => id));
   const countFindings = (): void => dock.setCount("diagnostics", session.diagnostics.length + displays.failingCount);
-  const countBeforePaint = coalesced(countFindings);
+  const countBeforePaint = coalesce(countFindings);
   session.joints.controlsChanged.on(followJoints);
   session.modeling.changed.on(followWorld);
   session.comparison.changed.on(followComparison);
@@ -264,81 +264,81 @@ function followAvailability(dock: Dock, session: Session): void {
 }
 
 /**
- * Returns a function that opens a panel when there is something to show in it, and closes it when there no longer is.
- * Closing waits a moment: a program that is restarted has something to show again soon, and the panel then stays where
- * the user put it.
+ * Returns a function that opens a panel when it has content, and closes it when it no longer has any. It closes the
+ * panel after a moment: a program that is restarted soon has content again, and the panel then stays where the user
+ * put it.
  */
-function openWhile(dock: Dock, id: PanelId, hasSomething: () => boolean): () => void {
-  let closing: ReturnType<typeof setTimeout> | undefined;
+function openWhile(dock: Dock, id: PanelId, hasContent: () => boolean): () => void {
+  let closeTimer: ReturnType<typeof setTimeout> | undefined;
   return () => {
-    clearTimeout(closing);
-    if (!hasSomething()) closing = setTimeout(() => dock.close(id), CLOSING_MS);
+    clearTimeout(closeTimer);
+    if (!hasContent()) closeTimer = setTimeout(() => dock.close(id), CLOSING_MS);
     else if (!dock.isOpen(id)) dock.open(id);
   };
 }
 
 /** Connects mouse and keys to the scene. */
-function connectTools(stage: Stage, session: Session, model: (event: ToolEvent) => ToolEvent | null): Toolbox {
+function connectTools(stage: Stage, session: Session, passToModeler: (event: ToolEvent) => ToolEvent | null): Toolbox {
   const toolbox = new Toolbox(stage, session);
   const joints = new JointDrag(stage, session);
   const worlds = new WorldHandling(stage, session);
   const controls = new Controls(stage, session.view, (event) => {
     if (joints.onPointer(event)) return;
-    const left = model(event);
-    if (left && !worlds.onPointer(left)) toolbox.current.onPointer(left);
+    const remainingEvent = passToModeler(event);
+    if (remainingEvent && !worlds.onPointer(remainingEvent)) toolbox.current.onPointer(remainingEvent);
   });
   new Keyboard(session, stage, toolbox, controls);
   return toolbox;
 }
 
-/** Loads the code for modeling the world when it is needed first. */
-function loadModeler(stage: Stage, session: Session, made: (modeler: Modeler) => void): void {
-  const stop = session.modeling.changed.on(() => {
+/** Loads the code for modeling the world when it is first needed. */
+function loadModeler(stage: Stage, session: Session, onLoaded: (modeler: Modeler) => void): void {
+  const unsubscribe = session.modeling.changed.on(() => {
     if (!session.modeling.isActive) return;
-    stop();
-    void import("./scene/modeling/modeler").then(({ Modeler }) => made(new Modeler(stage, session)));
+    unsubscribe();
+    void import("./scene/modeling/modeler").then(({ Modeler }) => onLoaded(new Modeler(stage, session)));
   });
 }
 
-/** Loads the handles of a robot's parts when one is edited first. */
-function loadPartHandles(stage: Stage, session: Session, made: (handles: PartHandles) => void): void {
-  const stop = session.editing.changed.on(() => {
+/** Loads the handles of a robot's parts when a part is first edited. */
+function loadPartHandles(stage: Stage, session: Session, onLoaded: (handles: PartHandles) => void): void {
+  const unsubscribe = session.editing.changed.on(() => {
     if (!session.editing.isActive) return;
-    stop();
-    void import("./scene/editing/part-handles").then(({ PartHandles }) => made(new PartHandles(stage, session)));
+    unsubscribe();
+    void import("./scene/editing/part-handles").then(({ PartHandles }) => onLoaded(new PartHandles(stage, session)));
   });
 }
 
 /** Binds the keys of the course, which work everywhere except in dialogs. */
 function bindCourseKeys(course: CourseState): void {
-  const keys = [
+  const bindings = [
     { shortcut: SHORTCUTS.previousStep, run: () => course.move(-1) },
     { shortcut: SHORTCUTS.nextStep, run: () => course.move(1) },
     { shortcut: SHORTCUTS.checkStep, run: () => course.check() },
   ];
   const onKeyDown = (event: KeyboardEvent): void => {
-    const found = keys.find(({ shortcut }) => matches(event, shortcut));
-    if (!found || !course.isAvailable || (event.target instanceof Element && event.target.closest("dialog"))) return;
+    const binding = bindings.find(({ shortcut }) => matches(event, shortcut));
+    if (!binding || !course.isAvailable || (event.target instanceof Element && event.target.closest("dialog"))) return;
     event.preventDefault();
     event.stopPropagation();
-    found.run();
+    binding.run();
   };
   document.addEventListener("keydown", onKeyDown, true);
 }
 
 /** Creates the scene; returns null without WebGL, where everything else still works. */
-function makeStage(container: HTMLElement, session: Session, panels: PanelHost, theme: ThemeState): Stage | null {
+function createStage(container: HTMLElement, session: Session, panels: PanelHost, theme: ThemeState): Stage | null {
   try {
-    return new Stage(container, session, panels, theme, SERVED, new StandIns(standInWorker));
+    return new Stage(container, session, panels, theme, SERVED, new StandIns(createStandInWorker));
   } catch (error) {
     console.warn(error);
-    container.append(noWebgl());
+    container.append(createNoWebglNotice());
     return null;
   }
 }
 
 /** Starts the worker. The expression must have this form for Vite to bundle the worker as a separate file. */
-function standInWorker(): Worker {
+function createStandInWorker(): Worker {
   return new Worker(new URL("./scene/meshes/stand-in-worker.ts", import.meta.url), { type: "module" });
 }
 

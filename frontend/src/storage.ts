@@ -11,10 +11,10 @@ export interface BrowserStorage extends TextStorage {
  * Returns the browser's storage: across visits, or with `sessionStorage` while a tab is open. If there is none, or the
  * user forbids it, the storage lasts only while the page is open.
  */
-export function browserStorage(which: "localStorage" | "sessionStorage" = "localStorage"): BrowserStorage {
+export function openBrowserStorage(kind: "localStorage" | "sessionStorage" = "localStorage"): BrowserStorage {
   try {
-    const storage = (globalThis as Partial<Record<typeof which, Storage>>)[which];
-    if (storage) return persistent(storage);
+    const storage = (globalThis as Partial<Record<typeof kind, Storage>>)[kind];
+    if (storage) return createPersistentStorage(storage);
   } catch {
     // The browser's settings forbid it.
   }
@@ -27,7 +27,7 @@ export function browserStorage(which: "localStorage" | "sessionStorage" = "local
   };
 }
 
-function persistent(storage: Storage): BrowserStorage {
+function createPersistentStorage(storage: Storage): BrowserStorage {
   return {
     isPersistent: true,
     getItem: (key) => storage.getItem(key),

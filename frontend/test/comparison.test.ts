@@ -1,7 +1,7 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { ComparedDescriptions, ComparedItem } from "../src/protocol";
-import { shortPlace } from "../src/panels/place";
+import { shortenPlace } from "../src/panels/place";
 import { ComparisonState, groupDifferences, MARK_COLORS, usedMarks } from "../src/state/comparison";
 
 function item(part: Partial<ComparedItem> = {}): ComparedItem {
@@ -28,7 +28,7 @@ describe("sources of descriptions", () => {
     ["/home/me/robots/arm/urdf/arm.urdf:3:1", "…/urdf/arm.urdf:3:1"],
     ["urdf/arm.urdf:3:1", "urdf/arm.urdf:3:1"],
   ])("%s is %s", (text, short) => {
-    expect(shortPlace(text)).toBe(short);
+    expect(shortenPlace(text)).toBe(short);
   });
 });
 

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { Connection, socketUrl } from "../src/connection/connection";
-import { tokenOf, Tokens, type AddressBar } from "../src/connection/tokens";
+import { Connection, createSocketUrl } from "../src/connection/connection";
+import { extractToken, Tokens, type AddressBar } from "../src/connection/tokens";
 import { PROTOCOL_VERSION } from "../src/protocol";
 import type { BrowserStorage } from "../src/storage";
 import { packed } from "./messages";
@@ -100,12 +100,12 @@ describe("the token", () => {
   });
 
   it("is extracted from an address, or is the text itself", () => {
-    expect(tokenOf(" http://127.0.0.1:7447/?token=a-b_c\n")).toBe("a-b_c");
-    expect(tokenOf("Viewer: http://127.0.0.1:7447/?token=abc")).toBe("abc");
-    expect(tokenOf("0123456789abcdef_-AB")).toBe("0123456789abcdef_-AB");
-    expect(tokenOf("http://127.0.0.1:7447/")).toBeNull();
-    expect(tokenOf("hello")).toBeNull();
-    expect(tokenOf("")).toBeNull();
+    expect(extractToken(" http://127.0.0.1:7447/?token=a-b_c\n")).toBe("a-b_c");
+    expect(extractToken("Viewer: http://127.0.0.1:7447/?token=abc")).toBe("abc");
+    expect(extractToken("0123456789abcdef_-AB")).toBe("0123456789abcdef_-AB");
+    expect(extractToken("http://127.0.0.1:7447/")).toBeNull();
+    expect(extractToken("hello")).toBeNull();
+    expect(extractToken("")).toBeNull();
   });
 });
 
@@ -291,8 +291,8 @@ describe("the connection", () => {
 
 describe("the socket's address", () => {
   it("is relative to the page", () => {
-    expect(socketUrl("http://127.0.0.1:7447/?token=abc")).toBe("ws://127.0.0.1:7447/ws");
-    expect(socketUrl("https://lab.example/robots/mbot/")).toBe("wss://lab.example/robots/mbot/ws");
-    expect(socketUrl("http://127.0.0.1:7447/", null, "zh")).toBe("ws://127.0.0.1:7447/ws?language=zh");
+    expect(createSocketUrl("http://127.0.0.1:7447/?token=abc")).toBe("ws://127.0.0.1:7447/ws");
+    expect(createSocketUrl("https://lab.example/robots/mbot/")).toBe("wss://lab.example/robots/mbot/ws");
+    expect(createSocketUrl("http://127.0.0.1:7447/", null, "zh")).toBe("ws://127.0.0.1:7447/ws?language=zh");
   });
 });

@@ -11,7 +11,7 @@ import { formatJointCells, sortJoints } from "../src/state/joint-table";
 import { visibleRows, LinkTreeState } from "../src/state/link-tree";
 import { formatGeneral } from "../src/state/number-text";
 import { Session } from "../src/state/session";
-import { browserStorage } from "../src/storage";
+import { openBrowserStorage } from "../src/storage";
 import { display, robot, tree } from "./messages";
 
 const NOWHERE = { expanded: null, origin: null, calls: [] };
@@ -198,7 +198,7 @@ describe("the joint table", () => {
   };
 
   it("has units, with degrees on request", () => {
-    const angles = new AngleUnits(browserStorage());
+    const angles = new AngleUnits(openBrowserStorage());
     const one = joint("a", "b", "c", { damping: 0.5, mimic: { joint: "m", multiplier: -1, offset: Math.PI / 2 } });
     expect(formatJointCells(one, angles, words)).toMatchObject({ lower: "-1 rad", effort: "4 N m", dynamics: "d 0.5", mimic: "−m + 1.571 rad" });
     angles.current = "deg";
@@ -217,7 +217,7 @@ describe("the joint table", () => {
 
 describe("the switches of invisible properties", () => {
   it("are stored, and invalid stored values are ignored", () => {
-    const storage = browserStorage();
+    const storage = openBrowserStorage();
     const state = new InspectState(storage);
     expect(state.isActive).toBe(false);
     state.set("joints", true);

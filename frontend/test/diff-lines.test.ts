@@ -1,8 +1,8 @@
 import { describe, expect, it } from "vitest";
-import { diffLines } from "../src/panels/editing/diff-lines";
+import { parseDiff } from "../src/panels/editing/diff-lines";
 
 function told(...lines: string[]): string[] {
-  return diffLines(lines).map(({ sign, before, changed, after }) => `${sign}${before}[${changed}]${after}`);
+  return parseDiff(lines).map(({ sign, before, difference, after }) => `${sign}${before}[${difference}]${after}`);
 }
 
 describe("the lines of a diff", () => {

@@ -4,7 +4,7 @@ import { Connection } from "../src/connection/connection";
 import type { EditablePart, PageMessage } from "../src/protocol";
 import { EditingState } from "../src/state/editing/editing";
 import { nearestRpy, quaternionOf } from "../src/state/editing/rotation";
-import { browserStorage } from "../src/storage";
+import { openBrowserStorage } from "../src/storage";
 
 let sent: PageMessage[];
 let connection: Connection;
@@ -28,7 +28,7 @@ beforeEach(() => {
   sent = [];
   connection = new Connection("ws://localhost/ws");
   vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
-  editing = new EditingState(connection, browserStorage());
+  editing = new EditingState(connection, openBrowserStorage());
 });
 
 describe("rotations", () => {

@@ -1,8 +1,8 @@
 import { describe, expect, it, vi } from "vitest";
-import { placeText, shortPath } from "../src/panels/place";
+import { formatPlace, shortenPath } from "../src/panels/place";
 import { listMaterialFiles } from "../src/scene/meshes/obj";
 import { formatColor, parseColor } from "../src/tree/colors";
-import { clamp, formatFixed, formatNumber, parseNumber, stepFor } from "../src/tree/numbers";
+import { clamp, formatFixed, formatNumber, parseNumber, chooseStep } from "../src/tree/numbers";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
 
@@ -32,7 +32,7 @@ describe("numbers in rows", () => {
   });
 
   it("change by steps of a tenth of their size", () => {
-    expect([stepFor(0, false), stepFor(0.5, false), stepFor(45, false), stepFor(45, true)]).toEqual([0.01, 0.01, 1, 1]);
+    expect([chooseStep(0, false), chooseStep(0.5, false), chooseStep(45, false), chooseStep(45, true)]).toEqual([0.01, 0.01, 1, 1]);
   });
 });
 
@@ -46,9 +46,9 @@ describe("colors in rows", () => {
 
 describe("source positions", () => {
   it("show the end of a long path", () => {
-    expect(shortPath("/home/me/ws/src/mbot/urdf/mbot.xacro")).toBe("…/mbot/urdf/mbot.xacro");
-    expect(shortPath("mbot.xacro")).toBe("mbot.xacro");
-    expect(placeText("mbot.xacro", 3, null)).toBe("mbot.xacro:3");
+    expect(shortenPath("/home/me/ws/src/mbot/urdf/mbot.xacro")).toBe("…/mbot/urdf/mbot.xacro");
+    expect(shortenPath("mbot.xacro")).toBe("mbot.xacro");
+    expect(formatPlace("mbot.xacro", 3, null)).toBe("mbot.xacro:3");
   });
 });
 

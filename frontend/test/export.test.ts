@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Display, FrameTable, JointControl, JointScene, LinkScene, Property, RobotScene, Tree } from "../src/protocol";
-import { jointPose, MovingRobot } from "../src/export/moving-robot";
+import { computeJointPose, MovingRobot } from "../src/export/moving-robot";
 import { RecordedConnection } from "../src/export/recorded-connection";
 import { RecordedFiles } from "../src/export/recorded-files";
 import { formatTime } from "../src/scene/video";
@@ -40,7 +40,7 @@ function rows(...positions: number[][]): Float32Array {
 
 function moved(robot: MovingRobot, positions: Record<string, number>, name: string): number[] {
   const row = TABLE.names.indexOf(name);
-  return [...robot.transforms(positions).poses.subarray(row * 7, row * 7 + 7)].map((each) => Math.round(each * 1e5) / 1e5 + 0);
+  return [...robot.computeTransforms(positions).poses.subarray(row * 7, row * 7 + 7)].map((each) => Math.round(each * 1e5) / 1e5 + 0);
 }
 
 describe("the robot of an exported page", () => {
@@ -67,7 +67,7 @@ describe("the robot of an exported page", () => {
     };
     const zero = { ...AT_ZERO, poses: rows([1, 0, 0], [1, 0, 0], [0, 0, 0], [1, 0, 0.5], [0, 0, 0], [1, 0, 0], [1, 2, 0]) };
     const both = new MovingRobot(table, zero, ROBOT, controls, [{ robot: old, joints: { spin: "turn" } }]);
-    const { poses } = both.transforms({ turn: Math.PI / 2 });
+    const { poses } = both.computeTransforms({ turn: Math.PI / 2 });
     const at = (name: string): number[] => [...poses.subarray(names.indexOf(name) * 7, names.indexOf(name) * 7 + 7)].map((each) => Math.round(each * 1e5) / 1e5 + 0);
     const half = Math.round(HALF * 1e5) / 1e5;
     expect(at("old/arm")).toEqual([1, 0, 0, 0, 0, half, half]);
@@ -76,21 +76,21 @@ describe("the robot of an exported page", () => {
 
   it("keeps the fixed frame in place even if it is not the root", () => {
     const fixed = { ...AT_ZERO, poses: rows([0, 0, 0], [0, 0, 0], [-1, 0, 0], [0, 0, 0.5]) };
-    const turned = new MovingRobot(TABLE, fixed, ROBOT, [control("turn")]).transforms({ turn: Math.PI });
+    const turned = new MovingRobot(TABLE, fixed, ROBOT, [control("turn")]).computeTransforms({ turn: Math.PI });
     expect([...turned.poses.subarray(0, 3)].map(Math.round)).toEqual([0, 0, 0]);
     expect(turned.poses[14]).toBeCloseTo(1);
   });
 
   it("resolves chains of mimic joints, and stops at cycles", () => {
     const chain = new MovingRobot(TABLE, AT_ZERO, ROBOT, [control("a"), control("b", "a", 2, 1), control("c", "b", -1, 0.5)]);
-    expect(chain.position("c", { a: 3 })).toBeCloseTo(-6.5);
+    expect(chain.computePosition("c", { a: 3 })).toBeCloseTo(-6.5);
     const circle = new MovingRobot(TABLE, AT_ZERO, ROBOT, [control("a", "b"), control("b", "a")]);
-    expect(circle.position("a", {})).toBe(0);
+    expect(circle.computePosition("a", {})).toBe(0);
   });
 
   it("does not move fixed joints and joints without an axis", () => {
-    expect(jointPose(joint("j", "revolute", "a", "b", { axis: [0, 0, 0], position: [1, 2, 3] }), 1).elements[12]).toBe(1);
-    expect(jointPose(joint("j", "fixed", "a", "b"), 1).elements[0]).toBe(1);
+    expect(computeJointPose(joint("j", "revolute", "a", "b", { axis: [0, 0, 0], position: [1, 2, 3] }), 1).elements[12]).toBe(1);
+    expect(computeJointPose(joint("j", "fixed", "a", "b"), 1).elements[0]).toBe(1);
   });
 });
 

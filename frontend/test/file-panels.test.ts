@@ -184,19 +184,19 @@ describe("the arrangements stored in the browser", () => {
   beforeEach(() => texts.clear());
 
   it("are those of the last files, newest first", () => {
-    expect([layouts.latest("wide"), layouts.find("/0.rviz", "wide")]).toEqual([null, null]);
+    expect([layouts.findLatest("wide"), layouts.find("/0.rviz", "wide")]).toEqual([null, null]);
     for (let i = 0; i < 20; i++) layouts.store(layout(`/${i}.rviz`));
-    expect(layouts.latest("wide")?.file).toBe("/19.rviz");
+    expect(layouts.findLatest("wide")?.file).toBe("/19.rviz");
     expect(layouts.find("/8.rviz", "wide")?.file).toBe("/8.rviz");
     expect(layouts.find("/7.rviz", "wide")).toBeNull();
     layouts.store(layout("/8.rviz"));
-    expect(layouts.latest("wide")?.file).toBe("/8.rviz");
+    expect(layouts.findLatest("wide")?.file).toBe("/8.rviz");
   });
 
   it("differ by the form of the window", () => {
     layouts.store(layout("/a.rviz", "narrow"));
     layouts.store(layout("/b.rviz"));
-    expect(layouts.latest("narrow")?.file).toBe("/a.rviz");
+    expect(layouts.findLatest("narrow")?.file).toBe("/a.rviz");
     expect(layouts.find("/a.rviz", "wide")).toBeNull();
     layouts.store(layout("/a.rviz"));
     expect(layouts.find("/a.rviz", "narrow")?.form).toBe("narrow");
@@ -207,7 +207,7 @@ describe("the arrangements stored in the browser", () => {
   it("are empty if the stored value is invalid", () => {
     for (const text of ["{", "7", '{"file": 1}', '[{"file": "/a.rviz", "arrangement": {}}]', "[null, 3, {}]"]) {
       texts.set("linkwright.layouts.3", text);
-      expect(layouts.latest("wide")).toBeNull();
+      expect(layouts.findLatest("wide")).toBeNull();
     }
   });
 });

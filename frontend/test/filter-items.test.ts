@@ -10,7 +10,7 @@ function item(name: string, ...children: TreeItem[]): TreeItem {
 const ITEMS = [item("Grid", item("Alpha"), item("Offset", item("X"))), item("Laser", item("Topic", item("Depth")))];
 
 function names(items: readonly TreeItem[]): unknown {
-  return items.map((each) => (each.children ? [each.name, each.open ?? false, names(each.children())] : each.name));
+  return items.map((each) => (each.children ? [each.name, each.isForcedOpen ?? false, names(each.children())] : each.name));
 }
 
 it("shows everything for an empty text", () => {

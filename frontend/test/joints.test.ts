@@ -5,7 +5,7 @@ import type { JointControl, PageMessage, ServerMessage } from "../src/protocol";
 import { JointsState } from "../src/state/joints";
 import { PoseStore, readSrdf, toSrdf, matchesPose } from "../src/state/named-poses";
 import { roundTrip, Sweep } from "../src/state/sweep";
-import { browserStorage } from "../src/storage";
+import { openBrowserStorage } from "../src/storage";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
 
@@ -89,7 +89,7 @@ describe("named poses", () => {
   const home = { name: "home", positions: { a: 0.5, "b<1>": -1e-7 } };
 
   it("are stored for each robot, with unique names", () => {
-    const storage = browserStorage();
+    const storage = openBrowserStorage();
     const store = new PoseStore(storage);
     store.save("mbot", home, { name: "up", positions: { a: 1 } });
     store.save("mbot", { name: "home", positions: { a: 2 } });

@@ -1,6 +1,6 @@
 import type { BufferGeometry } from "three";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { progressText } from "../src/panels/over-scene/mesh-notice";
+import { formatProgress } from "../src/panels/over-scene/mesh-notice";
 import { fixXml } from "../src/scene/meshes/collada";
 import { readMesh } from "../src/scene/meshes/formats";
 import type { MeshFiles } from "../src/scene/meshes/mesh-files";
@@ -179,7 +179,7 @@ describe("the progress of meshes", () => {
   it("is reported after half a second, first in bytes, then as being read", async () => {
     vi.stubGlobal("requestAnimationFrame", (call: () => void) => setTimeout(call, 16));
     const progress = new MeshProgress();
-    const told = (): string[] => progress.loads.map((load) => `${load.name} ${progressText(load)}`);
+    const told = (): string[] => progress.loads.map((load) => `${load.name} ${formatProgress(load)}`);
     const report = progress.begin("arm.stl");
     report.onBytes(20_000, null);
     expect(told()).toEqual([]);

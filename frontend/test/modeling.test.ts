@@ -1,12 +1,12 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { hex, entityItems } from "../src/panels/modeling/entity-items";
+import { formatHex, createEntityItems } from "../src/panels/modeling/entity-items";
 import type { ModelingState, PageMessage, WorldEntity } from "../src/protocol";
 import { AngleUnits } from "../src/state/angle-unit";
 import { Modeling } from "../src/state/modeling/modeling";
 import { placementAt, resizeChange, scaledSize, stretchFactors, placeWall } from "../src/state/modeling/shapes";
 import { Snapping, snap } from "../src/state/modeling/snapping";
-import { browserStorage } from "../src/storage";
+import { openBrowserStorage } from "../src/storage";
 import type { TreeItem } from "../src/tree/tree-item";
 
 // The page's texts read the browser's language when they are imported.
@@ -30,7 +30,7 @@ beforeEach(() => {
   sent = [];
   connection = new Connection("ws://localhost/ws");
   vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
-  modeling = new Modeling(connection, browserStorage());
+  modeling = new Modeling(connection, openBrowserStorage());
 });
 
 describe("snapping", () => {
@@ -41,7 +41,7 @@ describe("snapping", () => {
   });
 
   it("is inverted by Ctrl, and stored", () => {
-    const storage = browserStorage();
+    const storage = openBrowserStorage();
     const snapping = new Snapping(storage);
     [snapping.meters, snapping.degrees] = [0.5, 90];
     expect(snapping.currentSteps(false)).toEqual({ length: 0.5, angle: Math.PI / 2 });
@@ -178,9 +178,9 @@ describe("commands", () => {
 
 describe("the rows of the selection", () => {
   const items = (): Map<string, TreeItem> => {
-    const angles = new AngleUnits(browserStorage());
+    const angles = new AngleUnits(openBrowserStorage());
     angles.current = "deg";
-    const all = entityItems(modeling, angles).flatMap((item) => [item, ...(item.children?.() ?? [])]);
+    const all = createEntityItems(modeling, angles).flatMap((item) => [item, ...(item.children?.() ?? [])]);
     return new Map(all.map((item) => [item.key, item]));
   };
 
@@ -208,6 +208,6 @@ describe("the rows of the selection", () => {
   });
 
   it("format colors as the page does", () => {
-    expect(hex([1, 0.5, 0, 1])).toBe("#ff8000");
+    expect(formatHex([1, 0.5, 0, 1])).toBe("#ff8000");
   });
 });

@@ -6,7 +6,7 @@ import { Placer } from "../src/scene/modeling/placer";
 import type { Stage } from "../src/scene/stage";
 import type { ToolEvent } from "../src/scene/tools/tool";
 import { Modeling } from "../src/state/modeling/modeling";
-import { browserStorage } from "../src/storage";
+import { openBrowserStorage } from "../src/storage";
 
 let sent: PageMessage[];
 let modeling: Modeling;
@@ -23,7 +23,7 @@ beforeEach(() => {
   sent = [];
   const connection = new Connection("ws://localhost/ws");
   vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
-  modeling = new Modeling(connection, browserStorage());
+  modeling = new Modeling(connection, openBrowserStorage());
   const rayAt = (x: number, y: number): Raycaster => new Raycaster(new Vector3(x, y, 5), new Vector3(0, 0, -1));
   const stage = { overlays: new Group(), world: null, picker: { rayAt }, loop: { invalidate: () => undefined } };
   placer = new Placer(stage as unknown as Stage, modeling);

@@ -1,7 +1,7 @@
 import { describe, expect, it, vi } from "vitest";
-import { socketUrl } from "../src/connection/connection";
-import { withRecording, recordingIn } from "../src/connection/recording-address";
-import { recordingAmong } from "../src/shell/recording-files";
+import { createSocketUrl } from "../src/connection/connection";
+import { setRecordingName, readRecordingName } from "../src/connection/recording-address";
+import { findRecording } from "../src/shell/recording-files";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en, language: "en" }));
 
@@ -11,28 +11,28 @@ function named(...names: string[]): { name: string; file: Blob }[] {
 
 describe("dropped files", () => {
   it("are recognized as a recording by their names", () => {
-    const { name, files } = recordingAmong("drive", named("notes.txt", "metadata.yaml", "drive_0.db3", "drive_1.db3.zstd", ".DS_Store"));
+    const { name, files } = findRecording("drive", named("notes.txt", "metadata.yaml", "drive_0.db3", "drive_1.db3.zstd", ".DS_Store"));
     expect(name).toBe("drive");
     expect(files.map((each) => each.name)).toEqual(["metadata.yaml", "drive_0.db3", "drive_1.db3.zstd"]);
   });
 
   it("are a single recording file if only one has messages", () => {
-    const { name, files } = recordingAmong("drive", named("metadata.yaml", "drive_0.mcap"));
+    const { name, files } = findRecording("drive", named("metadata.yaml", "drive_0.mcap"));
     expect([name, files.length, files[0]?.name]).toEqual(["drive_0.mcap", 1, "drive_0.mcap"]);
   });
 
   it("are no recording if none has messages", () => {
-    expect(recordingAmong("images", named("a.png", "mcap")).files).toEqual([]);
-    expect(recordingAmong("drive", named("metadata.yaml")).files).toEqual([]);
-    expect(recordingAmong("robot.urdf", named("robot.urdf")).files).toEqual([]);
+    expect(findRecording("images", named("a.png", "mcap")).files).toEqual([]);
+    expect(findRecording("drive", named("metadata.yaml")).files).toEqual([]);
+    expect(findRecording("robot.urdf", named("robot.urdf")).files).toEqual([]);
   });
 });
 
 describe("the page of a recording", () => {
   it("has a name in its address and that of its socket", () => {
-    const address = withRecording("http://localhost:7448/?displays=own", "abc");
-    expect(recordingIn(address)).toBe("abc");
-    expect(socketUrl(address)).toBe("ws://localhost:7448/ws?recording=abc");
-    expect(withRecording(address, null)).toBe("http://localhost:7448/?displays=own");
+    const address = setRecordingName("http://localhost:7448/?displays=own", "abc");
+    expect(readRecordingName(address)).toBe("abc");
+    expect(createSocketUrl(address)).toBe("ws://localhost:7448/ws?recording=abc");
+    expect(setRecordingName(address, null)).toBe("http://localhost:7448/?displays=own");
   });
 });

@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { amountText, sizeText } from "../src/panels/timeline/timeline-text";
+import { formatAmount, formatSize } from "../src/panels/timeline/timeline-text";
 import type { PageMessage, RecordedFile, RecordingState } from "../src/protocol";
 import { RecordingControl } from "../src/state/recording";
 import { TimelineState } from "../src/state/timeline";
@@ -60,9 +60,9 @@ describe("recording", () => {
   });
 
   it("formats bytes and seconds", () => {
-    expect(amountText(75, 4.5e6)).toBe("1:15 · 4.5 MB");
-    expect(sizeText(2.345e9)).toBe("2.35 GB");
-    expect(sizeText(45_100)).toBe("45 kB");
+    expect(formatAmount(75, 4.5e6)).toBe("1:15 · 4.5 MB");
+    expect(formatSize(2.345e9)).toBe("2.35 GB");
+    expect(formatSize(45_100)).toBe("45 kB");
   });
 });
 

@@ -82,7 +82,7 @@ function show(style: string, open: readonly string[] = []): void {
 
 function outline(items: readonly TreeItem[], depth = 0): string[] {
   return items.flatMap((item) => [
-    `${"  ".repeat(depth)}${item.name}${item.expanded ? "*" : ""}`,
+    `${"  ".repeat(depth)}${item.name}${item.isExpanded ? "*" : ""}`,
     ...outline(item.children?.() ?? [], depth + 1),
   ]);
 }

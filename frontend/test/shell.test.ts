@@ -1,9 +1,9 @@
 import { describe, expect, it } from "vitest";
-import { socketUrl } from "../src/connection/connection";
-import { addressFor, hasOwnDisplays, ownKey } from "../src/shell/own-displays";
-import { savedByKey } from "../src/shell/file-keys";
+import { createSocketUrl } from "../src/connection/connection";
+import { addressFor, hasOwnDisplays, ensureOwnKey } from "../src/shell/own-displays";
+import { chooseSaved } from "../src/shell/file-keys";
 import { ThemeState } from "../src/state/theme";
-import { keyText, matches, SHORTCUTS } from "../src/widgets/shortcuts";
+import { formatShortcut, matches, SHORTCUTS } from "../src/widgets/shortcuts";
 
 function storage(): { getItem(key: string): string | null; setItem(key: string, text: string): void } {
   const texts = new Map<string, string>();
@@ -21,11 +21,11 @@ describe("own displays of a page", () => {
 
   it("have a name that is stable for the tab", () => {
     const tab = storage();
-    const key = ownKey(tab);
+    const key = ensureOwnKey(tab);
     expect(key).toMatch(/^[0-9a-f]{32}$/);
-    expect(ownKey(tab)).toBe(key);
-    expect(ownKey(storage())).not.toBe(key);
-    expect(socketUrl("http://localhost:7447/?token=abc&displays=own", key)).toBe(
+    expect(ensureOwnKey(tab)).toBe(key);
+    expect(ensureOwnKey(storage())).not.toBe(key);
+    expect(createSocketUrl("http://localhost:7447/?token=abc&displays=own", key)).toBe(
       `ws://localhost:7447/ws?own=${key}`,
     );
   });
@@ -47,10 +47,10 @@ describe("shortcuts", () => {
 
   it("do not include those reserved by browsers", () => {
     const taken = ["Ctrl+N", "Ctrl+T", "Ctrl+W", "Ctrl+R", "Ctrl+Shift+N", "Ctrl+Shift+T", "Ctrl+Shift+W", "F5", "Ctrl+D"];
-    const ours = Object.values(SHORTCUTS).map(keyText);
+    const ours = Object.values(SHORTCUTS).map(formatShortcut);
     expect(ours.filter((key) => taken.includes(key))).toEqual([]);
     expect(new Set(ours).size).toBe(ours.length);
-    expect(keyText(SHORTCUTS.moveUp)).toBe("Alt+↑");
+    expect(formatShortcut(SHORTCUTS.moveUp)).toBe("Alt+↑");
   });
 });
 
@@ -85,19 +85,19 @@ describe("the key of Save", () => {
   const none = { focus: "elsewhere", isEditing: false, hasUnsavedSources: false, isConfigurationUnsaved: false } as const;
 
   it("saves the configuration, as in RViz, where no source files are edited", () => {
-    expect(savedByKey(none)).toBe("configuration");
+    expect(chooseSaved(none)).toBe("configuration");
   });
 
   it("saves changed source files, wherever the focus is but in panels of the configuration", () => {
     const changed = { ...none, isEditing: true, hasUnsavedSources: true, isConfigurationUnsaved: true };
-    expect(savedByKey(changed)).toBe("sources");
-    expect(savedByKey({ ...changed, focus: "configuration" })).toBe("configuration");
-    expect(savedByKey({ ...changed, hasUnsavedSources: false })).toBe("configuration");
-    expect(savedByKey({ ...changed, hasUnsavedSources: false, focus: "editor" })).toBe("sources");
+    expect(chooseSaved(changed)).toBe("sources");
+    expect(chooseSaved({ ...changed, focus: "configuration" })).toBe("configuration");
+    expect(chooseSaved({ ...changed, hasUnsavedSources: false })).toBe("configuration");
+    expect(chooseSaved({ ...changed, hasUnsavedSources: false, focus: "editor" })).toBe("sources");
   });
 
   it("asks for no name of an unchanged configuration while source files are edited", () => {
-    expect(savedByKey({ ...none, isEditing: true })).toBe("sources");
-    expect(savedByKey({ ...none, isEditing: true, focus: "configuration" })).toBe("configuration");
+    expect(chooseSaved({ ...none, isEditing: true })).toBe("sources");
+    expect(chooseSaved({ ...none, isEditing: true, focus: "configuration" })).toBe("configuration");
   });
 });

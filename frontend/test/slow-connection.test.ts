@@ -1,6 +1,6 @@
 import { expect, it, vi } from "vitest";
 import type { DisplayData } from "../src/connection/data";
-import { causeOf } from "../src/panels/over-scene/slow-notice";
+import { chooseCause } from "../src/panels/over-scene/slow-notice";
 import { Signal } from "../src/signal";
 import type { DisplayDataStore } from "../src/state/display-data";
 import { SlowConnection } from "../src/state/slow-connection";
@@ -53,8 +53,8 @@ it("does not report images with invisible loss", () => {
 });
 
 it("is not blamed for a page that was slow a moment ago", () => {
-  expect(causeOf("page", true, 0)).toBe("page");
-  expect(causeOf("line", true, 0)).toBe("page");
-  expect(causeOf("line", true, 2)).toBe("line");
-  expect(causeOf("program", false, 1)).toBe("program");
+  expect(chooseCause("page", true, 0)).toBe("page");
+  expect(chooseCause("line", true, 0)).toBe("page");
+  expect(chooseCause("line", true, 2)).toBe("line");
+  expect(chooseCause("program", false, 1)).toBe("program");
 });

@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { agoText, clockText, densities, extentText, momentText, elapsedText } from "../src/panels/timeline/timeline-text";
+import { formatAge, formatClock, computeDensities, formatExtent, formatMoment, formatElapsed } from "../src/panels/timeline/timeline-text";
 import type { PageMessage, Playhead } from "../src/protocol";
 import { TimelineState } from "../src/state/timeline";
 
@@ -60,10 +60,10 @@ describe("the timeline", () => {
     timeline.play(false);
     connection.message.emit(playhead({ position: 119 }));
     expect([timeline.isPlaying, timeline.isLive, timeline.position]).toEqual([false, false, 119]);
-    expect(agoText(1)).toBe("−0:01.000");
-    expect(momentText(52.304)).toBe("0:52.304");
-    expect(momentText(new Date(2026, 1, 3, 14, 3, 7, 256).getTime() / 1000)).toBe("14:03:07.256");
-    expect(extentText({ type: "history_extent", start: 105, end: 120, size: 5e6, most: 1e7 })).toBe("0:15 · 5.0 MB");
+    expect(formatAge(1)).toBe("−0:01.000");
+    expect(formatMoment(52.304)).toBe("0:52.304");
+    expect(formatMoment(new Date(2026, 1, 3, 14, 3, 7, 256).getTime() / 1000)).toBe("14:03:07.256");
+    expect(formatExtent({ type: "history_extent", start: 105, end: 120, size: 5e6, most: 1e7 })).toBe("0:15 · 5.0 MB");
     timeline.goLive();
     expect(sent).toEqual([{ type: "play", playing: false }, { type: "go_live" }]);
   });
@@ -76,15 +76,15 @@ describe("the timeline", () => {
 
 describe("texts of the timeline", () => {
   it("show times as minutes and seconds", () => {
-    expect(elapsedText(7.256, 90)).toBe("0:07.256 / 1:30");
-    expect(elapsedText(59.9999, 3725)).toBe("1:00.000 / 1:02:05");
-    expect(elapsedText(1, 2.5)).toBe("0:01.000 / 0:02.500");
-    expect(clockText(1_700_000_000.25)).toContain(".250 (1700000000.250)");
+    expect(formatElapsed(7.256, 90)).toBe("0:07.256 / 1:30");
+    expect(formatElapsed(59.9999, 3725)).toBe("1:00.000 / 1:02:05");
+    expect(formatElapsed(1, 2.5)).toBe("0:01.000 / 0:02.500");
+    expect(formatClock(1_700_000_000.25)).toContain(".250 (1700000000.250)");
   });
 
   it("show the density of messages relative to the densest part of each topic", () => {
     const topic = (name: string, counts: number[]) => ({ name, kind: "", count: counts.reduce((a, b) => a + b, 0), counts });
-    const rows = densities([topic("/a", [1, 0]), topic("/b", [2, 4]), topic("/c", [])]);
+    const rows = computeDensities([topic("/a", [1, 0]), topic("/b", [2, 4]), topic("/c", [])]);
     expect(rows.map((row) => row.map((each) => Math.round(each * 100)))).toEqual([[34, 60], [60, 0]]);
   });
 });

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { obstacle } from "../src/panels/voice/voice-words";
+import { describeObstacle } from "../src/panels/voice/voice-words";
 import type { PageMessage } from "../src/protocol";
 import { GapFinder } from "../src/state/voice/gaps";
 import { meterShare } from "../src/state/voice/level";
@@ -189,13 +189,13 @@ describe("talking", () => {
     voice.release();
     await soon();
     expect(voice.hasGaps).toBe(true);
-    expect(obstacle(voice)).toContain("gaps");
+    expect(describeObstacle(voice)).toContain("gaps");
     connection.message.emit({ type: "conversation_text", number: 1, part: "response", text: "forward" });
-    expect(obstacle(voice)).toBe(null); // the command was understood after all, or the robot asks for it again
+    expect(describeObstacle(voice)).toBe(null); // the command was understood after all, or the robot asks for it again
     voice.press();
     expect(voice.hasGaps).toBe(false);
     deliver(Int16Array.of(1), 0.04);
-    expect(obstacle(voice)).toContain("gaps");
+    expect(describeObstacle(voice)).toContain("gaps");
   });
 
   it("sends nothing if the button is released before the microphone is ready", async () => {

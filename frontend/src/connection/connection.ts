@@ -1,34 +1,34 @@
 import { PROTOCOL_VERSION, type PageMessage, type ServerMessage } from "../protocol";
 import { Signal } from "../signal";
-import { browserStorage } from "../storage";
+import { openBrowserStorage } from "../storage";
 import { unpackData, type DisplayData } from "./data";
 import { isPiece, FrameAssembler } from "./frame-assembler";
 import { askForProof } from "./proof";
-import { recordingIn } from "./recording-address";
+import { readRecordingName } from "./recording-address";
 import { unpackSamples, type SeriesSamples } from "./samples";
 import type { Tokens } from "./tokens";
 import { unpackTransforms, type Transforms } from "./transforms";
 
 /**
  * The state of the connection. `ended`: the program has shut down; one with the same token may start again. `refused`:
- * the page has no token, or the program does not know its token. `outdated`: the page is of another version than the
+ * the page has no token, or the program does not know its token. `outdated`: the page has a different version from the
  * server, and a reload did not help.
  */
 export type ConnectionState = "connecting" | "connected" | "reconnecting" | "ended" | "refused" | "outdated";
 
 const FIRST_RETRY_MS = 250;
 /** Shorter than the time that a restarted server waits for the pages that were open before. */
-const LONGEST_RETRY_MS = 2000;
+const MAX_RETRY_MS = 2000;
 const GOING_AWAY = 1001;
 const UNAUTHORIZED = 401;
 /**
  * Messages of at least this length, in bytes or characters, are acknowledged. The server relies on acknowledgments of
  * longer ones only.
  */
-const LARGE = 1024;
+const MIN_ACKNOWLEDGED_LENGTH = 1024;
 const RELOADED_KEY = "linkwright.reloaded-for-protocol";
 
-/** The WebSocket to the server, reopened after growing pauses whenever it is lost. */
+/** The WebSocket to the server, which is reopened after growing pauses when it is lost. */
 export class Connection {
   readonly message = new Signal<ServerMessage>();
   readonly transforms = new Signal<Transforms>();
@@ -77,7 +77,7 @@ export class Connection {
     clearTimeout(this.retryTimer);
     this.shownToken = this.tokens?.current ?? null;
     if (this.tokens && this.shownToken === null) {
-      // Another page of this browser may be let in.
+      // The server may accept another page of this browser, whose token this page then uses.
       this.setState("refused");
       this.retryLater();
       return;
@@ -138,7 +138,7 @@ export class Connection {
     this.receivedCount += 1;
     const length = typeof data === "string" ? data.length : data.byteLength;
     // Acknowledge before the work: the server measures the throughput of the connection with it.
-    if (this.receivedCount === 1 || length >= LARGE) this.send({ type: "received", count: this.receivedCount });
+    if (this.receivedCount === 1 || length >= MIN_ACKNOWLEDGED_LENGTH) this.send({ type: "received", count: this.receivedCount });
     if (data instanceof ArrayBuffer) {
       this.receiveBytes(data);
       return;
@@ -149,7 +149,7 @@ export class Connection {
         this.reloadOutdated();
         return;
       }
-      browserStorage("sessionStorage").removeItem(RELOADED_KEY);
+      openBrowserStorage("sessionStorage").removeItem(RELOADED_KEY);
       this.acceptedToken = this.shownToken;
       if (this.shownToken !== null) this.tokens?.accept(this.shownToken);
       this.retryMs = FIRST_RETRY_MS;
@@ -160,8 +160,8 @@ export class Connection {
 
   protected receiveBytes(bytes: ArrayBuffer): void {
     if (isPiece(bytes)) {
-      const whole = this.pieces.add(bytes);
-      if (whole) this.receiveBytes(whole);
+      const frame = this.pieces.add(bytes);
+      if (frame) this.receiveBytes(frame);
       return;
     }
     const transforms = unpackTransforms(bytes);
@@ -183,7 +183,7 @@ export class Connection {
 
   private retryLater(): void {
     this.retryTimer = setTimeout(() => this.open(), this.retryMs);
-    this.retryMs = Math.min(this.retryMs * 1.6, LONGEST_RETRY_MS);
+    this.retryMs = Math.min(this.retryMs * 1.6, MAX_RETRY_MS);
   }
 
   /** The address of the socket, with the token. */
@@ -211,9 +211,9 @@ export class Connection {
     const socket = this.socket;
     this.setState("outdated");
     socket?.close();
-    const tab = browserStorage("sessionStorage");
-    if (tab.getItem(RELOADED_KEY) !== null) return;
-    tab.setItem(RELOADED_KEY, "yes");
+    const tabStorage = openBrowserStorage("sessionStorage");
+    if (tabStorage.getItem(RELOADED_KEY) !== null) return;
+    tabStorage.setItem(RELOADED_KEY, "yes");
     location.reload();
   }
 
@@ -225,15 +225,15 @@ export class Connection {
 }
 
 /**
- * Returns the address of the WebSocket for a page at `page`. `own` is the key of the page's own displays, `language`
+ * Returns the address of the WebSocket for a page at `page`. `ownKey` is the key of the page's own displays, `language`
  * the language of the server's texts.
  */
-export function socketUrl(page: string, own: string | null = null, language: string | null = null): string {
+export function createSocketUrl(page: string, ownKey: string | null = null, language: string | null = null): string {
   const url = new URL("ws", page);
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
-  if (own !== null) url.searchParams.set("own", own);
+  if (ownKey !== null) url.searchParams.set("own", ownKey);
   if (language !== null) url.searchParams.set("language", language);
-  const recording = recordingIn(page);
+  const recording = readRecordingName(page);
   if (recording !== null) url.searchParams.set("recording", recording);
   return url.href;
 }

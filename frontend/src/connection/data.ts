@@ -27,7 +27,7 @@ export function unpackData(buffer: ArrayBuffer): DisplayData | null {
   const length = header.getUint32(4, true);
   const text = new TextDecoder().decode(new Uint8Array(buffer, HEADER_BYTES, length));
   const start = Math.ceil((HEADER_BYTES + length) / ALIGNMENT) * ALIGNMENT;
-  return restoreArrays(JSON.parse(text), (reference) => view(buffer, start, reference)) as DisplayData;
+  return restoreArrays(JSON.parse(text), (reference) => createView(buffer, start, reference)) as DisplayData;
 }
 
 type Reference = readonly ["f4" | "u1", number, number];
@@ -35,21 +35,21 @@ type Reference = readonly ["f4" | "u1", number, number];
 type Restore = (reference: Reference) => ArrayBufferView;
 
 /**
- * Replaces references by the arrays that they refer to. This is faster than a reviver of `JSON.parse`, which would
- * visit every number of the thousands of markers that a frame may hold.
+ * Replaces references with the arrays that they refer to. This is faster than a reviver of `JSON.parse`, which would
+ * visit every number of the thousands of markers that a frame may contain.
  */
 function restoreArrays(value: unknown, restore: Restore): unknown {
   if (typeof value !== "object" || value === null) return value;
   if (Array.isArray(value)) {
-    // Lists contain items of one kind, so the first item tells for all.
-    if (typeof value[0] === "object") value.forEach((each, index) => (value[index] = restoreArrays(each, restore)));
+    // All items of a list have the same kind, so the first item decides.
+    if (typeof value[0] === "object") value.forEach((item, index) => (value[index] = restoreArrays(item, restore)));
     return value;
   }
   if (isReference(value)) return restore(value.$);
   const object = value as Record<string, unknown>;
   for (const name in object) {
-    const each = object[name];
-    if (typeof each === "object") object[name] = restoreArrays(each, restore);
+    const item = object[name];
+    if (typeof item === "object") object[name] = restoreArrays(item, restore);
   }
   return value;
 }
@@ -58,7 +58,7 @@ function isReference(value: object): value is { $: Reference } {
   return "$" in value;
 }
 
-function view(buffer: ArrayBuffer, start: number, [type, offset, count]: Reference): ArrayBufferView {
+function createView(buffer: ArrayBuffer, start: number, [type, offset, count]: Reference): ArrayBufferView {
   switch (type) {
     case "f4":
       return new Float32Array(buffer, start + offset, count);

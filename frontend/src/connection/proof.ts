@@ -11,21 +11,21 @@ export type Proof = "known" | "unknown" | "silent";
 export async function askForProof(socketUrl: string, token: string): Promise<Proof> {
   const { subtle } = globalThis.crypto as Partial<Crypto>;
   if (!subtle) return "known";
-  const nonce = hex(crypto.getRandomValues(new Uint8Array(16)));
+  const nonce = formatHex(crypto.getRandomValues(new Uint8Array(16)));
   const url = new URL("proof", socketUrl);
   url.protocol = url.protocol === "wss:" ? "https:" : "http:";
   url.searchParams.set("nonce", nonce);
-  const text = new TextEncoder();
-  const key = await subtle.importKey("raw", text.encode(token), { name: "HMAC", hash: "SHA-256" }, false, ["sign"]);
-  const expected = hex(new Uint8Array(await subtle.sign("HMAC", key, text.encode(nonce))));
+  const encoder = new TextEncoder();
+  const key = await subtle.importKey("raw", encoder.encode(token), { name: "HMAC", hash: "SHA-256" }, false, ["sign"]);
+  const expectedProof = formatHex(new Uint8Array(await subtle.sign("HMAC", key, encoder.encode(nonce))));
   try {
     const answer = await fetch(url, { cache: "no-store" });
-    return (await answer.text()) === expected ? "known" : "unknown";
+    return (await answer.text()) === expectedProof ? "known" : "unknown";
   } catch {
     return "silent";
   }
 }
 
-function hex(bytes: Uint8Array): string {
+function formatHex(bytes: Uint8Array): string {
   return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
 }

@@ -2,12 +2,12 @@
 const PARAMETER = "recording";
 
 /** Returns the recording that an address names, or null. */
-export function recordingIn(address: string): string | null {
+export function readRecordingName(address: string): string | null {
   return new URL(address).searchParams.get(PARAMETER);
 }
 
-/** Returns the address of the page of a recording; of the live page for null. */
-export function withRecording(address: string, recording: string | null): string {
+/** Returns the address of the page of a recording, or of the live page if the recording is null. */
+export function setRecordingName(address: string, recording: string | null): string {
   const url = new URL(address);
   if (recording === null) url.searchParams.delete(PARAMETER);
   else url.searchParams.set(PARAMETER, recording);

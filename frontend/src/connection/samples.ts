@@ -20,14 +20,14 @@ export function unpackSamples(buffer: ArrayBuffer): SeriesSamples[] | null {
   const view = new DataView(buffer);
   if (view.getUint32(0, true) !== SAMPLES_KIND) return null;
   const series: SeriesSamples[] = [];
-  let at = HEADER_BYTES;
+  let offset = HEADER_BYTES;
   for (let index = view.getUint32(4, true); index > 0; index--) {
-    const id = view.getUint32(at, true);
-    const count = view.getUint32(at + 4, true);
-    const start = at + SERIES_BYTES;
-    const part = (row: number): Float64Array => new Float64Array(buffer, start + row * count * 8, count);
-    series.push({ id, received: part(0), stamps: part(1), values: part(2) });
-    at = start + 3 * count * 8;
+    const id = view.getUint32(offset, true);
+    const count = view.getUint32(offset + 4, true);
+    const start = offset + SERIES_BYTES;
+    const readRow = (row: number): Float64Array => new Float64Array(buffer, start + row * count * 8, count);
+    series.push({ id, received: readRow(0), stamps: readRow(1), values: readRow(2) });
+    offset = start + 3 * count * 8;
   }
   return series;
 }

@@ -15,20 +15,20 @@ export interface AddressBar {
  * it.
  */
 export class Tokens {
-  private own: string | null;
-  private refusals = 0;
+  private ownToken: string | null;
+  private refusalCount = 0;
 
   constructor(
     private readonly address: AddressBar,
     private readonly storage: BrowserStorage,
   ) {
-    this.own = tokenIn(address.href);
+    this.ownToken = readToken(address.href);
   }
 
   /** The token to send next; the known tokens alternate after refusals. */
   get current(): string | null {
     const { knownTokens } = this;
-    return knownTokens[this.refusals % Math.max(1, knownTokens.length)] ?? null;
+    return knownTokens[this.refusalCount % Math.max(1, knownTokens.length)] ?? null;
   }
 
   /** Stores a token that the server accepted, and removes it from the address bar. */
@@ -38,42 +38,42 @@ export class Tokens {
     storage.setItem(KEY, token);
     // Where the browser stores nothing, the token must stay in the address.
     const isKept = storage.isPersistent && storage.getItem(KEY) === token;
-    if (isKept && tokenIn(address.href) !== null) address.moveTo(withToken(address.href, null));
+    if (isKept && readToken(address.href) !== null) address.moveTo(setToken(address.href, null));
   }
 
-  /** Notes that the current token was refused; returns whether another one remains to be tried. */
+  /** Records that the current token was refused; returns whether another token remains to be tried. */
   refuse(): boolean {
-    this.refusals += 1;
-    return this.refusals < this.knownTokens.length;
+    this.refusalCount += 1;
+    return this.refusalCount < this.knownTokens.length;
   }
 
   /** Uses this token from now on. */
   use(token: string): void {
-    this.own = token;
-    this.refusals = 0;
+    this.ownToken = token;
+    this.refusalCount = 0;
   }
 
   /** The address of this page for other users, with the token. */
   get link(): string {
-    return withToken(this.address.href, this.current);
+    return setToken(this.address.href, this.current);
   }
 
   private get knownTokens(): string[] {
-    const known = [this.own, this.storage.getItem(KEY)].filter((token) => token !== null);
-    return [...new Set(known)];
+    const tokens = [this.ownToken, this.storage.getItem(KEY)].filter((token) => token !== null);
+    return [...new Set(tokens)];
   }
 }
 
 /** Returns the token of an address within a text, or the text itself if it can be a token. */
-export function tokenOf(text: string): string | null {
+export function extractToken(text: string): string | null {
   return /[?&]token=([\w-]+)/.exec(text)?.[1] ?? /^\s*([\w-]{16,})\s*$/.exec(text)?.[1] ?? null;
 }
 
-function tokenIn(href: string): string | null {
+function readToken(href: string): string | null {
   return new URL(href).searchParams.get(PARAMETER);
 }
 
-function withToken(href: string, token: string | null): string {
+function setToken(href: string, token: string | null): string {
   const url = new URL(href);
   if (token === null) url.searchParams.delete(PARAMETER);
   else url.searchParams.set(PARAMETER, token);

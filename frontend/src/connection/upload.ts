@@ -9,34 +9,34 @@ export interface NamedFile {
 /** The server refused the upload; the message is its reason. */
 export class RefusedError extends Error {}
 
-/** Uploads the files of a recording one after the other, or opens a recording that the server has already. */
+/** Uploads the files of a recording one after the other, or opens a recording that is already on the server. */
 export class Upload {
   private request: XMLHttpRequest | null = null;
   private key = "";
-  private cancelled = false;
+  private isCancelled = false;
 
   /**
    * @param base - the address of the page.
    * @param language - the language of the server's error messages.
-   * @param progress - receives the number of bytes sent.
+   * @param onProgress - receives the number of bytes sent.
    */
   constructor(
     private readonly base: string,
     private readonly tokens: Tokens,
     private readonly language: string,
-    private readonly progress: (sent: number) => void,
+    private readonly onProgress: (sentBytes: number) => void,
   ) {}
 
   /** Uploads a recording and returns the server's name for it; null if it was cancelled. */
   async send(name: string, files: readonly NamedFile[]): Promise<string | null> {
-    const announced = { name, files: files.map((each) => ({ name: each.name, size: each.file.size })) };
-    this.key = (await this.fetchAnswer("POST", "recordings", JSON.stringify(announced)))?.key ?? "";
-    let before = 0;
+    const announcement = { name, files: files.map((namedFile) => ({ name: namedFile.name, size: namedFile.file.size })) };
+    this.key = (await this.fetchAnswer("POST", "recordings", JSON.stringify(announcement)))?.key ?? "";
+    let bytesBefore = 0;
     for (const [number, { file }] of files.entries()) {
-      await this.fetchAnswer("PUT", `recordings/${this.key}/${number}`, file, (sent) => this.progress(before + sent));
-      before += file.size;
+      await this.fetchAnswer("PUT", `recordings/${this.key}/${number}`, file, (sentBytes) => this.onProgress(bytesBefore + sentBytes));
+      bytesBefore += file.size;
     }
-    this.progress(before);
+    this.onProgress(bytesBefore);
     return (await this.fetchAnswer("POST", `recordings/${this.key}`, null))?.recording ?? null;
   }
 
@@ -46,19 +46,19 @@ export class Upload {
   }
 
   cancel(): void {
-    this.cancelled = true;
+    this.isCancelled = true;
     this.request?.abort();
-    if (this.key !== "") void fetch(this.address(`recordings/${this.key}`), { method: "DELETE" }).catch(() => undefined);
+    if (this.key !== "") void fetch(this.createAddress(`recordings/${this.key}`), { method: "DELETE" }).catch(() => undefined);
   }
 
   /** Sends a request and returns the server's answer; null once this is cancelled. */
-  private fetchAnswer(method: string, path: string, body: Blob | string | null, sent?: (bytes: number) => void): Promise<Answer | null> {
-    if (this.cancelled) return Promise.resolve(null);
+  private fetchAnswer(method: string, path: string, body: Blob | string | null, onSent?: (bytes: number) => void): Promise<Answer | null> {
+    if (this.isCancelled) return Promise.resolve(null);
     return new Promise((resolve, reject) => {
       const request = new XMLHttpRequest();
       this.request = request;
-      request.open(method, this.address(path));
-      if (sent) request.upload.addEventListener("progress", ({ loaded }) => sent(loaded));
+      request.open(method, this.createAddress(path));
+      if (onSent) request.upload.addEventListener("progress", ({ loaded }) => onSent(loaded));
       request.addEventListener("load", () => {
         const answer = parseAnswer(request.responseText);
         if (request.status < 300 && answer.problem === undefined) resolve(answer);
@@ -70,7 +70,7 @@ export class Upload {
     });
   }
 
-  private address(path: string): string {
+  private createAddress(path: string): string {
     const url = new URL(path, new URL(".", this.base));
     const { current } = this.tokens;
     url.searchParams.set("language", this.language);

@@ -14,10 +14,10 @@ import { Controls } from "../scene/controls";
 import { Keyboard } from "../scene/keyboard";
 import { Stage } from "../scene/stage";
 import { Toolbox } from "../scene/tools/toolbox";
-import { noWebgl } from "../shell/no-webgl";
+import { createNoWebglNotice } from "../shell/no-webgl";
 import { Session } from "../state/session";
 import { ThemeState } from "../state/theme";
-import { browserStorage } from "../storage";
+import { openBrowserStorage } from "../storage";
 import { languageChosen, languageTag, strings } from "../strings";
 import { RecordedConnection } from "./recorded-connection";
 import { RecordedFiles } from "./recorded-files";
@@ -28,10 +28,10 @@ import { lookFrom } from "./views";
 /** An exported page has no panels for the images of displays. */
 const NO_PANELS = { offer: () => undefined, withdraw: () => undefined, retitle: () => undefined };
 
-function start(app: HTMLElement, recorded: HTMLElement): void {
+function start(app: HTMLElement, recordedElement: HTMLElement): void {
   document.documentElement.lang = languageTag;
-  const theme = new ThemeState(document.documentElement, browserStorage(), matchMedia("(prefers-color-scheme: light)"));
-  const recording = readRecording(recorded);
+  const theme = new ThemeState(document.documentElement, openBrowserStorage(), matchMedia("(prefers-color-scheme: light)"));
+  const recording = readRecording(recordedElement);
   const { display } = recording;
   const connection = new RecordedConnection(recording);
   const session = new Session(connection);
@@ -46,7 +46,7 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   const overlay = h("div", { class: "overlay" }, column.element, new OrientationSign(session).element);
   const scene = h("main", { class: "scene-box" }, container, overlay);
   app.append(scene);
-  const stage = makeStage(container, session, new RecordedFiles(recording.files), theme);
+  const stage = createStage(container, session, new RecordedFiles(recording.files), theme);
   if (stage) column.connectScene(stage.freeRoom);
   const actions = {
     lookFrom: (side: Parameters<typeof lookFrom>[0]): void => {
@@ -67,15 +67,15 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   publishInspection(session, stage, toolbox, {});
 }
 
-function makeStage(container: HTMLElement, session: Session, files: RecordedFiles, theme: ThemeState): Stage | null {
+function createStage(container: HTMLElement, session: Session, files: RecordedFiles, theme: ThemeState): Stage | null {
   try {
     return new Stage(container, session, NO_PANELS, theme, files);
   } catch (error) {
     console.warn(error);
-    container.append(noWebgl());
+    container.append(createNoWebglNotice());
     return null;
   }
 }
 
-const [app, recorded] = [document.getElementById("app"), document.getElementById("recorded")];
-if (app && recorded) start(app, recorded);
+const [app, recordedElement] = [document.getElementById("app"), document.getElementById("recorded")];
+if (app && recordedElement) start(app, recordedElement);

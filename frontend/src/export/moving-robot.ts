@@ -7,11 +7,11 @@ type Positions = Readonly<Record<string, number>>;
 const MAX_MIMIC_DEPTH = 64;
 
 /**
- * A frame below another: its fixed pose in the parent, or the joint that moves it, and the joint that leads that joint.
+ * A frame with a parent: its fixed pose in the parent, or the joint that moves it, and the joint that leads that joint.
  */
 interface Frame {
   readonly parent: number;
-  readonly fixed: Matrix4;
+  readonly fixedPose: Matrix4;
   readonly joint: JointScene | null;
   readonly leader: string;
 }
@@ -36,75 +36,75 @@ export class MovingRobot {
 
   constructor(
     private readonly table: FrameTable,
-    recorded: Transforms,
+    recordedTransforms: Transforms,
     robot: RobotScene,
     private readonly controls: readonly JointControl[],
     following: readonly FollowingRobot[] = [],
   ) {
-    const poses = table.names.map((_, row) => poseAt(recorded.poses, row));
-    const own = Object.fromEntries(robot.joints.map(({ name }) => [name, name]));
-    const led = new Map([{ robot, joints: own }, ...following].flatMap(drivenFrames));
+    const poses = table.names.map((_, row) => poseAt(recordedTransforms.poses, row));
+    const identityMap = Object.fromEntries(robot.joints.map(({ name }) => [name, name]));
+    const drivenJoints = new Map([{ robot, joints: identityMap }, ...following].flatMap(findDrivenFrames));
     this.frames = table.names.map((name, row) => {
       const parent = table.parents[row] ?? -1;
       const pose = poses[row] ?? null;
-      const above = poses[parent] ?? null;
-      const found = led.get(name);
-      const joint = found && found.above === table.names[parent] ? found.joint : null;
-      const fixed = pose && above ? above.clone().invert().multiply(pose) : (pose?.clone() ?? new Matrix4());
-      return { parent, fixed, joint, leader: found?.leader ?? "" };
+      const parentPose = poses[parent] ?? null;
+      const driven = drivenJoints.get(name);
+      const joint = driven && driven.parentFrame === table.names[parent] ? driven.joint : null;
+      const fixedPose = pose && parentPose ? parentPose.clone().invert().multiply(pose) : (pose?.clone() ?? new Matrix4());
+      return { parent, fixedPose, joint, leader: driven?.leader ?? "" };
     });
-    this.order = parentsFirst(this.frames);
+    this.order = sortParentsFirst(this.frames);
     // The fixed frame must not move, wherever it is in the tree. It is the frame whose recorded pose is the identity.
     const row = Math.max(0, poses.findIndex((pose) => pose !== null && isIdentity(pose)));
     this.fixedFrame = { row, pose: poses[row]?.clone() ?? new Matrix4() };
   }
 
   /** Returns the transforms of all frames for joint positions, rad or m. */
-  transforms(positions: Positions): Transforms {
+  computeTransforms(positions: Positions): Transforms {
     const poses = this.frames.map(() => new Matrix4());
     for (const row of this.order) {
-      const { parent, fixed, joint, leader } = this.frames[row] as Frame;
-      const local = joint ? jointPose(joint, this.position(leader, positions)) : fixed;
-      const above = poses[parent];
+      const { parent, fixedPose, joint, leader } = this.frames[row] as Frame;
+      const local = joint ? computeJointPose(joint, this.computePosition(leader, positions)) : fixedPose;
+      const parentPose = poses[parent];
       poses[row]?.copy(local);
-      if (above) poses[row]?.premultiply(above);
+      if (parentPose) poses[row]?.premultiply(parentPose);
     }
     const shift = this.fixedFrame.pose.clone().multiply((poses[this.fixedFrame.row] ?? new Matrix4()).clone().invert());
     const numbers = new Float32Array(poses.length * 7);
-    const [at, turn, scale] = [new Vector3(), new Quaternion(), new Vector3()];
+    const [translation, rotation, scale] = [new Vector3(), new Quaternion(), new Vector3()];
     poses.forEach((pose, row) => {
-      pose.premultiply(shift).decompose(at, turn, scale);
-      numbers.set([...at.toArray(), ...turn.toArray()], row * 7);
+      pose.premultiply(shift).decompose(translation, rotation, scale);
+      numbers.set([...translation.toArray(), ...rotation.toArray()], row * 7);
     });
     return { revision: this.table.revision, stamp: 0, poses: numbers, ages: new Float32Array(poses.length) };
   }
 
   /** Returns the position of a joint, also of one that mimics another. */
-  position(name: string, positions: Positions): number {
-    let [factor, offset, at] = [1, 0, name];
+  computePosition(name: string, positions: Positions): number {
+    let [factor, offset, leader] = [1, 0, name];
     for (let i = 0; i < MAX_MIMIC_DEPTH; i++) {
-      const control = this.controls.find((each) => each.name === at);
+      const control = this.controls.find((jointControl) => jointControl.name === leader);
       if (!control || control.mimic === null) break;
       offset += factor * control.offset;
       factor *= control.multiplier;
-      at = control.mimic;
+      leader = control.mimic;
     }
-    return (positions[at] ?? 0) * factor + offset;
+    return (positions[leader] ?? 0) * factor + offset;
   }
 }
 
-/** Returns the frames that joints of a robot move, each with its joint, the frame above it and the leading joint. */
-function drivenFrames({ robot, joints }: FollowingRobot): [string, { joint: JointScene; above: string | undefined; leader: string }][] {
+/** Returns the frames that a robot's joints move, each with its joint, its parent frame and the leading joint. */
+function findDrivenFrames({ robot, joints }: FollowingRobot): [string, { joint: JointScene; parentFrame: string | undefined; leader: string }][] {
   const frameOf = new Map(robot.links.map(({ name, frame }) => [name, frame]));
   return robot.joints.flatMap((joint) => {
     const [frame, leader] = [frameOf.get(joint.child), joints[joint.name]];
     if (frame === undefined || leader === undefined || joint.kind === "floating") return [];
-    return [[frame, { joint, above: frameOf.get(joint.parent), leader }]];
+    return [[frame, { joint, parentFrame: frameOf.get(joint.parent), leader }]];
   });
 }
 
 /** Returns the pose of a joint's child link in its parent link. */
-export function jointPose(joint: JointScene, position: number): Matrix4 {
+export function computeJointPose(joint: JointScene, position: number): Matrix4 {
   const origin = new Matrix4().compose(
     new Vector3().fromArray(joint.position),
     new Quaternion().fromArray(joint.quaternion),
@@ -133,12 +133,12 @@ function isIdentity(pose: Matrix4): boolean {
   return pose.elements.every((element, i) => Math.abs(element - (identity.elements[i] ?? 0)) < 1e-6);
 }
 
-function parentsFirst(frames: readonly Frame[]): number[] {
+function sortParentsFirst(frames: readonly Frame[]): number[] {
   const order: number[] = [];
-  const seen = new Set<number>();
+  const visitedRows = new Set<number>();
   const visit = (row: number): void => {
-    if (seen.has(row)) return;
-    seen.add(row);
+    if (visitedRows.has(row)) return;
+    visitedRows.add(row);
     const parent = frames[row]?.parent ?? -1;
     if (parent >= 0) visit(parent);
     order.push(row);

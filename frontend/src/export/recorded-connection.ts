@@ -7,7 +7,7 @@ import { decodeBase64, type Recording } from "./recording";
 const GRID = "rviz_default_plugins/Grid";
 const TF = "rviz_default_plugins/TF";
 /** Length of TF's axes at Marker Scale 1, m. */
-const AXIS = 0.2;
+const AXIS_LENGTH = 0.2;
 
 /** Replaces the server in an exported page: emits the recorded messages, and moves the robot's joints. */
 export class RecordedConnection extends Connection {
@@ -34,13 +34,13 @@ export class RecordedConnection extends Connection {
     this.emitPositions();
   }
 
-  /** Handles requests that move joints. Others would need a server; the page shows its own edits without one. */
+  /** Handles requests that move joints. Other requests need a server; the page shows its own edits without one. */
   override send(message: PageMessage): void {
     const { controls } = this;
     if (message.type === "set_joint") this.move({ [message.name]: message.position });
     else if (message.type === "set_joints") this.move(message.positions);
     else if (message.type === "center_joints") this.move(Object.fromEntries(controls.map(({ name, zero }) => [name, zero])));
-    else if (message.type === "randomize_joints") this.move(Object.fromEntries(controls.map((control) => [control.name, randomPosition(control)])));
+    else if (message.type === "randomize_joints") this.move(Object.fromEntries(controls.map((control) => [control.name, drawRandomPosition(control)])));
     else if (message.type === "robot_measured") this.fitSizes(message);
   }
 
@@ -57,31 +57,31 @@ export class RecordedConnection extends Connection {
   private fitSizes({ diagonal, ground }: RobotMeasured): void {
     const { messages, awaits_size, spacing } = this.recording;
     const displays = messages.find((message) => message.type === "tree")?.displays ?? [];
-    const row = (drawn: string, name: string): Property | undefined => displays.find(({ drawing }) => drawing === drawn)?.properties.find((property) => property.name === name);
-    const put = ({ id }: Property, value: number): void => this.message.emit({ type: "property_changed", id, value, options: null });
-    const height = row(GRID, "Offset")?.children.find(({ name }) => name === "Z");
-    if (height?.value === 0 && ground !== 0) put(height, ground);
+    const findProperty = (drawing: string, name: string): Property | undefined => displays.find((display) => display.drawing === drawing)?.properties.find((property) => property.name === name);
+    const setValue = ({ id }: Property, value: number): void => this.message.emit({ type: "property_changed", id, value, options: null });
+    const height = findProperty(GRID, "Offset")?.children.find(({ name }) => name === "Z");
+    if (height?.value === 0 && ground !== 0) setValue(height, ground);
     if (!awaits_size || diagonal <= 0) return;
-    const [cell, scale] = [row(GRID, "Cell Size"), row(TF, "Marker Scale")];
-    if (cell) put(cell, cellFor(diagonal));
-    if (scale) put(scale, markerScaleFor(diagonal, spacing ?? diagonal));
+    const [cell, scale] = [findProperty(GRID, "Cell Size"), findProperty(TF, "Marker Scale")];
+    if (cell) setValue(cell, chooseCellSize(diagonal));
+    if (scale) setValue(scale, chooseMarkerScale(diagonal, spacing ?? diagonal));
   }
 
   private prepare(table: FrameTable): void {
     const { messages, frames, display } = this.recording;
     const robot = messages.find((message) => message.type === "robot_scene" && message.display === display);
-    const recorded = frames.map((frame) => unpackTransforms(decodeBase64(frame).buffer)).find((each) => each !== null);
-    if (robot?.type !== "robot_scene" || !recorded) return;
-    const compared = messages.find((message) => message.type === "compared_descriptions");
-    const old = compared && messages.find((message) => message.type === "robot_scene" && message.display === compared.old.display);
-    const following = old?.type === "robot_scene" && old !== robot ? [{ robot: old, joints: compared?.joints ?? {} }] : [];
-    this.robot = new MovingRobot(table, recorded, robot, this.controls, following);
+    const transforms = frames.map((frame) => unpackTransforms(decodeBase64(frame).buffer)).find((transforms) => transforms !== null);
+    if (robot?.type !== "robot_scene" || !transforms) return;
+    const comparison = messages.find((message) => message.type === "compared_descriptions");
+    const oldRobot = comparison && messages.find((message) => message.type === "robot_scene" && message.display === comparison.old.display);
+    const following = oldRobot?.type === "robot_scene" && oldRobot !== robot ? [{ robot: oldRobot, joints: comparison?.joints ?? {} }] : [];
+    this.robot = new MovingRobot(table, transforms, robot, this.controls, following);
   }
 
   private move(positions: Readonly<Record<string, number>>): void {
     for (const { name, mimic, lower, upper } of this.controls) {
-      const wanted = positions[name];
-      if (wanted !== undefined && mimic === null) this.positions[name] = Math.min(upper, Math.max(lower, wanted));
+      const position = positions[name];
+      if (position !== undefined && mimic === null) this.positions[name] = Math.min(upper, Math.max(lower, position));
     }
     this.emitPositions();
   }
@@ -89,8 +89,8 @@ export class RecordedConnection extends Connection {
   private emitPositions(): void {
     const { robot, positions } = this;
     if (!robot) return;
-    for (const { name, mimic } of this.controls) if (mimic !== null) positions[name] = robot.position(name, positions);
-    this.transforms.emit(robot.transforms(positions));
+    for (const { name, mimic } of this.controls) if (mimic !== null) positions[name] = robot.computePosition(name, positions);
+    this.transforms.emit(robot.computeTransforms(positions));
     this.message.emit({ type: "joint_positions", positions: { ...positions } });
   }
 }
@@ -99,16 +99,16 @@ export class RecordedConnection extends Connection {
  * Returns the side of a grid cell for a robot with a bounding box of this diagonal, m: `ModelSize.cell` of
  * `viewer/config/model_size.py`.
  */
-function cellFor(diagonal: number): number {
+function chooseCellSize(diagonal: number): number {
   return 10 ** Math.floor(Math.log10(diagonal * 1.5));
 }
 
 /** Returns TF's Marker Scale with which axes and links can be distinguished: `ModelSize.marker_scale` of the server. */
-function markerScaleFor(diagonal: number, spacing: number): number {
+function chooseMarkerScale(diagonal: number, spacing: number): number {
   const axis = Math.min(Math.max(spacing / 2, diagonal / 40), diagonal / 10);
-  return Number((axis / AXIS).toPrecision(2));
+  return Number((axis / AXIS_LENGTH).toPrecision(2));
 }
 
-function randomPosition({ lower, upper }: JointControl): number {
+function drawRandomPosition({ lower, upper }: JointControl): number {
   return lower + Math.random() * (upper - lower);
 }

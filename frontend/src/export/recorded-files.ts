@@ -40,6 +40,6 @@ export class RecordedFiles implements MeshFiles {
 /** Returns the `/mesh/...` part of an address, which does not depend on where the page was opened. */
 function pathOf(url: string): string {
   const [path = ""] = url.split("?");
-  const at = path.indexOf("/mesh/");
-  return at < 0 ? path : path.slice(at);
+  const index = path.indexOf("/mesh/");
+  return index < 0 ? path : path.slice(index);
 }

@@ -7,8 +7,8 @@ export interface Recording {
   /** The RobotModel display whose joints can be moved. */
   display: string;
   /**
-   * Whether grid and axes are to be fitted to the size of the robot: the configuration sets no size, and the robot was
-   * not drawn yet.
+   * Whether the page must fit the grid and the axes to the size of the robot: the configuration sets no size, and the
+   * robot had not been drawn.
    */
   awaits_size: boolean;
   /** The typical distance of a link's frame from its parent's, m; null if unknown. */

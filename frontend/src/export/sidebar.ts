@@ -1,14 +1,14 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
 import { ComparisonPanel } from "../panels/description/comparison-panel";
-import { jointBar } from "../panels/joints/joint-bar";
+import { createJointBar } from "../panels/joints/joint-bar";
 import { JointRow } from "../panels/joints/joint-row";
 import type { View } from "../protocol";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
 import type { ThemeState } from "../state/theme";
 import { changeLanguage, strings } from "../strings";
-import { tickBox } from "../widgets/controls";
+import { createTickBox } from "../widgets/controls";
 import type { Side } from "./views";
 
 const SIDES: readonly Side[] = ["iso", "front", "left", "top"];
@@ -34,14 +34,14 @@ export class Sidebar {
   ) {
     const texts = strings.sharing.exported;
     const name = session.robots.get(display)?.name ?? "";
-    const languages = button(
+    const languageButton = button(
       strings.shell.languageHint,
       changeLanguage,
       "tool",
       icon("language"),
       strings.shell.language,
     );
-    const themes = button(
+    const themeButton = button(
       strings.shell.theme,
       () => theme.choose(theme.theme === "light" ? "dark" : "light"),
       "tool bare",
@@ -50,59 +50,59 @@ export class Sidebar {
     this.element = h(
       "aside",
       { class: "sidebar", aria: { label: texts.sidebar } },
-      h("header", {}, h("h1", {}, name), themes, languages),
-      this.comparison(),
-      h("section", { aria: { label: texts.shown } }, h("h2", {}, texts.shown), h("div", { class: "shown" }, ...this.boxes())),
-      h("section", { aria: { label: texts.views } }, h("h2", {}, texts.views), h("div", { class: "sides" }, ...this.views())),
-      this.joints(),
+      h("header", {}, h("h1", {}, name), themeButton, languageButton),
+      this.createComparison(),
+      h("section", { aria: { label: texts.shown } }, h("h2", {}, texts.shown), h("div", { class: "shown" }, ...this.createBoxes())),
+      h("section", { aria: { label: texts.views } }, h("h2", {}, texts.views), h("div", { class: "sides" }, ...this.createViews())),
+      this.createJoints(),
       h("footer", {}, texts.made(program)),
     );
   }
 
   /** Returns the differences of the two descriptions, if the file has two. */
-  private comparison(): HTMLElement | null {
+  private createComparison(): HTMLElement | null {
     const { comparison } = this.session;
     if (comparison.compared === null) return null;
     const panel = new ComparisonPanel(this.session, () => this.actions.fit());
     return h("section", { aria: { label: strings.comparison.panel } }, h("h2", {}, strings.comparison.panel), panel.element);
   }
 
-  private boxes(): HTMLElement[] {
+  private createBoxes(): HTMLElement[] {
     const texts = strings.sharing.exported;
     const { displays } = this.session.displays;
     const robot = displays.find(({ id }) => id === this.display);
-    const boxes = robot ? [this.rowBox(robot, "Visual Enabled", texts.visual), this.rowBox(robot, "Collision Enabled", texts.collision)] : [];
-    const others = displays.filter(({ id, isGroup, isSupported }) => id !== this.display && !isGroup && isSupported && !this.session.comparison.isOld(id));
-    return [...boxes, ...others.map((other) => this.displayBox(other))].filter((box) => box !== null);
+    const boxes = robot ? [this.createRowBox(robot, "Visual Enabled", texts.visual), this.createRowBox(robot, "Collision Enabled", texts.collision)] : [];
+    const otherDisplays = displays.filter(({ id, isGroup, isSupported }) => id !== this.display && !isGroup && isSupported && !this.session.comparison.isOld(id));
+    return [...boxes, ...otherDisplays.map((otherDisplay) => this.createDisplayBox(otherDisplay))].filter((box) => box !== null);
   }
 
-  private rowBox(robot: DisplayState, row: string, label: string): HTMLElement | null {
+  private createRowBox(robot: DisplayState, row: string, label: string): HTMLElement | null {
     const node = robot.rows.find(row);
     if (!node) return null;
-    const tick = tickBox(label, label, (ticked) => this.session.setProperty(node.id, ticked));
-    tick.box.checked = node.value === true;
-    return tick;
+    const tickBox = createTickBox(label, label, (isTicked) => this.session.setProperty(node.id, isTicked));
+    tickBox.box.checked = node.value === true;
+    return tickBox;
   }
 
-  private displayBox(display: DisplayState): HTMLElement {
-    const tick = tickBox(display.name, display.name, (ticked) => this.session.setProperty(display.enabledId, ticked));
-    tick.box.checked = display.isChecked;
-    return tick;
+  private createDisplayBox(display: DisplayState): HTMLElement {
+    const tickBox = createTickBox(display.name, display.name, (isTicked) => this.session.setProperty(display.enabledId, isTicked));
+    tickBox.box.checked = display.isChecked;
+    return tickBox;
   }
 
-  private views(): HTMLElement[] {
+  private createViews(): HTMLElement[] {
     const texts = strings.sharing.exported;
     const sides = SIDES.map((side) => button(texts.sides[side], () => this.actions.lookFrom(side), "tool", texts.sides[side]));
     const recall = ({ cls, values }: View): void => {
       this.session.view.setClass(cls);
       this.session.view.update(values);
     };
-    const saved = this.session.view.savedViews.map(({ view }) => button(view.name, () => recall(view), "tool", view.name));
-    const reset = button(texts.startHint, () => this.actions.reset(), "tool", icon("reset"), texts.start);
-    return [...sides, ...saved, reset];
+    const savedViewButtons = this.session.view.savedViews.map(({ view }) => button(view.name, () => recall(view), "tool", view.name));
+    const resetButton = button(texts.startHint, () => this.actions.reset(), "tool", icon("reset"), texts.start);
+    return [...sides, ...savedViewButtons, resetButton];
   }
 
-  private joints(): HTMLElement {
+  private createJoints(): HTMLElement {
     const { joints, angles } = this.session;
     const texts = strings.joints;
     const rows = (joints.controls ?? []).map(
@@ -114,9 +114,9 @@ export class Sidebar {
     joints.positionsChanged.on(update);
     angles.changed.on(() => rows.forEach((row) => row.showUnit()));
     update();
-    const bar = jointBar(this.session);
-    const none = h("p", { class: "empty" }, texts.none);
-    const content = rows.length > 0 ? [bar, h("div", { class: "joints" }, ...rows.map((row) => row.element))] : [none];
+    const bar = createJointBar(this.session);
+    const emptyHint = h("p", { class: "empty" }, texts.none);
+    const content = rows.length > 0 ? [bar, h("div", { class: "joints" }, ...rows.map((row) => row.element))] : [emptyHint];
     return h("section", { class: "joint-section", aria: { label: strings.sharing.exported.joints } }, h("h2", {}, strings.sharing.exported.joints), ...content);
   }
 }

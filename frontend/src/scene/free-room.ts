@@ -17,7 +17,7 @@ interface ShiftedView {
 /** The part of the canvas that nothing covers, and the moves of the view that bring robots into it. */
 export class FreeRoom {
   /** Returns the width covered at the right of the canvas, pixels. */
-  coveredWidth: () => number = () => 0;
+  getCoveredWidth: () => number = () => 0;
   private coveredAbove = 0;
 
   /**
@@ -34,7 +34,7 @@ export class FreeRoom {
   /** Returns the size of the free part, and moves the camera's center to the center of that part. */
   center(): ViewSize {
     const { width, height } = this.viewport.size;
-    const [right, coveredHeight] = [Math.min(this.coveredWidth(), width * MAX_COVERED), Math.min(this.coveredAbove, height * MAX_COVERED)];
+    const [right, coveredHeight] = [Math.min(this.getCoveredWidth(), width * MAX_COVERED), Math.min(this.coveredAbove, height * MAX_COVERED)];
     Object.assign(this.viewport, { shiftLeft: right / 2, shiftDown: coveredHeight / 2 });
     return { width: width - right, height: height - coveredHeight };
   }
@@ -47,7 +47,7 @@ export class FreeRoom {
     const { viewport } = this;
     const previousShift = viewport.shiftLeft;
     viewport.shiftLeft = 0;
-    const target = Math.min(this.coveredWidth(), viewport.size.width * MAX_COVERED) / 2;
+    const target = Math.min(this.getCoveredWidth(), viewport.size.width * MAX_COVERED) / 2;
     const extent = target > 0 ? this.extentOfRobots() : null;
     viewport.shiftLeft = extent ? Math.max(0, Math.min(target, extent.left)) : target;
     if (viewport.shiftLeft !== previousShift) this.invalidate();

@@ -5,38 +5,38 @@ import { Dialog, showNotice } from "../widgets/dialog";
 import { saveText } from "../widgets/save-file";
 import { FileDialog } from "./file-dialog";
 
-/** The maximum size of a file in bytes, so that it fits into a message to the server with its quotes escaped. */
+/** The maximum size of a file in bytes: with its quotes escaped, it must fit into a message to the server. */
 const MAX_BYTES = 800_000;
 const CONTENT_TYPE = "application/yaml";
 
-/** The commands on the configuration file, with questions before changes are lost. */
+/** The commands on the configuration file. They ask before changes are lost. */
 export class FileCommands {
-  /** The pending request, repeated if the user agrees to lose changes. */
-  private pending: ((discard: boolean) => void) | null = null;
-  /** Called once the file is saved. */
+  /** The pending request, which is repeated if the user agrees to discard changes. */
+  private pendingRequest: ((discardsChanges: boolean) => void) | null = null;
+  /** Called after the file has been saved. */
   private afterSaving: (() => void) | null = null;
   private dialog: FileDialog | null = null;
 
   constructor(private readonly state: ConfigurationState) {
     state.refused.on((refusal) => this.onRefused(refusal));
     state.saved.on(() => {
-      const next = this.afterSaving;
+      const continueAfterSaving = this.afterSaving;
       this.afterSaving = null;
-      next?.();
+      continueAfterSaving?.();
     });
     state.texts.on(({ name, text }) => saveText(name, text, CONTENT_TYPE));
     window.addEventListener("beforeunload", (event) => {
-      // The shared configuration survives in the program; a page's own configuration ends with the page.
+      // The server keeps the shared configuration; a page's own configuration is lost with the page.
       if (state.current.own && state.current.unsaved) event.preventDefault();
     });
   }
 
   begin(): void {
-    this.ask((discard) => this.state.createFile(discard));
+    this.ask((discardsChanges) => this.state.createFile(discardsChanges));
   }
 
   open(path: string): void {
-    this.ask((discard) => this.state.open(path, discard));
+    this.ask((discardsChanges) => this.state.open(path, discardsChanges));
   }
 
   /** Lets the user choose a file on the server. */
@@ -53,7 +53,7 @@ export class FileCommands {
       const file = input.files?.[0];
       if (!file) return;
       if (file.size > MAX_BYTES) showNotice(strings.shell.refused, strings.shell.tooLarge(file.name));
-      else void file.text().then((text) => this.ask((discard) => this.state.load(file.name, text, discard)));
+      else void file.text().then((text) => this.ask((discardsChanges) => this.state.load(file.name, text, discardsChanges)));
     });
     input.click();
   }
@@ -64,10 +64,10 @@ export class FileCommands {
   }
 
   saveAs(): void {
-    const cancelled = (): void => {
+    const onCancelled = (): void => {
       this.afterSaving = null;
     };
-    this.show(new FileDialog(this.state, "save", (path) => this.state.save(path), cancelled));
+    this.show(new FileDialog(this.state, "save", (path) => this.state.save(path), onCancelled));
   }
 
   download(): void {
@@ -80,10 +80,10 @@ export class FileCommands {
       texts.revert,
       [texts.revertQuestion],
       [
-        { label: texts.cancel, main: true },
+        { label: texts.cancel, isMain: true },
         {
           label: texts.revert,
-          danger: true,
+          isDangerous: true,
           run: () => {
             this.state.revert();
             return undefined;
@@ -99,9 +99,9 @@ export class FileCommands {
     dialog.open();
   }
 
-  private ask(what: (discard: boolean) => void): void {
-    this.pending = what;
-    what(false);
+  private ask(request: (discardsChanges: boolean) => void): void {
+    this.pendingRequest = request;
+    request(false);
   }
 
   private onRefused(refusal: ConfigurationRefused): void {
@@ -125,9 +125,9 @@ export class FileCommands {
 
   private askToDiscard(): void {
     const texts = strings.shell;
-    const again = this.pending;
+    const request = this.pendingRequest;
     const proceed = (): undefined => {
-      again?.(true);
+      request?.(true);
       return undefined;
     };
     new Dialog(
@@ -135,10 +135,10 @@ export class FileCommands {
       [texts.unsavedQuestion(this.state.fileName ?? texts.untitled)],
       [
         { label: texts.cancel },
-        { label: texts.discard, danger: true, run: proceed },
+        { label: texts.discard, isDangerous: true, run: proceed },
         {
           label: texts.saveFirst,
-          main: true,
+          isMain: true,
           run: () => {
             this.afterSaving = proceed;
             this.save();
@@ -155,10 +155,10 @@ export class FileCommands {
       title,
       [question],
       [
-        { label: texts.cancel, main: true },
+        { label: texts.cancel, isMain: true },
         {
           label: texts.replace,
-          danger: true,
+          isDangerous: true,
           run: () => {
             this.state.save(path, true);
             return undefined;
@@ -169,7 +169,7 @@ export class FileCommands {
   }
 }
 
-/** Returns an edit in words: `adding Grid`. */
-export function editText(edit: EditName): string {
+/** Returns the text that describes an edit: `adding Grid`. */
+export function formatEdit(edit: EditName): string {
   return strings.shell.edits[edit.kind](edit.name);
 }

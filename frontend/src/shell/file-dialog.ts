@@ -11,10 +11,10 @@ const EXTENSION = ".rviz";
 export class FileDialog {
   private readonly dialog: Dialog;
   private readonly list = h("ul", { class: "file-list", role: "listbox", aria: { label: strings.shell.folder } });
-  private readonly place = h("span", { class: "file-folder" });
+  private readonly folderLabel = h("span", { class: "file-folder" });
   private readonly problem = h("p", { class: "dialog-problem", role: "alert" });
-  private readonly name = h("input", { class: "field wide" });
-  private readonly up: HTMLButtonElement;
+  private readonly nameField = h("input", { class: "field wide" });
+  private readonly upButton: HTMLButtonElement;
   private readonly stopListening: () => void;
   private folder: Folder | null = null;
   private isAccepted = false;
@@ -23,39 +23,39 @@ export class FileDialog {
     private readonly state: ConfigurationState,
     private readonly kind: "open" | "save",
     private readonly onChosen: (path: string) => void,
-    private readonly cancelled: () => void = () => undefined,
+    private readonly onCancelled: () => void = () => undefined,
   ) {
     const texts = strings.shell;
-    this.name.setAttribute("aria-label", texts.fileName);
-    this.name.spellcheck = false;
-    if (kind === "save") this.name.value = state.fileName ?? `${texts.untitled}${EXTENSION}`;
-    this.up = button(texts.folderUp, () => this.ask(this.folder?.parent ?? null), "tool framed", icon("up"));
+    this.nameField.setAttribute("aria-label", texts.fileName);
+    this.nameField.spellcheck = false;
+    if (kind === "save") this.nameField.value = state.fileName ?? `${texts.untitled}${EXTENSION}`;
+    this.upButton = button(texts.folderUp, () => this.ask(this.folder?.parent ?? null), "tool framed", icon("up"));
     this.dialog = new Dialog(
       kind === "open" ? texts.openTitle : texts.saveTitle,
       [
-        h("div", { class: "file-place" }, this.up, this.place),
+        h("div", { class: "file-place" }, this.upButton, this.folderLabel),
         this.list,
-        h("label", { class: "form-field" }, h("span", {}, texts.fileName), this.name),
+        h("label", { class: "form-field" }, h("span", {}, texts.fileName), this.nameField),
         this.problem,
       ],
       [
         { label: texts.cancel },
-        { label: kind === "open" ? texts.openShort : texts.save, main: true, run: () => this.accept() },
+        { label: kind === "open" ? texts.openShort : texts.save, isMain: true, run: () => this.accept() },
       ],
       "file-dialog",
     );
     this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
-    this.name.addEventListener("input", () => this.update());
+    this.nameField.addEventListener("input", () => this.update());
     this.stopListening = state.folders.on((folder) => this.show(folder));
     this.dialog.element.addEventListener("close", () => {
       this.stopListening();
-      if (!this.isAccepted) this.cancelled();
+      if (!this.isAccepted) this.onCancelled();
     });
   }
 
   open(): void {
-    this.dialog.open(this.name);
-    this.name.setSelectionRange(0, Math.max(0, this.name.value.length - EXTENSION.length));
+    this.dialog.open(this.nameField);
+    this.nameField.setSelectionRange(0, Math.max(0, this.nameField.value.length - EXTENSION.length));
     this.update();
     this.ask(null);
   }
@@ -78,12 +78,12 @@ export class FileDialog {
 
   private show(folder: Folder): void {
     this.folder = folder;
-    this.place.replaceChildren(h("bdi", {}, folder.path));
-    this.place.title = folder.path;
-    this.up.disabled = folder.parent === null;
+    this.folderLabel.replaceChildren(h("bdi", {}, folder.path));
+    this.folderLabel.title = folder.path;
+    this.upButton.disabled = folder.parent === null;
     const entries = [
-      ...folder.folders.map((name) => this.entry(name, true)),
-      ...folder.files.map((name) => this.entry(name, false)),
+      ...folder.folders.map((name) => this.createEntry(name, true)),
+      ...folder.files.map((name) => this.createEntry(name, false)),
     ];
     this.list.replaceChildren(...entries);
     if (entries.length === 0) {
@@ -93,14 +93,14 @@ export class FileDialog {
     if (first) first.tabIndex = 0;
   }
 
-  private entry(name: string, isFolder: boolean): HTMLLIElement {
+  private createEntry(name: string, isFolder: boolean): HTMLLIElement {
     const entry = h("li", { role: "option", tabIndex: -1 }, icon(isFolder ? "folder" : "file"), name);
     const choose = (): void => {
-      if (isFolder) this.ask(join(this.folder?.path ?? "", name));
+      if (isFolder) this.ask(joinPath(this.folder?.path ?? "", name));
       else {
-        this.name.value = name;
+        this.nameField.value = name;
         this.update();
-        for (const other of this.list.children) other.setAttribute("aria-selected", String(other === entry));
+        for (const row of this.list.children) row.setAttribute("aria-selected", String(row === entry));
       }
     };
     entry.addEventListener("click", choose);
@@ -118,26 +118,26 @@ export class FileDialog {
     if (event.key === "ArrowDown") entries[Math.min(index + 1, entries.length - 1)]?.focus();
     else if (event.key === "ArrowUp") entries[Math.max(index - 1, 0)]?.focus();
     else if (event.key === "Enter" || event.key === " ") entries[index]?.click();
-    else if (event.key === "Backspace" && !this.up.disabled) this.up.click();
+    else if (event.key === "Backspace" && !this.upButton.disabled) this.upButton.click();
     else return;
     event.preventDefault();
   }
 
   private update(): void {
-    this.dialog.ready = this.name.value.trim() !== "";
+    this.dialog.isReady = this.nameField.value.trim() !== "";
   }
 
   private accept(): boolean {
-    const typed = this.name.value.trim();
-    if (typed === "") return false;
-    const named = this.kind === "save" && !typed.endsWith(EXTENSION) ? `${typed}${EXTENSION}` : typed;
+    const name = this.nameField.value.trim();
+    if (name === "") return false;
+    const fileName = this.kind === "save" && !name.endsWith(EXTENSION) ? `${name}${EXTENSION}` : name;
     this.isAccepted = true;
-    this.onChosen(/^([/~]|[A-Za-z]:[\\/])/.test(named) ? named : join(this.folder?.path ?? "", named));
+    this.onChosen(/^([/~]|[A-Za-z]:[\\/])/.test(fileName) ? fileName : joinPath(this.folder?.path ?? "", fileName));
     return true;
   }
 }
 
-function join(folder: string, name: string): string {
+function joinPath(folder: string, name: string): string {
   if (folder === "" || /[/\\]$/.test(folder)) return folder + name;
   return `${folder}${folder.includes("\\") && !folder.includes("/") ? "\\" : "/"}${name}`;
 }

@@ -2,7 +2,7 @@ import type { ConfigurationState } from "../state/configuration";
 import { matches, SHORTCUTS } from "../widgets/shortcuts";
 import type { FileCommands } from "./file-commands";
 
-/** The editor of source files, as far as keys need it. */
+/** The part of the editor of source files that keys need. */
 interface Sources {
   /** Whether the editor shows files. */
   readonly isEditing: boolean;
@@ -10,7 +10,7 @@ interface Sources {
   saveAll(): void;
 }
 
-/** Where the focus is, and what there is to save. */
+/** The location of the focus, and the unsaved changes. */
 interface Situation {
   readonly focus: "editor" | "configuration" | "elsewhere";
   readonly isEditing: boolean;
@@ -19,10 +19,11 @@ interface Situation {
 }
 
 /**
- * Returns what the key of *Save* saves: the files of the editor or of the panel with the focus; elsewhere changed source
- * files, or else the configuration. While source files are edited, an unchanged configuration needs no name.
+ * Returns what the key of *Save* saves: the files of the editor or of the panel that has the focus; with the focus
+ * elsewhere, the changed source files, otherwise the configuration. While source files are edited, the key does not ask
+ * for the name of an unchanged configuration.
  */
-export function savedByKey({ focus, isEditing, hasUnsavedSources, isConfigurationUnsaved }: Situation): "sources" | "configuration" {
+export function chooseSaved({ focus, isEditing, hasUnsavedSources, isConfigurationUnsaved }: Situation): "sources" | "configuration" {
   if (focus === "configuration") return "configuration";
   return focus === "editor" || hasUnsavedSources || (isEditing && !isConfigurationUnsaved) ? "sources" : "configuration";
 }
@@ -37,7 +38,7 @@ export function bindFileKeys(configuration: ConfigurationState, files: FileComma
   const save = (target: Element | null): void => {
     const isInEditor = target?.matches(".source-editor *") === true;
     const isInPanel = panels.some((panel) => panel.contains(target));
-    const saved = savedByKey({
+    const saved = chooseSaved({
       focus: isInEditor ? "editor" : isInPanel ? "configuration" : "elsewhere",
       isEditing: sources.isEditing,
       hasUnsavedSources: sources.hasUnsaved,
@@ -46,7 +47,7 @@ export function bindFileKeys(configuration: ConfigurationState, files: FileComma
     if (saved === "sources") sources.saveAll();
     else files.save();
   };
-  const keys = [
+  const bindings = [
     { shortcut: SHORTCUTS.save, run: save, editor: true },
     { shortcut: SHORTCUTS.saveAs, run: () => files.saveAs() },
     { shortcut: SHORTCUTS.open, run: () => files.chooseFile() },
@@ -56,13 +57,13 @@ export function bindFileKeys(configuration: ConfigurationState, files: FileComma
   ];
   const onKeyDown = (event: KeyboardEvent): void => {
     const target = event.target instanceof Element ? event.target : null;
-    const found = keys.find(({ shortcut }) => matches(event, shortcut));
-    if (!found || target?.closest("dialog, .terminal-screen")) return;
-    if (found.editor !== true && target?.closest(".source-editor")) return;
-    if (found.text === true && target?.matches("input[type=text], textarea")) return;
+    const binding = bindings.find(({ shortcut }) => matches(event, shortcut));
+    if (!binding || target?.closest("dialog, .terminal-screen")) return;
+    if (binding.editor !== true && target?.closest(".source-editor")) return;
+    if (binding.text === true && target?.matches("input[type=text], textarea")) return;
     event.preventDefault();
     event.stopPropagation();
-    found.run(target);
+    binding.run(target);
   };
   // Capture the event: a field that is edited stops keys from bubbling, and the browser would save the page.
   document.addEventListener("keydown", onKeyDown, true);

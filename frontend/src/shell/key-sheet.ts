@@ -1,13 +1,13 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
 import { WORLD_KEYS } from "../panels/modeling/world-commands";
-import { FIT_KEY, toolName } from "../panels/over-scene/toolbar";
-import { TERMINAL_KEYS, terminalKeyText } from "../panels/terminal/terminal-keys";
+import { FIT_KEY, translateToolName } from "../panels/over-scene/toolbar";
+import { TERMINAL_KEYS, formatTerminalKey } from "../panels/terminal/terminal-keys";
 import { TALK_KEY } from "../panels/voice/talk-button";
 import { TOOLS } from "../scene/tools/catalog";
 import type { ToolsState } from "../state/tools";
 import { strings } from "../strings";
-import { keyText, SHORTCUTS } from "../widgets/shortcuts";
+import { formatShortcut, SHORTCUTS } from "../widgets/shortcuts";
 
 type Row = readonly [keys: string, meaning: string];
 
@@ -25,10 +25,10 @@ export class KeySheet {
   private open(): void {
     const texts = strings.keys;
     const dialog = h("dialog", { class: "key-sheet", aria: { label: texts.title } });
-    const close = button(texts.close, () => dialog.close(), "tool bare", icon("close"));
+    const closeButton = button(texts.close, () => dialog.close(), "tool bare", icon("close"));
     dialog.append(
-      h("header", {}, h("strong", {}, texts.title), h("span", { class: "spacer" }), close),
-      h("div", { class: "key-columns" }, ...this.sections().map(([title, rows, note]) => section(title, rows, note))),
+      h("header", {}, h("strong", {}, texts.title), h("span", { class: "spacer" }), closeButton),
+      h("div", { class: "key-columns" }, ...this.createSections().map(([title, rows, note]) => createSection(title, rows, note))),
     );
     dialog.addEventListener("close", () => {
       this.dialog = null;
@@ -42,12 +42,12 @@ export class KeySheet {
     dialog.showModal();
   }
 
-  private sections(): (readonly [title: string, rows: readonly Row[], note?: string])[] {
+  private createSections(): (readonly [title: string, rows: readonly Row[], note?: string])[] {
     const texts = strings.keys;
     const { shell, displays, modeling, terminal } = strings;
     const tools = this.tools.tools.flatMap((tool): Row[] => {
       const entry = TOOLS.get(tool.cls);
-      return entry ? [[entry.key.toUpperCase(), toolName(tool)]] : [];
+      return entry ? [[entry.key.toUpperCase(), translateToolName(tool)]] : [];
     });
     return [
       [texts.toolsTitle, tools, texts.toolsNote],
@@ -74,31 +74,31 @@ export class KeySheet {
           ["← →", texts.open],
           ["Enter", texts.edit],
           [texts.space, texts.toggle],
-          [keyText(SHORTCUTS.add), displays.addHint],
-          [keyText(SHORTCUTS.duplicate), displays.duplicate],
-          [keyText(SHORTCUTS.rename), displays.rename],
-          [keyText(SHORTCUTS.remove), displays.remove],
-          [`${keyText(SHORTCUTS.moveUp)} ${keyText(SHORTCUTS.moveDown)}`, `${displays.moveUp}, ${displays.moveDown}`],
+          [formatShortcut(SHORTCUTS.add), displays.addHint],
+          [formatShortcut(SHORTCUTS.duplicate), displays.duplicate],
+          [formatShortcut(SHORTCUTS.rename), displays.rename],
+          [formatShortcut(SHORTCUTS.remove), displays.remove],
+          [`${formatShortcut(SHORTCUTS.moveUp)} ${formatShortcut(SHORTCUTS.moveDown)}`, `${displays.moveUp}, ${displays.moveDown}`],
         ],
       ],
       [
         modeling.label,
         [
           ["T R S", Object.values(modeling.modes).join(", ")],
-          [`${keyText(WORLD_KEYS.copy)} ${keyText(WORLD_KEYS.paste)}`, modeling.copyPaste],
-          [keyText(WORLD_KEYS.duplicate), modeling.duplicate],
-          [keyText(WORLD_KEYS.remove), modeling.remove],
-          [keyText(WORLD_KEYS.group), modeling.group],
-          [keyText(WORLD_KEYS.ungroup), modeling.ungroup],
+          [`${formatShortcut(WORLD_KEYS.copy)} ${formatShortcut(WORLD_KEYS.paste)}`, modeling.copyPaste],
+          [formatShortcut(WORLD_KEYS.duplicate), modeling.duplicate],
+          [formatShortcut(WORLD_KEYS.remove), modeling.remove],
+          [formatShortcut(WORLD_KEYS.group), modeling.group],
+          [formatShortcut(WORLD_KEYS.ungroup), modeling.ungroup],
           ["Esc", modeling.deselect],
         ],
       ],
       [
         terminal.panel,
         [
-          [terminalKeyText(TERMINAL_KEYS.copy), terminal.copy],
-          [terminalKeyText(TERMINAL_KEYS.paste), terminal.paste],
-          [terminalKeyText(TERMINAL_KEYS.leave), terminal.leave],
+          [formatTerminalKey(TERMINAL_KEYS.copy), terminal.copy],
+          [formatTerminalKey(TERMINAL_KEYS.paste), terminal.paste],
+          [formatTerminalKey(TERMINAL_KEYS.leave), terminal.leave],
           ["← →", terminal.tabKeys],
         ],
       ],
@@ -106,15 +106,15 @@ export class KeySheet {
         texts.generalTitle,
         [
           ["Esc", texts.escape],
-          [keyText(SHORTCUTS.open), shell.open],
-          [keyText(SHORTCUTS.save), shell.save],
-          [keyText(SHORTCUTS.saveAs), shell.saveAs],
-          [keyText(SHORTCUTS.undo), shell.undo],
-          [keyText(SHORTCUTS.redo), shell.redo],
+          [formatShortcut(SHORTCUTS.open), shell.open],
+          [formatShortcut(SHORTCUTS.save), shell.save],
+          [formatShortcut(SHORTCUTS.saveAs), shell.saveAs],
+          [formatShortcut(SHORTCUTS.undo), shell.undo],
+          [formatShortcut(SHORTCUTS.redo), shell.redo],
           ["R", texts.resetTime],
           [TALK_KEY.toUpperCase(), strings.voice.talkKey],
-          [`${keyText(SHORTCUTS.previousStep)} ${keyText(SHORTCUTS.nextStep)}`, strings.learning.stepKeys],
-          [keyText(SHORTCUTS.checkStep), strings.learning.checkHint],
+          [`${formatShortcut(SHORTCUTS.previousStep)} ${formatShortcut(SHORTCUTS.nextStep)}`, strings.learning.stepKeys],
+          [formatShortcut(SHORTCUTS.checkStep), strings.learning.checkHint],
           ["F11", texts.fullscreen],
           ["?", texts.sheet],
         ],
@@ -123,7 +123,7 @@ export class KeySheet {
   }
 }
 
-function section(title: string, rows: readonly Row[], note?: string): HTMLElement {
+function createSection(title: string, rows: readonly Row[], note?: string): HTMLElement {
   const list = rows.flatMap(([keys, meaning]) => [h("dt", {}, h("kbd", {}, keys)), h("dd", {}, meaning)]);
   return h("section", {}, h("h2", {}, title), h("dl", {}, ...list), note === undefined ? null : h("p", { class: "hint" }, note));
 }

@@ -8,19 +8,19 @@ export function hasOwnDisplays(address: string): boolean {
 }
 
 /** Returns the address of the page with displays of its own, or with the shared ones. */
-export function addressFor(address: string, own: boolean): string {
+export function addressFor(address: string, isOwn: boolean): string {
   const url = new URL(address);
-  if (own) url.searchParams.set(PARAMETER, OWN);
+  if (isOwn) url.searchParams.set(PARAMETER, OWN);
   else url.searchParams.delete(PARAMETER);
   return url.href;
 }
 
-/** Returns the key of this tab's own displays, which identifies them again after a reload. */
-export function ownKey(storage: Pick<Storage, "getItem" | "setItem">): string {
-  const known = storage.getItem(KEY);
-  if (known !== null) return known;
+/** Returns the key that identifies this tab's own displays, also after a reload; creates it on the first call. */
+export function ensureOwnKey(storage: Pick<Storage, "getItem" | "setItem">): string {
+  const storedKey = storage.getItem(KEY);
+  if (storedKey !== null) return storedKey;
   const bytes = crypto.getRandomValues(new Uint8Array(16));
-  const name = Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
-  storage.setItem(KEY, name);
-  return name;
+  const key = Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
+  storage.setItem(KEY, key);
+  return key;
 }

@@ -1,15 +1,15 @@
-import { withRecording, recordingIn } from "../connection/recording-address";
+import { setRecordingName, readRecordingName } from "../connection/recording-address";
 import type { Tokens } from "../connection/tokens";
 import { RefusedError, Upload } from "../connection/upload";
 import { h } from "../dom";
-import { amountOf } from "../panels/timeline/timeline-text";
+import { formatBytesOfTotal } from "../panels/timeline/timeline-text";
 import type { Session } from "../state/session";
 import { language, strings } from "../strings";
 import { Dialog, showNotice } from "../widgets/dialog";
-import { filesOf, recordingAmong, type Dropped } from "./recording-files";
+import { readDroppedFiles, findRecording, type DroppedRecording } from "./recording-files";
 
 /**
- * Opens recordings that the user drops on the page, chooses or has made: uploads them, and opens the page of the
+ * Opens recordings that the user drops on the page, chooses or has recorded: uploads them, and opens the page of the
  * recording.
  */
 export class RecordingDrop {
@@ -34,10 +34,10 @@ export class RecordingDrop {
       this.veil.hidden = true;
       if (!hasFiles(event) || !event.dataTransfer) return;
       event.preventDefault();
-      void filesOf(event.dataTransfer).then((dropped) => this.accept(dropped));
+      void readDroppedFiles(event.dataTransfer).then((recording) => this.accept(recording));
     });
     session.recording.viewRequested.on(({ name, url }) => void this.open(name, 0, (upload) => upload.show(url)));
-    session.connection.on("timeline", ({ live }) => this.leaveClosed(live));
+    session.connection.on("timeline", ({ live: isLive }) => this.leaveClosed(isLive));
   }
 
   /** Lets the user choose a recording on the browser's machine: its file, or all files of its folder. */
@@ -48,65 +48,64 @@ export class RecordingDrop {
     input.accept = ".mcap,.db3,.yaml,.zstd";
     input.addEventListener("change", () => {
       const files = [...(input.files ?? [])].map((file) => ({ name: file.name, file }));
-      this.accept(recordingAmong(strings.recording.folder, files));
+      this.accept(findRecording(strings.recording.folder, files));
     });
     input.click();
   }
 
-  private accept(dropped: Dropped): void {
+  private accept(recording: DroppedRecording): void {
     const texts = strings.recording;
     if (this.isBusy) return;
-    if (dropped.files.length === 0) showNotice(texts.noRecording, texts.noRecordingHint(dropped.name));
-    else void this.send(dropped);
+    if (recording.files.length === 0) showNotice(texts.noRecording, texts.noRecordingHint(recording.name));
+    else void this.send(recording);
   }
 
-  private send({ name, files }: Dropped): Promise<void> {
-    const whole = files.reduce((sum, { file }) => sum + file.size, 0);
-    return this.open(name, whole, (upload) => upload.send(name, files));
+  private send({ name, files }: DroppedRecording): Promise<void> {
+    const totalBytes = files.reduce((sum, { file }) => sum + file.size, 0);
+    return this.open(name, totalBytes, (upload) => upload.send(name, files));
   }
 
   /**
-   * Opens the page of a recording once the server shows it, with a dialog for the progress until then. `whole` is the
-   * size in bytes.
+   * Opens the page of a recording as soon as the server shows it. Until then, a dialog shows the progress.
    */
-  private async open(name: string, whole: number, bring: (upload: Upload) => Promise<string | null>): Promise<void> {
+  private async open(name: string, totalBytes: number, requestRecording: (upload: Upload) => Promise<string | null>): Promise<void> {
     const texts = strings.recording;
     if (this.isBusy) return;
     const bar = h("progress", { class: "wide", aria: { label: texts.sending(name) } });
     const text = h("p", { role: "status" });
-    const show = (sent: number): void => {
-      bar.max = Math.max(1, whole);
-      if (sent < whole) bar.value = sent;
+    const show = (sentBytes: number): void => {
+      bar.max = Math.max(1, totalBytes);
+      if (sentBytes < totalBytes) bar.value = sentBytes;
       else bar.removeAttribute("value");
-      text.textContent = sent < whole ? amountOf(sent, whole) : texts.opening;
+      text.textContent = sentBytes < totalBytes ? formatBytesOfTotal(sentBytes, totalBytes) : texts.opening;
     };
     const upload = new Upload(document.baseURI, this.tokens, language, show);
-    let done = false;
-    const dialog = new Dialog(texts.sending(name), [bar, text], [{ label: strings.shell.cancel, main: true }]);
+    let isFinished = false;
+    const dialog = new Dialog(texts.sending(name), [bar, text], [{ label: strings.shell.cancel, isMain: true }]);
     dialog.element.addEventListener("close", () => {
-      if (!done) upload.cancel();
+      if (!isFinished) upload.cancel();
     });
     this.isBusy = true;
     show(0);
     dialog.open();
     try {
-      const recording = await bring(upload);
-      if (recording !== null) location.assign(withRecording(location.href, recording));
+      const recording = await requestRecording(upload);
+      if (recording !== null) location.assign(setRecordingName(location.href, recording));
     } catch (error) {
-      done = true;
+      isFinished = true;
       dialog.close();
       showNotice(texts.notOpened(name), error instanceof RefusedError && error.message !== "" ? error.message : texts.broken);
     } finally {
-      done = true;
+      isFinished = true;
       this.isBusy = false;
       dialog.close();
     }
   }
 
   /** Returns to the live page, because the server closes recordings that no page has viewed for a while. */
-  private leaveClosed(live: boolean): void {
-    if (!live || recordingIn(location.href) === null) return;
-    history.replaceState(history.state, "", withRecording(location.href, null));
+  private leaveClosed(isLive: boolean): void {
+    if (!isLive || readRecordingName(location.href) === null) return;
+    history.replaceState(history.state, "", setRecordingName(location.href, null));
     showNotice(strings.recording.gone, strings.recording.goneHint);
   }
 }

@@ -13,19 +13,19 @@ const SCALES = [1, 2, 4] as const;
 
 /** The menu of exports: images and videos of the scene, and the robot as a file. */
 export class ShareMenu {
-  /** The button shown while a video is recorded: its duration, and a click to stop. */
+  /** The button shown while a video is recorded: it shows the duration, and a click stops the recording. */
   readonly element: HTMLElement;
   private readonly video: VideoRecorder | null;
-  private readonly stop: HTMLButtonElement;
+  private readonly stopButton: HTMLButtonElement;
 
   constructor(
     private readonly session: Session,
     private readonly stage: Stage | null,
     private readonly tokens: Tokens,
   ) {
-    this.video = stage && VideoRecorder.isPossible ? recorderOf(stage, (video) => this.saveVideo(video)) : null;
-    this.stop = button(strings.sharing.recording, () => this.video?.stop(), "tool recording", "");
-    this.element = h("span", { class: "recorder", role: "status" }, this.stop);
+    this.video = stage && VideoRecorder.isPossible ? createRecorder(stage, (video) => this.saveVideo(video)) : null;
+    this.stopButton = button(strings.sharing.recording, () => this.video?.stop(), "tool recording", "");
+    this.element = h("span", { class: "recorder", role: "status" }, this.stopButton);
     this.video?.changed.on(() => this.showTime());
     this.showTime();
     session.connection.on("export_ready", ({ url, name, outside }) => {
@@ -35,27 +35,27 @@ export class ShareMenu {
     session.connection.on("export_failed", ({ message }) => showNotice(strings.sharing.exportFailed, message));
   }
 
-  entries(): MenuEntry[] {
+  createEntries(): MenuEntry[] {
     const texts = strings.sharing;
     const { stage, video } = this;
-    const recording = video?.isRecording ?? false;
+    const isRecording = video?.isRecording ?? false;
     return [
       ...SCALES.map((scale): MenuEntry => ({
         label: scale === 1 ? texts.screenshot : texts.screenshotScaled(scale),
         icon: "camera",
-        disabled: stage === null,
+        isDisabled: stage === null,
         run: () => void this.saveImage(scale),
       })),
       {
-        label: recording ? texts.stopVideo(formatTime(video?.seconds ?? 0)) : texts.startVideo,
+        label: isRecording ? texts.stopVideo(formatTime(video?.seconds ?? 0)) : texts.startVideo,
         icon: "record",
-        disabled: video === null,
-        separate: true,
-        run: () => (recording ? video?.stop() : video?.start()),
+        isDisabled: video === null,
+        hasLineAbove: true,
+        run: () => (isRecording ? video?.stop() : video?.start()),
       },
-      { label: texts.exportHtml, icon: "download", separate: true, disabled: this.hasNoRobot, run: () => this.ask("html") },
-      { label: texts.exportGlb, icon: "download", disabled: this.hasNoRobot, run: () => this.ask("glb") },
-      { label: texts.copyLink, hint: texts.copyLinkHint, icon: "link", separate: true, run: () => void this.copyLink() },
+      { label: texts.exportHtml, icon: "download", hasLineAbove: true, isDisabled: this.hasNoRobot, run: () => this.ask("html") },
+      { label: texts.exportGlb, icon: "download", isDisabled: this.hasNoRobot, run: () => this.ask("glb") },
+      { label: texts.copyLink, hint: texts.copyLinkHint, icon: "link", hasLineAbove: true, run: () => void this.copyLink() },
     ];
   }
 
@@ -65,11 +65,11 @@ export class ShareMenu {
 
   private async saveImage(scale: number): Promise<void> {
     const image = await this.stage?.takeScreenshot(scale);
-    if (image) saveBlob(this.fileName("png"), image);
+    if (image) saveBlob(this.createFileName("png"), image);
   }
 
   private saveVideo(video: Blob): void {
-    saveBlob(this.fileName(video.type.startsWith("video/mp4") ? "mp4" : "webm"), video);
+    saveBlob(this.createFileName(video.type.startsWith("video/mp4") ? "mp4" : "webm"), video);
   }
 
   private ask(format: "html" | "glb"): void {
@@ -85,22 +85,22 @@ export class ShareMenu {
   }
 
   private showTime(): void {
-    const recording = this.video?.isRecording ?? false;
-    this.element.hidden = !recording;
+    const isRecording = this.video?.isRecording ?? false;
+    this.element.hidden = !isRecording;
     const label = strings.sharing.stopVideo(formatTime(this.video?.seconds ?? 0));
-    this.stop.textContent = `● ${formatTime(this.video?.seconds ?? 0)}`;
-    this.stop.title = label;
-    this.stop.setAttribute("aria-label", label);
+    this.stopButton.textContent = `● ${formatTime(this.video?.seconds ?? 0)}`;
+    this.stopButton.title = label;
+    this.stopButton.setAttribute("aria-label", label);
   }
 
-  /** Returns a name from the robot and the current time. */
-  private fileName(extension: string): string {
+  /** Returns a file name that contains the robot's name and the current time. */
+  private createFileName(extension: string): string {
     const name = (this.session.robot?.name ?? "scene").replace(/[^\p{L}\p{N}._-]+/gu, "_");
     const time = new Date().toISOString().slice(0, 19).replace(/[T:]/g, "-");
     return `${name}-${time}.${extension}`;
   }
 }
 
-function recorderOf({ viewport, loop }: Stage, finished: (video: Blob) => void): VideoRecorder {
-  return new VideoRecorder(viewport.canvas, () => loop.invalidate(), finished);
+function createRecorder({ viewport, loop }: Stage, onFinished: (video: Blob) => void): VideoRecorder {
+  return new VideoRecorder(viewport.canvas, () => loop.invalidate(), onFinished);
 }

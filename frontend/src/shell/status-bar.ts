@@ -5,7 +5,7 @@ import { strings } from "../strings";
 
 const REFRESH_MS = 500;
 
-/** Connection, fixed frame, robot and frame rate, in the foot of the page. */
+/** The bar in the footer with the connection, the fixed frame, the robot and the frame rate. */
 export class StatusBar {
   readonly element: HTMLElement;
   private readonly connection = h("span", { class: "connection", role: "status" });
@@ -62,7 +62,7 @@ export class StatusBar {
     const fps = rate === null ? strings.status.idle : strings.status.fps(rate);
     const text = rate !== null && drawingPace.isSlow ? strings.status.slow(fps) : fps;
     if (this.rate.textContent !== text) this.rate.textContent = text;
-    const drawn = strings.status.frames(this.stage.loop.framesDrawn);
-    this.rate.title = drawingPace.software === null ? drawn : `${drawn}. ${strings.sharing.software(drawingPace.software)}`;
+    const frameCount = strings.status.frames(this.stage.loop.framesDrawn);
+    this.rate.title = drawingPace.software === null ? frameCount : `${frameCount}. ${strings.sharing.software(drawingPace.software)}`;
   }
 }

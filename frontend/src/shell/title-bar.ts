@@ -4,10 +4,10 @@ import type { Dock } from "../panels/dock/dock";
 import type { Session } from "../state/session";
 import { THEME_CHOICES, type ThemeState } from "../state/theme";
 import { changeLanguage, strings } from "../strings";
-import { logo } from "../widgets/logo";
+import { createLogo } from "../widgets/logo";
 import { openMenu, type MenuEntry } from "../widgets/menu";
-import { keyText, SHORTCUTS } from "../widgets/shortcuts";
-import { editText, type FileCommands } from "./file-commands";
+import { formatShortcut, SHORTCUTS } from "../widgets/shortcuts";
+import { formatEdit, type FileCommands } from "./file-commands";
 import { addressFor } from "./own-displays";
 import type { RecordingDrop } from "./recording-drop";
 import type { ShareMenu } from "./share-menu";
@@ -17,8 +17,8 @@ export class TitleBar {
   readonly element: HTMLElement;
   private readonly title = h("span", { class: "document-title" });
   private readonly file = h("span", { class: "file-name" });
-  private readonly undo: HTMLButtonElement;
-  private readonly redo: HTMLButtonElement;
+  private readonly undoButton: HTMLButtonElement;
+  private readonly redoButton: HTMLButtonElement;
   private programTitle = "";
 
   constructor(
@@ -31,28 +31,28 @@ export class TitleBar {
   ) {
     const texts = strings.shell;
     const { configuration } = session;
-    this.undo = button(texts.undo, () => configuration.undo(), "tool bare", icon("undo"));
-    this.redo = button(texts.redo, () => configuration.redo(), "tool bare", icon("redo"));
+    this.undoButton = button(texts.undo, () => configuration.undo(), "tool bare", icon("undo"));
+    this.redoButton = button(texts.redo, () => configuration.redo(), "tool bare", icon("redo"));
     const menus = [
-      menuButton(texts.file, () => this.fileMenu()),
-      menuButton(texts.panels, () => this.panelsMenu()),
-      menuButton(strings.sharing.share, () => share.entries()),
+      createMenuButton(texts.file, () => this.createFileMenu()),
+      createMenuButton(texts.panels, () => this.createPanelsMenu()),
+      createMenuButton(strings.sharing.share, () => share.createEntries()),
     ];
     bindArrowKeys(menus);
     this.element = h(
       "header",
       { class: "title-bar" },
-      logo(),
+      createLogo(),
       h("span", { class: "brand" }, "Linkwright"),
       h("nav", { class: "menu-bar", aria: { label: texts.menu } }, ...menus),
-      this.undo,
-      this.redo,
+      this.undoButton,
+      this.redoButton,
       this.file,
       this.title,
       h("span", { class: "spacer" }),
       share.element,
-      this.ownSwitch(),
-      themeButton(theme),
+      this.createOwnSwitch(),
+      createThemeButton(theme),
       button(
         texts.languageHint,
         changeLanguage,
@@ -78,41 +78,41 @@ export class TitleBar {
     this.file.title = `${current.path ?? texts.untitled}${current.unsaved ? ` (${texts.unsaved})` : ""}`;
     this.title.textContent = this.programTitle;
     document.title = `${current.unsaved ? "● " : ""}${this.programTitle || name} - Linkwright`;
-    this.undo.disabled = current.undo === null;
-    this.redo.disabled = current.redo === null;
-    describe(this.undo, current.undo ? texts.undoing(editText(current.undo)) : texts.undo, keyText(SHORTCUTS.undo));
-    describe(this.redo, current.redo ? texts.redoing(editText(current.redo)) : texts.redo, keyText(SHORTCUTS.redo));
+    this.undoButton.disabled = current.undo === null;
+    this.redoButton.disabled = current.redo === null;
+    setLabel(this.undoButton, current.undo ? texts.undoing(formatEdit(current.undo)) : texts.undo, formatShortcut(SHORTCUTS.undo));
+    setLabel(this.redoButton, current.redo ? texts.redoing(formatEdit(current.redo)) : texts.redo, formatShortcut(SHORTCUTS.redo));
   }
 
-  private fileMenu(): MenuEntry[] {
+  private createFileMenu(): MenuEntry[] {
     const texts = strings.shell;
     const { files } = this;
     const { current } = this.session.configuration;
     return [
       { label: texts.newFile, icon: "file", run: () => files.begin() },
-      { label: texts.open, icon: "open", keys: keyText(SHORTCUTS.open), run: () => files.chooseFile() },
+      { label: texts.open, icon: "open", keys: formatShortcut(SHORTCUTS.open), run: () => files.chooseFile() },
       { label: texts.openLocal, icon: "upload", run: () => files.chooseLocal() },
       { label: strings.recording.open, hint: strings.recording.openFileHint, icon: "play", run: () => this.recordings.choose() },
-      { label: texts.save, icon: "save", keys: keyText(SHORTCUTS.save), separate: true, run: () => files.save() },
-      { label: texts.saveAs, keys: keyText(SHORTCUTS.saveAs), run: () => files.saveAs() },
+      { label: texts.save, icon: "save", keys: formatShortcut(SHORTCUTS.save), hasLineAbove: true, run: () => files.save() },
+      { label: texts.saveAs, keys: formatShortcut(SHORTCUTS.saveAs), run: () => files.saveAs() },
       { label: texts.download, icon: "download", run: () => files.download() },
       {
         label: texts.revert,
-        disabled: current.path === null || !current.unsaved,
-        separate: true,
+        isDisabled: current.path === null || !current.unsaved,
+        hasLineAbove: true,
         run: () => files.revert(),
       },
       ...current.recent.map((path, index) => ({
-        label: shortened(path),
+        label: shorten(path),
         hint: path,
         icon: "recent" as const,
-        separate: index === 0,
+        hasLineAbove: index === 0,
         run: () => files.open(path),
       })),
     ];
   }
 
-  private panelsMenu(): MenuEntry[] {
+  private createPanelsMenu(): MenuEntry[] {
     const { dock } = this;
     return [
       ...dock.ids
@@ -121,43 +121,43 @@ export class TitleBar {
         .filter((id) => id !== "program" || this.session.terminals.programs.length > 0)
         .map((id) => ({
           label: strings.panels[id],
-          checked: dock.isOpen(id),
+          isChecked: dock.isOpen(id),
           run: () => (dock.isOpen(id) ? dock.close(id) : dock.open(id)),
         })),
-      { label: strings.shell.resetLayout, separate: true, icon: "reset", run: () => dock.reset() },
+      { label: strings.shell.resetLayout, hasLineAbove: true, icon: "reset", run: () => dock.reset() },
     ];
   }
 
-  private ownSwitch(): HTMLElement {
+  private createOwnSwitch(): HTMLElement {
     const texts = strings.shell;
     const { configuration } = this.session;
-    const choose = (own: boolean) => (): void => {
-      if (own !== configuration.current.own) location.assign(addressFor(location.href, own));
+    const choose = (isOwn: boolean) => (): void => {
+      if (isOwn !== configuration.current.own) location.assign(addressFor(location.href, isOwn));
     };
-    const shared = button(texts.sharedDisplays, choose(false), "", icon("shared"), texts.shared);
-    const own = button(texts.ownHint, choose(true), "", icon("own"), texts.own);
+    const sharedButton = button(texts.sharedDisplays, choose(false), "", icon("shared"), texts.shared);
+    const ownButton = button(texts.ownHint, choose(true), "", icon("own"), texts.own);
     const show = (): void => {
-      for (const [each, on] of [
-        [shared, !configuration.current.own],
-        [own, configuration.current.own],
+      for (const [element, isPressed] of [
+        [sharedButton, !configuration.current.own],
+        [ownButton, configuration.current.own],
       ] as const) {
-        each.classList.toggle("on", on);
-        each.setAttribute("aria-pressed", String(on));
+        element.classList.toggle("on", isPressed);
+        element.setAttribute("aria-pressed", String(isPressed));
       }
     };
     configuration.changed.on(show);
     show();
-    return h("div", { class: "segmented own-switch", role: "group", aria: { label: texts.displays } }, shared, own);
+    return h("div", { class: "segmented own-switch", role: "group", aria: { label: texts.displays } }, sharedButton, ownButton);
   }
 }
 
-function describe(element: HTMLButtonElement, name: string, keys: string): void {
+function setLabel(element: HTMLButtonElement, name: string, keys: string): void {
   element.title = `${name} (${keys})`;
   element.setAttribute("aria-label", name);
 }
 
-function menuButton(label: string, entries: () => MenuEntry[]): HTMLButtonElement {
-  const element = button(label, () => openMenu(element, entries()), "tool menu-button", label);
+function createMenuButton(label: string, createEntries: () => MenuEntry[]): HTMLButtonElement {
+  const element = button(label, () => openMenu(element, createEntries()), "tool menu-button", label);
   element.setAttribute("aria-haspopup", "menu");
   element.setAttribute("aria-expanded", "false");
   element.removeAttribute("title");
@@ -177,17 +177,17 @@ function bindArrowKeys(menus: readonly HTMLButtonElement[]): void {
   }
 }
 
-function shortened(path: string): string {
+function shorten(path: string): string {
   return path.length <= 60 ? path : `…${path.slice(-58)}`;
 }
 
 /** Returns the button that shows the theme, with a menu to choose one. */
-function themeButton(theme: ThemeState): HTMLButtonElement {
+function createThemeButton(theme: ThemeState): HTMLButtonElement {
   const texts = strings.shell;
   const choose = (): void => {
     const entries = THEME_CHOICES.map((choice) => ({
       label: texts.themes[choice],
-      checked: theme.choice === choice,
+      isChecked: theme.choice === choice,
       run: () => theme.choose(choice),
     }));
     openMenu(element, entries);

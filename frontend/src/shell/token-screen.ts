@@ -1,8 +1,8 @@
 import type { Connection } from "../connection/connection";
-import { tokenOf, type Tokens } from "../connection/tokens";
+import { extractToken, type Tokens } from "../connection/tokens";
 import { button, h } from "../dom";
 import { strings } from "../strings";
-import { logo } from "../widgets/logo";
+import { createLogo } from "../widgets/logo";
 
 /** The screen over everything while the page has no valid token: where to find the token, and a field for it. */
 export class TokenScreen {
@@ -31,7 +31,7 @@ export class TokenScreen {
       h(
         "div",
         { class: "door-box" },
-        h("header", {}, logo(), h("h1", {}, texts.title)),
+        h("header", {}, createLogo(), h("h1", {}, texts.title)),
         h("p", {}, texts.printed),
         h("code", {}, `Viewer: ${location.origin}/?token=…`),
         h("p", {}, texts.hint),
@@ -50,21 +50,21 @@ export class TokenScreen {
       this.wasOpen = true;
       this.show(false);
     }
-    // A page that was connected before keeps showing its content, with a notice.
+    // A page that was connected earlier continues to show its content, with a notice.
     if (state !== "refused" || this.wasOpen) return;
     if (this.tokens.current !== null) this.problem.textContent = strings.door.unknown;
     this.show(true);
   }
 
-  private show(shown: boolean): void {
-    this.page.inert = shown;
-    if (shown !== this.element.hidden) return;
-    this.element.hidden = !shown;
-    if (shown) this.field.focus();
+  private show(isShown: boolean): void {
+    this.page.inert = isShown;
+    if (isShown !== this.element.hidden) return;
+    this.element.hidden = !isShown;
+    if (isShown) this.field.focus();
   }
 
   private submit(): void {
-    const token = tokenOf(this.field.value);
+    const token = extractToken(this.field.value);
     this.problem.textContent = token === null ? strings.door.noToken : "";
     if (token === null) {
       this.field.focus();

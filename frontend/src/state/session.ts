@@ -1,7 +1,7 @@
 import type { Connection } from "../connection/connection";
 import type { DiagnosticItem, Hello, LinkProvenance, PropertyValue, RobotScene } from "../protocol";
 import { Signal } from "../signal";
-import { browserStorage } from "../storage";
+import { openBrowserStorage } from "../storage";
 import { AngleUnits } from "./angle-unit";
 import { ComparisonState } from "./comparison";
 import { ConfigurationState } from "./configuration";
@@ -67,10 +67,10 @@ export class Session {
   /** Emitted when a menu in the scene is to be opened. */
   readonly sceneMenu = new Signal<SceneMenu>();
   readonly focus = new ElementFocus(this.selection, this.robots);
-  readonly inspect = new InspectState(browserStorage());
-  readonly poses = new PoseStore(browserStorage());
-  readonly angles = new AngleUnits(browserStorage());
-  readonly memory = new PageMemory(browserStorage("sessionStorage"));
+  readonly inspect = new InspectState(openBrowserStorage());
+  readonly poses = new PoseStore(openBrowserStorage());
+  readonly angles = new AngleUnits(openBrowserStorage());
+  readonly memory = new PageMemory(openBrowserStorage("sessionStorage"));
   readonly monitor: MonitorState;
   readonly voice: VoiceState;
   readonly words: WordsState;
@@ -92,12 +92,12 @@ export class Session {
     this.slowConnection = new SlowConnection(this.data);
     this.slowness = new Slowness(this.slowConnection, this.drawingPace, connection);
     this.simulation = new SimulationState(connection);
-    this.modeling = new Modeling(connection, browserStorage());
-    this.editing = new EditingState(connection, browserStorage());
+    this.modeling = new Modeling(connection, openBrowserStorage());
+    this.editing = new EditingState(connection, openBrowserStorage());
     this.joints = new JointsState(connection);
     this.description = new DescriptionState(connection);
-    this.monitor = new MonitorState(connection, browserStorage());
-    this.voice = new VoiceState(connection, browserStorage());
+    this.monitor = new MonitorState(connection, openBrowserStorage());
+    this.voice = new VoiceState(connection, openBrowserStorage());
     this.words = new WordsState(connection, this.voice);
     this.textEditor = new TextEditorLink(connection, this.focus);
     this.terminals = new TerminalsState(connection);

@@ -1,7 +1,7 @@
 import { LANGUAGES, type Language } from "../protocol/languages";
 import { takeRequested } from "../requested-settings";
 import { Signal } from "../signal";
-import { browserStorage } from "../storage";
+import { openBrowserStorage } from "../storage";
 import { en, type Strings } from "./en";
 import { zh } from "./zh";
 
@@ -18,10 +18,10 @@ function languageOf(tag: string): Language | undefined {
 }
 
 const requested = languageOf(takeRequested("language", globalThis.location, globalThis.history) ?? "");
-if (requested) browserStorage().setItem(LANGUAGE_KEY, requested);
+if (requested) openBrowserStorage().setItem(LANGUAGE_KEY, requested);
 
 export const language: Language =
-  requested ?? languageOf(browserStorage().getItem(LANGUAGE_KEY) ?? "") ?? languageOf(navigator.language) ?? FALLBACK;
+  requested ?? languageOf(openBrowserStorage().getItem(LANGUAGE_KEY) ?? "") ?? languageOf(navigator.language) ?? FALLBACK;
 
 /** Its tag, for the document. */
 export const languageTag: string = LANGUAGES[language];
@@ -34,7 +34,7 @@ export const languageChosen = new Signal();
 
 /** Remembers the next language as the user's and reloads the page. */
 export function changeLanguage(): void {
-  browserStorage().setItem(LANGUAGE_KEY, ALL[ALL.indexOf(language) + 1] ?? FALLBACK);
+  openBrowserStorage().setItem(LANGUAGE_KEY, ALL[ALL.indexOf(language) + 1] ?? FALLBACK);
   languageChosen.emit();
   location.reload();
 }

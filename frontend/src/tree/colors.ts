@@ -10,9 +10,9 @@ export function formatColor(hex: string): string {
 
 /** Parses `48; 48; 48`, `48, 48, 48`, `48 48 48` or `#303030`; returns null if the text is not a color. */
 export function parseColor(text: string): string | null {
-  const trimmed = text.trim();
-  if (/^#[0-9a-f]{6}$/i.test(trimmed)) return trimmed.toLowerCase();
-  const parts = trimmed.split(/[\s;,]+/).map(Number);
+  const color = text.trim();
+  if (/^#[0-9a-f]{6}$/i.test(color)) return color.toLowerCase();
+  const parts = color.split(/[\s;,]+/).map(Number);
   if (parts.length !== 3 || parts.some((part) => !Number.isInteger(part) || part < 0 || part > 255)) return null;
   return `#${parts.map((part) => part.toString(16).padStart(2, "0")).join("")}`;
 }

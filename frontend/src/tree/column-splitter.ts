@@ -1,7 +1,7 @@
 import { h } from "../dom";
 
-const SMALLEST = 0.2;
-const LARGEST = 0.8;
+const MIN_SHARE = 0.2;
+const MAX_SHARE = 0.8;
 
 /** The draggable line between names and values. */
 export class ColumnSplitter {
@@ -16,8 +16,8 @@ export class ColumnSplitter {
       const box = this.element.parentElement;
       if (!box || !this.element.hasPointerCapture(event.pointerId)) return;
       const { left, width } = box.getBoundingClientRect();
-      const part = Math.min(LARGEST, Math.max(SMALLEST, (event.clientX - left) / width));
-      box.style.setProperty("--names", `${(part * 100).toFixed(1)}%`);
+      const share = Math.min(MAX_SHARE, Math.max(MIN_SHARE, (event.clientX - left) / width));
+      box.style.setProperty("--names", `${(share * 100).toFixed(1)}%`);
     });
   }
 }

@@ -3,15 +3,15 @@ import type { PropertyValue } from "../protocol";
 import { strings } from "../strings";
 import { formatColor, parseColor } from "./colors";
 import { NameEditor } from "./name-editor";
-import { clamp, formatNumber, parseNumber, stepFor } from "./numbers";
+import { clamp, formatNumber, parseNumber, chooseStep } from "./numbers";
 import { TextEditor } from "./text-editor";
 import type { Editor, TreeItem } from "./tree-item";
 
-/** Creates the editor for an item; `current` returns the newest item of the row, `frames` the frames to offer. */
-export function createEditor(item: TreeItem, current: () => TreeItem, frames: () => readonly string[]): Editor {
-  const commit = (value: PropertyValue): void => current().set?.(value);
+/** Creates the editor for an item; `getItem` returns the newest item of the row, `getFrames` the frames to offer. */
+export function createEditor(item: TreeItem, getItem: () => TreeItem, getFrames: () => readonly string[]): Editor {
+  const commit = (value: PropertyValue): void => getItem().set?.(value);
   if (item.kind === "group") return new PlainText();
-  if (item.readOnly === true || !item.set) return item.kind === "bool" ? new CheckBox(commit) : new PlainText();
+  if (item.isReadOnly === true || !item.set) return item.kind === "bool" ? new CheckBox(commit) : new PlainText();
   switch (item.kind) {
     case "bool":
       return new CheckBox(commit);
@@ -20,42 +20,42 @@ export function createEditor(item: TreeItem, current: () => TreeItem, frames: ()
     case "color":
       return new ColorEditor(commit);
     case "frame":
-      return new NameEditor(commit, strings.tree.frames, ({ options }, show) => show(options?.length ? options : frames()));
+      return new NameEditor(commit, strings.tree.frames, ({ options }, show) => show(options?.length ? options : getFrames()));
     case "int":
     case "float":
-      return numberEditor(item.kind === "int", current, commit);
+      return createNumberEditor(item.kind === "int", getItem, commit);
     case "topic":
-      return new NameEditor(commit, strings.displays.topics, (each, show) => each.requestNames?.(show), true);
+      return new NameEditor(commit, strings.displays.topics, (topicItem, show) => topicItem.requestNames?.(show), true);
     case "string":
       if (item.options?.length) {
         return new NameEditor(commit, strings.suggestions, ({ options }, show) => show(options ?? []), true);
       }
-      return new TextEditor({ format: display, parse: (text) => text, commit });
+      return new TextEditor({ format: formatValue, parse: (text) => text, commit });
   }
 }
 
-function display(value: PropertyValue): string {
+function formatValue(value: PropertyValue): string {
   if (typeof value === "number") return formatNumber(value);
   return value === null ? "" : String(value);
 }
 
-function numberEditor(whole: boolean, current: () => TreeItem, commit: (value: PropertyValue) => void): Editor {
-  const bounded = (value: number): number => {
-    const { minimum, maximum } = current();
-    return clamp(whole ? Math.round(value) : value, minimum ?? null, maximum ?? null);
+function createNumberEditor(isInteger: boolean, getItem: () => TreeItem, commit: (value: PropertyValue) => void): Editor {
+  const limit = (value: number): number => {
+    const { minimum, maximum } = getItem();
+    return clamp(isInteger ? Math.round(value) : value, minimum ?? null, maximum ?? null);
   };
   return new TextEditor({
-    numeric: true,
-    format: display,
+    isNumeric: true,
+    format: formatValue,
     parse: (text) => {
       const value = parseNumber(text);
-      return value === null ? null : bounded(value);
+      return value === null ? null : limit(value);
     },
     step: (text, direction) => {
       const value = parseNumber(text);
       if (value === null) return null;
-      const step = stepFor(value, whole);
-      return bounded(Number((value + direction * step).toPrecision(12)));
+      const step = chooseStep(value, isInteger);
+      return limit(Number((value + direction * step).toPrecision(12)));
     },
     commit,
   });
@@ -65,7 +65,7 @@ class PlainText implements Editor {
   readonly element = h("span", { class: "value-text" });
 
   show(item: TreeItem): void {
-    const text = item.kind === "group" ? String(item.value ?? "") : display(item.value);
+    const text = item.kind === "group" ? String(item.value ?? "") : formatValue(item.value);
     if (this.element.textContent !== text) this.element.textContent = text;
     this.element.title = text;
   }
@@ -86,7 +86,7 @@ class CheckBox implements Editor {
 
   show(item: TreeItem): void {
     this.element.checked = item.value === true;
-    this.element.disabled = item.readOnly === true || !item.set;
+    this.element.disabled = item.isReadOnly === true || !item.set;
     this.element.setAttribute("aria-label", item.name);
   }
 
@@ -103,7 +103,7 @@ class CheckBox implements Editor {
 
 class Choice implements Editor {
   readonly element = h("select", { class: "choice" });
-  private options = "";
+  private optionsKey = "";
 
   constructor(commit: (value: PropertyValue) => void) {
     this.element.tabIndex = -1;
@@ -113,8 +113,8 @@ class Choice implements Editor {
   show(item: TreeItem): void {
     const value = String(item.value ?? "");
     const options = [...new Set([...(item.options ?? []), value])];
-    if (options.join("\n") !== this.options) {
-      this.options = options.join("\n");
+    if (options.join("\n") !== this.optionsKey) {
+      this.optionsKey = options.join("\n");
       this.element.replaceChildren(...options.map((option) => new Option(strings.values[option] ?? option, option)));
     }
     this.element.value = value;

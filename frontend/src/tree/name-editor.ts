@@ -5,7 +5,7 @@ import { strings } from "../strings";
 import { TextEditor } from "./text-editor";
 import type { Editor, TreeItem } from "./tree-item";
 
-/** Passes the names to choose from to `show`, immediately or once they are known. */
+/** Passes the names to choose from to `show`, immediately or when they have arrived. */
 export type Offer = (item: TreeItem, show: (names: readonly string[]) => void) => void;
 
 /** An editor for the name of a frame or topic: any text, or a name from a list. */
@@ -19,13 +19,13 @@ export class NameEditor implements Editor {
     private readonly commit: (value: PropertyValue) => void,
     private readonly label: string,
     private readonly offer: Offer,
-    mayBeEmpty = false,
+    allowsEmpty = false,
   ) {
-    const parse = (text: string): string | null => text.trim() || (mayBeEmpty ? "" : null);
+    const parse = (text: string): string | null => text.trim() || (allowsEmpty ? "" : null);
     this.text = new TextEditor({ format: String, parse, commit });
-    const open = button(label, () => this.toggleList(), "drop", icon("chevron"));
-    open.tabIndex = -1;
-    this.element = h("span", { class: "frame-editor" }, this.text.element, open);
+    const openButton = button(label, () => this.toggleList(), "drop", icon("chevron"));
+    openButton.tabIndex = -1;
+    this.element = h("span", { class: "frame-editor" }, this.text.element, openButton);
     this.text.element.addEventListener("keydown", (event) => {
       if (event.key === "ArrowDown") {
         this.open();
@@ -70,8 +70,8 @@ export class NameEditor implements Editor {
     this.list.style.left = `${box.left}px`;
     this.list.style.minWidth = `${box.width}px`;
     document.body.append(this.list);
-    const below = window.innerHeight - box.bottom;
-    if (below < this.list.offsetHeight + 8 && box.top > below) this.list.style.bottom = `${window.innerHeight - box.top}px`;
+    const spaceBelow = window.innerHeight - box.bottom;
+    if (spaceBelow < this.list.offsetHeight + 8 && box.top > spaceBelow) this.list.style.bottom = `${window.innerHeight - box.top}px`;
     else this.list.style.top = `${box.bottom}px`;
     const current = entries.find((entry) => entry.dataset["name"] === this.item?.value);
     (current ?? (this.list.firstElementChild as HTMLElement | null))?.focus();

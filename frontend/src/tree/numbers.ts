@@ -1,5 +1,5 @@
-/** From this size on, numbers with fixed decimals are written with an exponent. */
-const EXPONENT_FROM = 1e6;
+/** The magnitude from which numbers with fixed decimals are written with an exponent. */
+const MIN_EXPONENT_VALUE = 1e6;
 
 /** Returns a number as in a property row: at most six significant digits, no trailing zeros. */
 export function formatNumber(value: number): string {
@@ -20,16 +20,16 @@ export function formatPoint(values: readonly number[]): string {
  * an exponent.
  */
 export function formatFixed(value: number, digits: number): string {
-  if (Math.abs(value) >= EXPONENT_FROM) return value.toExponential(2);
+  if (Math.abs(value) >= MIN_EXPONENT_VALUE) return value.toExponential(2);
   const text = value.toFixed(digits);
   return Number(text) === 0 ? (0).toFixed(digits) : text;
 }
 
 /** Parses a number that a user typed, with a point or a comma; returns null if it is not a number. */
 export function parseNumber(text: string): number | null {
-  const trimmed = text.trim().replace(",", ".");
-  if (trimmed === "") return null;
-  const value = Number(trimmed);
+  const number = text.trim().replace(",", ".");
+  if (number === "") return null;
+  const value = Number(number);
   return Number.isFinite(value) ? value : null;
 }
 
@@ -40,8 +40,8 @@ export function clamp(value: number, minimum: number | null, maximum: number | n
 }
 
 /** Returns the step of an arrow key for a number, by its magnitude; 1 for integers. */
-export function stepFor(value: number, whole: boolean): number {
-  if (whole) return 1;
+export function chooseStep(value: number, isInteger: boolean): number {
+  if (isInteger) return 1;
   const size = Math.abs(value);
   return size < 0.1 ? 0.01 : 10 ** (Math.floor(Math.log10(size)) - 1);
 }

@@ -3,7 +3,7 @@ import type { PropertyNode } from "../state/properties";
 import type { TreeItem } from "./tree-item";
 
 /** Returns the row of a property with the rows below it; an edit calls `set` with the property's ID. */
-export function propertyItem(node: PropertyNode, set: (id: string, value: PropertyValue) => void): TreeItem {
+export function createPropertyItem(node: PropertyNode, set: (id: string, value: PropertyValue) => void): TreeItem {
   return {
     key: node.id,
     name: node.name,
@@ -13,9 +13,9 @@ export function propertyItem(node: PropertyNode, set: (id: string, value: Proper
     options: node.options,
     minimum: node.minimum,
     maximum: node.maximum,
-    readOnly: node.isReadOnly,
-    expanded: node.isExpanded,
-    ...(node.children.length > 0 ? { children: () => node.children.map((child) => propertyItem(child, set)) } : {}),
+    isReadOnly: node.isReadOnly,
+    isExpanded: node.isExpanded,
+    ...(node.children.length > 0 ? { children: () => node.children.map((child) => createPropertyItem(child, set)) } : {}),
     ...(node.isReadOnly ? {} : { set: (value: PropertyValue) => set(node.id, value) }),
   };
 }

@@ -9,21 +9,21 @@ export interface TextEditorOptions {
   commit: (value: PropertyValue) => void;
   /** Returns the value after an up or down key. */
   step?: (text: string, direction: 1 | -1) => number | null;
-  numeric?: boolean;
+  isNumeric?: boolean;
 }
 
 /** A text field whose content becomes a value on Enter or when it loses the focus; Escape restores the old value. */
 export class TextEditor implements Editor {
   readonly element: HTMLInputElement;
-  private shown = "";
+  private shownText = "";
 
   constructor(private readonly options: TextEditorOptions) {
-    this.element = h("input", { class: options.numeric === true ? "field numeric" : "field" });
+    this.element = h("input", { class: options.isNumeric === true ? "field numeric" : "field" });
     this.element.type = "text";
     this.element.tabIndex = -1;
     this.element.spellcheck = false;
     this.element.autocomplete = "off";
-    if (options.numeric === true) this.element.inputMode = "decimal";
+    if (options.isNumeric === true) this.element.inputMode = "decimal";
     this.element.addEventListener("focus", () => this.element.select());
     this.element.addEventListener("blur", () => this.commitText());
     this.element.addEventListener("keydown", (event) => this.onKeyDown(event));
@@ -31,9 +31,9 @@ export class TextEditor implements Editor {
 
   show(item: TreeItem): void {
     const text = this.options.format(item.value);
-    const editing = document.activeElement === this.element && this.element.value !== this.shown;
-    this.shown = text;
-    if (!editing && this.element.value !== text) this.element.value = text;
+    const isEditing = document.activeElement === this.element && this.element.value !== this.shownText;
+    this.shownText = text;
+    if (!isEditing && this.element.value !== text) this.element.value = text;
     this.element.setAttribute("aria-label", item.name);
   }
 
@@ -43,11 +43,11 @@ export class TextEditor implements Editor {
   }
 
   private commitText(): void {
-    if (this.element.value === this.shown) return;
+    if (this.element.value === this.shownText) return;
     const value = this.options.parse(this.element.value);
-    this.element.value = value === null ? this.shown : this.options.format(value);
+    this.element.value = value === null ? this.shownText : this.options.format(value);
     if (value === null) return;
-    this.shown = this.element.value;
+    this.shownText = this.element.value;
     this.options.commit(value);
   }
 
@@ -56,7 +56,7 @@ export class TextEditor implements Editor {
       this.commitText();
       focusRow(this.element);
     } else if (event.key === "Escape") {
-      this.element.value = this.shown;
+      this.element.value = this.shownText;
       focusRow(this.element);
     } else if ((event.key === "ArrowUp" || event.key === "ArrowDown") && this.options.step) {
       const value = this.options.step(this.element.value, event.key === "ArrowUp" ? 1 : -1);

@@ -11,32 +11,32 @@ export interface TreeItem {
   readonly value: PropertyValue;
   readonly description: string;
   readonly icon?: IconName;
-  /** Sets the color of the row, and the icon if `showLevelIcon` is set. */
+  /** Sets the color of the row, and the icon if `showsLevelIcon` is true. */
   readonly level?: ShownLevel;
-  readonly showLevelIcon?: boolean;
-  readonly strong?: boolean;
-  readonly muted?: boolean;
+  readonly showsLevelIcon?: boolean;
+  readonly isStrong?: boolean;
+  readonly isMuted?: boolean;
   /** The tooltip of the name; the name by default. */
   readonly hint?: string;
   /** Whether the name fills the whole row. */
-  readonly wide?: boolean;
+  readonly isWide?: boolean;
   /** Whether several rows of this kind can be selected together. */
-  readonly multiSelectable?: boolean;
+  readonly isMultiSelectable?: boolean;
   /** A small text after the name. */
   readonly badge?: string;
   readonly options?: readonly string[];
   readonly minimum?: number | null;
   readonly maximum?: number | null;
-  readonly readOnly?: boolean;
+  readonly isReadOnly?: boolean;
   /** Whether the row is unfolded until the user folds it. */
-  readonly expanded?: boolean;
+  readonly isExpanded?: boolean;
   /** Overrides the user's choice: a search unfolds the row because it found a row below it. */
-  readonly open?: boolean;
+  readonly isForcedOpen?: boolean;
   readonly children?: () => readonly TreeItem[];
   /** Called on a double click on the name, or Enter on the row. */
   readonly activate?: () => void;
   /** Whether the value follows the scene, and is read each time it is shown. */
-  readonly live?: boolean;
+  readonly isLive?: boolean;
   /** Requests the names to choose from, for a row of the kind `topic`. */
   readonly requestNames?: (show: (names: readonly string[]) => void) => void;
   /** Applies an edit; a row without it is read-only. */

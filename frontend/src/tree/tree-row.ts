@@ -7,7 +7,7 @@ import type { Editor, TreeItem } from "./tree-item";
 export class TreeRow {
   readonly element: HTMLElement;
   readonly editor: Editor;
-  private readonly twist = h("span", { class: "twist" }, icon("chevron"));
+  private readonly toggleSign = h("span", { class: "twist" }, icon("chevron"));
   private readonly signs = h("span", { class: "signs" });
   private readonly title = h("span", { class: "row-title" });
   private readonly badge = h("span", { class: "row-badge" });
@@ -16,26 +16,26 @@ export class TreeRow {
   constructor(
     public item: TreeItem,
     readonly depth: number,
-    frames: () => readonly string[],
+    getFrames: () => readonly string[],
   ) {
-    this.editor = createEditor(item, () => this.item, frames);
-    const name = h("div", { class: "row-name" }, this.twist, this.signs, this.title, this.badge);
+    this.editor = createEditor(item, () => this.item, getFrames);
+    const name = h("div", { class: "row-name" }, this.toggleSign, this.signs, this.title, this.badge);
     name.style.paddingLeft = `${6 + depth * 14}px`;
     const value = h("div", { class: "row-value" }, this.editor.element);
     this.element = h("div", { class: "row", role: "treeitem", tabIndex: -1, data: { key: item.key } }, name, value);
     this.element.setAttribute("aria-level", String(depth + 1));
   }
 
-  show(item: TreeItem, expanded: boolean): void {
+  show(item: TreeItem, isExpanded: boolean): void {
     this.item = item;
     const { classList } = this.element;
-    classList.toggle("strong", item.strong === true);
-    classList.toggle("muted", item.muted === true);
-    classList.toggle("wide", item.wide === true);
+    classList.toggle("strong", item.isStrong === true);
+    classList.toggle("muted", item.isMuted === true);
+    classList.toggle("wide", item.isWide === true);
     classList.toggle("warn", item.level === "warn");
     classList.toggle("error", item.level === "error");
-    this.twist.classList.toggle("leaf", !item.children);
-    if (item.children) this.element.setAttribute("aria-expanded", String(expanded));
+    this.toggleSign.classList.toggle("leaf", !item.children);
+    if (item.children) this.element.setAttribute("aria-expanded", String(isExpanded));
     else this.element.removeAttribute("aria-expanded");
     if (this.title.textContent !== item.name) this.title.textContent = item.name;
     const hint = item.hint ?? item.name;
@@ -46,10 +46,10 @@ export class TreeRow {
     this.editor.show(item);
   }
 
-  /** Whether this row can show `item`: another kind needs another editor. */
-  fits(item: TreeItem, depth: number): boolean {
-    const editable = (each: TreeItem): boolean => each.set !== undefined;
-    return this.item.kind === item.kind && this.depth === depth && editable(this.item) === editable(item);
+  /** Returns whether this row can show `item`: a different kind needs a different editor. */
+  canShow(item: TreeItem, depth: number): boolean {
+    const isEditable = (treeItem: TreeItem): boolean => treeItem.set !== undefined;
+    return this.item.kind === item.kind && this.depth === depth && isEditable(this.item) === isEditable(item);
   }
 
   set selected(selected: boolean) {
@@ -59,7 +59,7 @@ export class TreeRow {
   }
 
   private showSigns(item: TreeItem): void {
-    const level = item.showLevelIcon === true && item.level ? item.level : "";
+    const level = item.showsLevelIcon === true && item.level ? item.level : "";
     const key = `${item.icon ?? ""} ${level}`;
     if (key === this.signKey) return;
     this.signKey = key;

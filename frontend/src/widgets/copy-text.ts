@@ -16,9 +16,9 @@ export async function copyText(text: string): Promise<boolean> {
   box.style.opacity = "0";
   document.body.append(box);
   box.select();
-  // The deprecated function is the only one available there.
+  // Only the deprecated function is available on such pages.
   // eslint-disable-next-line @typescript-eslint/no-deprecated
-  const done = document.execCommand("copy");
+  const wasCopied = document.execCommand("copy");
   box.remove();
-  return done;
+  return wasCopied;
 }

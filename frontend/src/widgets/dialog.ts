@@ -6,9 +6,9 @@ export interface DialogChoice {
   label: string;
   /** Called on a click, and then closes the dialog unless it returns false. */
   run?: () => boolean | undefined;
-  /** Whether Enter chooses this one. */
-  main?: boolean;
-  danger?: boolean;
+  /** Whether Enter runs this choice. */
+  isMain?: boolean;
+  isDangerous?: boolean;
 }
 
 /** A question or form over the page. The browser keeps the focus within it, and restores the focus when it closes. */
@@ -23,19 +23,19 @@ export class Dialog {
         () => {
           if (choice.run?.() !== false) this.close();
         },
-        `tool framed${choice.main === true ? " primary" : ""}${choice.danger === true ? " danger" : ""}`,
+        `tool framed${choice.isMain === true ? " primary" : ""}${choice.isDangerous === true ? " danger" : ""}`,
         choice.label,
       );
       return { element, choice };
     });
-    this.mainButton = buttons.find(({ choice }) => choice.main === true)?.element ?? null;
+    this.mainButton = buttons.find(({ choice }) => choice.isMain === true)?.element ?? null;
     const heading = h("h2", {}, title);
     heading.id = `dialog-${String(++dialogCount)}`;
-    const close = button(strings.close, () => this.close(), "tool bare", icon("close"));
+    const closeButton = button(strings.close, () => this.close(), "tool bare", icon("close"));
     this.element = h(
       "dialog",
       { class: `dialog ${className}`.trim(), aria: { labelledby: heading.id } },
-      h("header", {}, heading, h("span", { class: "spacer" }), close),
+      h("header", {}, heading, h("span", { class: "spacer" }), closeButton),
       h("div", { class: "dialog-body" }, ...content),
       h("footer", {}, ...buttons.map(({ element }) => element)),
     );
@@ -62,20 +62,20 @@ export class Dialog {
     this.element.close();
   }
 
-  /** Moves the focus from the last element to the first on Tab; the browser would continue with its own buttons. */
+  /** Moves the focus from the last element to the first on Tab, where the browser would move it to its own buttons. */
   private keepFocus(event: KeyboardEvent): void {
-    const all = this.element.querySelectorAll<HTMLElement>("button, input, select, textarea, [tabindex]");
-    const stops = [...all].filter((each) => each.tabIndex >= 0 && !each.matches(":disabled") && each.checkVisibility());
-    const [first, last] = [stops[0], stops.at(-1)];
-    const leaving = event.shiftKey ? first : last;
-    if (document.activeElement !== leaving) return;
+    const elements = this.element.querySelectorAll<HTMLElement>("button, input, select, textarea, [tabindex]");
+    const focusableElements = [...elements].filter((element) => element.tabIndex >= 0 && !element.matches(":disabled") && element.checkVisibility());
+    const [first, last] = [focusableElements[0], focusableElements.at(-1)];
+    const edgeElement = event.shiftKey ? first : last;
+    if (document.activeElement !== edgeElement) return;
     event.preventDefault();
     (event.shiftKey ? last : first)?.focus();
   }
 
   /** Whether the main choice is enabled. */
-  set ready(ready: boolean) {
-    if (this.mainButton) this.mainButton.disabled = !ready;
+  set isReady(isReady: boolean) {
+    if (this.mainButton) this.mainButton.disabled = !isReady;
   }
 }
 
@@ -85,7 +85,7 @@ let dialogCount = 0;
 export function showNotice(title: string, text: string, lines: readonly string[] = []): void {
   const list = h("ul", { class: "dialog-lines" }, ...lines.map((line) => h("li", {}, line)));
   const content = lines.length > 0 ? [h("p", {}, text), list] : [h("p", {}, text)];
-  new Dialog(title, content, [{ label: strings.shell.ok, main: true }]).open();
+  new Dialog(title, content, [{ label: strings.shell.ok, isMain: true }]).open();
 }
 
 /** Asks for a name. */
@@ -102,9 +102,9 @@ export function askName(title: string, label: string, value: string, rename: (na
   const dialog = new Dialog(
     title,
     [h("label", { class: "form-field" }, h("span", {}, label), field)],
-    [{ label: strings.shell.cancel }, { label: strings.shell.ok, run: accept, main: true }],
+    [{ label: strings.shell.cancel }, { label: strings.shell.ok, run: accept, isMain: true }],
   );
-  field.addEventListener("input", () => (dialog.ready = field.value.trim() !== ""));
+  field.addEventListener("input", () => (dialog.isReady = field.value.trim() !== ""));
   dialog.open(field);
   field.select();
 }

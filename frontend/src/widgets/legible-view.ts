@@ -8,22 +8,22 @@ export interface ImageView {
 type Size = readonly [width: number, height: number];
 
 /** The minimum size of texts on the screen, px. */
-const MIN_TEXT = 10;
+const MIN_TEXT_PX = 10;
 
 /**
  * Returns the view of a whole image if its texts are legible; otherwise of the part around a point, at the scale that
  * makes them legible.
  *
- * @param text - the size of the image's smallest text, px.
+ * @param textSize - the size of the image's smallest text, px.
  * @param point - a point of the image, px, which is centered as far as the image's edges permit.
  */
-export function legibleView(image: Size, window: Size, text: number, point: readonly [number, number], margin = 16): ImageView {
-  const fits = Math.min((window[0] - 2 * margin) / image[0], (window[1] - 2 * margin) / image[1]);
-  const scale = Math.min(1, Math.max(MIN_TEXT / text, fits));
-  const place = (axis: 0 | 1): number => {
+export function computeLegibleView(image: Size, window: Size, textSize: number, point: readonly [number, number], margin = 16): ImageView {
+  const fittingScale = Math.min((window[0] - 2 * margin) / image[0], (window[1] - 2 * margin) / image[1]);
+  const scale = Math.min(1, Math.max(MIN_TEXT_PX / textSize, fittingScale));
+  const position = (axis: 0 | 1): number => {
     const [size, room] = [image[axis] * scale, window[axis]];
     if (size <= room - 2 * margin) return (room - size) / 2;
     return Math.min(margin, Math.max(room - margin - size, room / 2 - point[axis] * scale));
   };
-  return { x: place(0), y: place(1), scale };
+  return { x: position(0), y: position(1), scale };
 }

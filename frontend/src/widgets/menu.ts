@@ -3,15 +3,15 @@ import { icon, type IconName } from "../icons";
 
 export interface MenuEntry {
   label: string;
-  checked?: boolean;
+  isChecked?: boolean;
   icon?: IconName;
   /** The keys for the same command, as shown to the user. */
   keys?: string;
-  disabled?: boolean;
+  isDisabled?: boolean;
   /** The tooltip, such as the full text of a shortened label. */
   hint?: string;
   /** Whether there is a line above the entry. */
-  separate?: boolean;
+  hasLineAbove?: boolean;
   run: () => void;
 }
 
@@ -19,37 +19,37 @@ export interface MenuEntry {
 export function openMenu(anchor: HTMLElement, entries: readonly MenuEntry[]): void {
   const box = anchor.getBoundingClientRect();
   anchor.setAttribute("aria-expanded", "true");
-  showMenu(entries, { x: box.left, y: box.bottom + 4, above: box.top - 4 }, anchor, () => anchor.setAttribute("aria-expanded", "false"));
+  showMenu(entries, { x: box.left, y: box.bottom + 4, bottom: box.top - 4 }, anchor, () => anchor.setAttribute("aria-expanded", "false"));
 }
 
 /** Opens a menu at a position; the focus returns to `origin` when it closes. */
 export function openMenuAt(x: number, y: number, origin: HTMLElement | null, entries: readonly MenuEntry[]): void {
-  showMenu(entries, { x, y, above: y }, origin);
+  showMenu(entries, { x, y, bottom: y }, origin);
 }
 
-interface Place {
+interface MenuPosition {
   x: number;
   y: number;
   /** The lower end of the menu if there is no space below. */
-  above: number;
+  bottom: number;
 }
 
-function showMenu(entries: readonly MenuEntry[], place: Place, origin: HTMLElement | null, onClosed: () => void = () => undefined): void {
-  const close = (back: boolean): void => {
+function showMenu(entries: readonly MenuEntry[], position: MenuPosition, origin: HTMLElement | null, onClosed: () => void = () => undefined): void {
+  const close = (returnsFocus: boolean): void => {
     menu.remove();
-    document.removeEventListener("pointerdown", outside, true);
+    document.removeEventListener("pointerdown", onPointerDown, true);
     onClosed();
-    if (back) origin?.focus();
+    if (returnsFocus) origin?.focus();
   };
-  const outside = (event: Event): void => {
+  const onPointerDown = (event: Event): void => {
     if (!menu.contains(event.target as Node)) close(false);
   };
-  const items = entries.map((entry) => menuItem(entry, () => close(true)));
+  const items = entries.map((entry) => createItem(entry, () => close(true)));
   const menu = h("ul", { class: "popup menu", role: "menu" }, ...items);
-  const enabled = items.filter((item) => item.getAttribute("aria-disabled") !== "true");
+  const enabledItems = items.filter((item) => item.getAttribute("aria-disabled") !== "true");
   menu.addEventListener("keydown", (event) => {
     if (event.key === "Escape" || event.key === "Tab") close(true);
-    else if (!handleKey(enabled, event.key)) return;
+    else if (!handleKey(enabledItems, event.key)) return;
     event.preventDefault();
     event.stopPropagation();
   });
@@ -57,30 +57,30 @@ function showMenu(entries: readonly MenuEntry[], place: Place, origin: HTMLEleme
     if (event.relatedTarget instanceof Node && !menu.contains(event.relatedTarget)) close(false);
   });
   menu.addEventListener("contextmenu", (event) => event.preventDefault());
-  document.addEventListener("pointerdown", outside, true);
+  document.addEventListener("pointerdown", onPointerDown, true);
   // In a modal dialog, only its own elements are reachable.
   (origin?.closest("dialog") ?? document.body).append(menu);
-  const below = window.innerHeight - place.y;
-  if (below < menu.offsetHeight + 8 && place.above > below) menu.style.bottom = `${window.innerHeight - place.above}px`;
-  else menu.style.top = `${place.y}px`;
-  menu.style.left = `${Math.max(4, Math.min(place.x, window.innerWidth - menu.offsetWidth - 8))}px`;
-  enabled[0]?.focus();
+  const spaceBelow = window.innerHeight - position.y;
+  if (spaceBelow < menu.offsetHeight + 8 && position.bottom > spaceBelow) menu.style.bottom = `${window.innerHeight - position.bottom}px`;
+  else menu.style.top = `${position.y}px`;
+  menu.style.left = `${Math.max(4, Math.min(position.x, window.innerWidth - menu.offsetWidth - 8))}px`;
+  enabledItems[0]?.focus();
 }
 
-function menuItem(entry: MenuEntry, close: () => void): HTMLLIElement {
+function createItem(entry: MenuEntry, close: () => void): HTMLLIElement {
   const item = h("li", {
-    role: entry.checked === undefined ? "menuitem" : "menuitemcheckbox",
+    role: entry.isChecked === undefined ? "menuitem" : "menuitemcheckbox",
     tabIndex: -1,
-    class: entry.separate === true ? "separate" : "",
+    class: entry.hasLineAbove === true ? "separate" : "",
   });
-  if (entry.checked !== undefined) item.setAttribute("aria-checked", String(entry.checked));
-  if (entry.disabled === true) item.setAttribute("aria-disabled", "true");
+  if (entry.isChecked !== undefined) item.setAttribute("aria-checked", String(entry.isChecked));
+  if (entry.isDisabled === true) item.setAttribute("aria-disabled", "true");
   if (entry.hint !== undefined) item.title = entry.hint;
-  const sign = entry.checked === true ? icon("check") : entry.icon ? icon(entry.icon) : null;
+  const sign = entry.isChecked === true ? icon("check") : entry.icon ? icon(entry.icon) : null;
   item.append(h("span", { class: "menu-check" }, sign), h("span", { class: "menu-label" }, entry.label));
   if (entry.keys !== undefined) item.append(h("kbd", {}, entry.keys));
   item.addEventListener("click", () => {
-    if (entry.disabled === true) return;
+    if (entry.isDisabled === true) return;
     close();
     entry.run();
   });
@@ -100,8 +100,8 @@ function handleKey(items: readonly HTMLLIElement[], key: string): boolean {
   else if (key === "Enter" || key === " ") items[index]?.click();
   else if (key.length === 1) {
     const letter = key.toLowerCase();
-    const ordered = [...items.slice(index + 1), ...items.slice(0, index + 1)];
-    ordered.find((item) => item.querySelector(".menu-label")?.textContent.toLowerCase().startsWith(letter))?.focus();
+    const searchOrder = [...items.slice(index + 1), ...items.slice(0, index + 1)];
+    searchOrder.find((item) => item.querySelector(".menu-label")?.textContent.toLowerCase().startsWith(letter))?.focus();
   } else return false;
   return true;
 }

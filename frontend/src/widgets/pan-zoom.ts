@@ -1,12 +1,12 @@
-import { legibleView } from "./legible-view";
+import { computeLegibleView } from "./legible-view";
 
-const SMALLEST = 0.05;
-const LARGEST = 4;
-const WHEEL_NOTCH = 480;
-const STEP_PX = 60;
-const STEP = 1.25;
+const MIN_SCALE = 0.05;
+const MAX_SCALE = 4;
+const WHEEL_PX_PER_DOUBLING = 480;
+const MOVE_STEP_PX = 60;
+const ZOOM_STEP = 1.25;
 /** Pixels; a press that moves less than this is a click. */
-const CLICK_SLOP = 4;
+const MAX_CLICK_MOVE_PX = 4;
 
 /**
  * Moves and scales an image with mouse, touch pad, fingers and keys; zooming keeps the point under the pointer in
@@ -16,20 +16,20 @@ export class PanZoom {
   private x = 0;
   private y = 0;
   private zoom = 1;
-  private travelled = 0;
+  private traveledPx = 0;
   private readonly pointers = new Map<number, { x: number; y: number }>();
 
-  /** @param changed - called with the transform for the image, px. */
+  /** @param onChanged - called with the transform for the image, px. */
   constructor(
     private readonly element: HTMLElement,
-    private readonly changed: (x: number, y: number, scale: number) => void,
+    private readonly onChanged: (x: number, y: number, scale: number) => void,
     private readonly fit: () => void,
   ) {
     element.addEventListener("wheel", (event) => this.onWheel(event), { passive: false });
     element.addEventListener("pointerdown", (event) => this.onPointerDown(event));
     element.addEventListener("pointermove", (event) => this.onPointerMove(event));
-    for (const end of ["pointerup", "pointercancel"] as const) {
-      element.addEventListener(end, (event) => this.pointers.delete(event.pointerId));
+    for (const eventType of ["pointerup", "pointercancel"] as const) {
+      element.addEventListener(eventType, (event) => this.pointers.delete(event.pointerId));
     }
     element.addEventListener("dblclick", () => fit());
     element.addEventListener("keydown", (event) => this.onKeyDown(event));
@@ -41,74 +41,74 @@ export class PanZoom {
 
   /** Whether the pointer has moved too far since the press to be a click. */
   get wasDragged(): boolean {
-    return this.travelled >= CLICK_SLOP;
+    return this.traveledPx >= MAX_CLICK_MOVE_PX;
   }
 
   set(x: number, y: number, scale: number): void {
-    [this.x, this.y, this.zoom] = [x, y, Math.min(Math.max(scale, SMALLEST), LARGEST)];
-    this.changed(this.x, this.y, this.zoom);
+    [this.x, this.y, this.zoom] = [x, y, Math.min(Math.max(scale, MIN_SCALE), MAX_SCALE)];
+    this.onChanged(this.x, this.y, this.zoom);
   }
 
   /** Fits an image of this size, with a margin, at its original size at most. */
   fitImage(width: number, height: number, margin = 16): void {
     const { clientWidth, clientHeight } = this.element;
-    const fits = Math.min((clientWidth - 2 * margin) / width, (clientHeight - 2 * margin) / height);
-    const scale = Math.min(1, Math.max(SMALLEST, fits));
+    const fittingScale = Math.min((clientWidth - 2 * margin) / width, (clientHeight - 2 * margin) / height);
+    const scale = Math.min(1, Math.max(MIN_SCALE, fittingScale));
     this.set((clientWidth - width * scale) / 2, Math.max(margin, (clientHeight - height * scale) / 2), scale);
   }
 
   /** Shows an image of this size with legible texts; if it is too large for that, `point` is centered. */
-  showLegibly(width: number, height: number, text: number, point: readonly [number, number]): void {
+  showLegibly(width: number, height: number, textSize: number, point: readonly [number, number]): void {
     const { clientWidth, clientHeight } = this.element;
-    const { x, y, scale } = legibleView([width, height], [clientWidth, clientHeight], text, point);
+    const { x, y, scale } = computeLegibleView([width, height], [clientWidth, clientHeight], textSize, point);
     this.set(x, y, scale);
   }
 
   /** Scrolls a point of the image into view: to the center, if it is outside. */
   reveal(x: number, y: number, margin = 40): void {
     const { clientWidth, clientHeight } = this.element;
-    const [at, below] = [this.x + x * this.zoom, this.y + y * this.zoom];
-    const inside = at > margin && at < clientWidth - margin && below > margin && below < clientHeight - margin;
-    if (!inside) this.set(clientWidth / 2 - x * this.zoom, clientHeight / 2 - y * this.zoom, this.zoom);
+    const [left, top] = [this.x + x * this.zoom, this.y + y * this.zoom];
+    const isInside = left > margin && left < clientWidth - margin && top > margin && top < clientHeight - margin;
+    if (!isInside) this.set(clientWidth / 2 - x * this.zoom, clientHeight / 2 - y * this.zoom, this.zoom);
   }
 
   zoomBy(factor: number, x = this.element.clientWidth / 2, y = this.element.clientHeight / 2): void {
-    const zoom = Math.min(Math.max(this.zoom * factor, SMALLEST), LARGEST);
-    const real = zoom / this.zoom;
-    this.set(x - (x - this.x) * real, y - (y - this.y) * real, zoom);
+    const zoom = Math.min(Math.max(this.zoom * factor, MIN_SCALE), MAX_SCALE);
+    const actualFactor = zoom / this.zoom;
+    this.set(x - (x - this.x) * actualFactor, y - (y - this.y) * actualFactor, zoom);
   }
 
   private onWheel(event: WheelEvent): void {
     event.preventDefault();
     const box = this.element.getBoundingClientRect();
     const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 40 : 1;
-    this.zoomBy(2 ** ((-event.deltaY * lines) / WHEEL_NOTCH), event.clientX - box.left, event.clientY - box.top);
+    this.zoomBy(2 ** ((-event.deltaY * lines) / WHEEL_PX_PER_DOUBLING), event.clientX - box.left, event.clientY - box.top);
   }
 
   private onPointerDown(event: PointerEvent): void {
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    this.travelled = this.pointers.size > 1 ? CLICK_SLOP : 0;
+    this.traveledPx = this.pointers.size > 1 ? MAX_CLICK_MOVE_PX : 0;
   }
 
   private onPointerMove(event: PointerEvent): void {
-    const last = this.pointers.get(event.pointerId);
-    if (!last) return;
-    const spread = this.fingerDistance();
-    const [dx, dy] = [event.clientX - last.x, event.clientY - last.y];
-    last.x = event.clientX;
-    last.y = event.clientY;
-    this.travelled += Math.hypot(dx, dy);
+    const lastPoint = this.pointers.get(event.pointerId);
+    if (!lastPoint) return;
+    const lastDistance = this.measureFingerDistance();
+    const [dx, dy] = [event.clientX - lastPoint.x, event.clientY - lastPoint.y];
+    lastPoint.x = event.clientX;
+    lastPoint.y = event.clientY;
+    this.traveledPx += Math.hypot(dx, dy);
     if (this.wasDragged) this.element.setPointerCapture(event.pointerId);
     const count = this.pointers.size;
     this.set(this.x + dx / count, this.y + dy / count, this.zoom);
-    if (count > 1 && spread > 0) {
+    if (count > 1 && lastDistance > 0) {
       const box = this.element.getBoundingClientRect();
-      this.zoomBy(this.fingerDistance() / spread, event.clientX - box.left, event.clientY - box.top);
+      this.zoomBy(this.measureFingerDistance() / lastDistance, event.clientX - box.left, event.clientY - box.top);
     }
   }
 
   /** Returns the distance between the first two fingers, px. */
-  private fingerDistance(): number {
+  private measureFingerDistance(): number {
     const [a, b] = [...this.pointers.values()];
     return a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
   }
@@ -117,18 +117,18 @@ export class PanZoom {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const move = (dx: number, dy: number): void => this.set(this.x + dx, this.y + dy, this.zoom);
     const keys: Readonly<Record<string, () => void>> = {
-      ArrowLeft: () => move(STEP_PX, 0),
-      ArrowRight: () => move(-STEP_PX, 0),
-      ArrowUp: () => move(0, STEP_PX),
-      ArrowDown: () => move(0, -STEP_PX),
-      "+": () => this.zoomBy(STEP),
-      "=": () => this.zoomBy(STEP),
-      "-": () => this.zoomBy(1 / STEP),
+      ArrowLeft: () => move(MOVE_STEP_PX, 0),
+      ArrowRight: () => move(-MOVE_STEP_PX, 0),
+      ArrowUp: () => move(0, MOVE_STEP_PX),
+      ArrowDown: () => move(0, -MOVE_STEP_PX),
+      "+": () => this.zoomBy(ZOOM_STEP),
+      "=": () => this.zoomBy(ZOOM_STEP),
+      "-": () => this.zoomBy(1 / ZOOM_STEP),
       "0": this.fit,
     };
-    const act = keys[event.key];
-    if (!act) return;
-    act();
+    const runKey = keys[event.key];
+    if (!runKey) return;
+    runKey();
     event.preventDefault();
     event.stopPropagation();
   }

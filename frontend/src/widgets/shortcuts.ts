@@ -6,28 +6,28 @@ export interface Shortcut {
   alt?: boolean;
 }
 
-const agent = (globalThis as { navigator?: Navigator }).navigator?.userAgent ?? "";
-const MAC = /Macintosh|iPhone|iPad/.test(agent);
+const userAgent = (globalThis as { navigator?: Navigator }).navigator?.userAgent ?? "";
+const IS_MAC = /Macintosh|iPhone|iPad/.test(userAgent);
 
-/** Whether an event matches a shortcut. */
+/** Returns whether an event matches a shortcut. */
 export function matches(event: KeyboardEvent, { key, mod = false, shift = false, alt = false }: Shortcut): boolean {
-  const held = MAC ? event.metaKey && !event.ctrlKey : event.ctrlKey && !event.metaKey;
-  const free = !event.ctrlKey && !event.metaKey;
+  const isModHeld = IS_MAC ? event.metaKey && !event.ctrlKey : event.ctrlKey && !event.metaKey;
+  const hasNoModifier = !event.ctrlKey && !event.metaKey;
   // With Alt, some keyboards produce another letter: compare the position of the key.
-  const same = event.key.toLowerCase() === key.toLowerCase() || (alt && event.code === `Key${key.toUpperCase()}`);
-  return same && (mod ? held : free) && event.shiftKey === shift && event.altKey === alt;
+  const isSameKey = event.key.toLowerCase() === key.toLowerCase() || (alt && event.code === `Key${key.toUpperCase()}`);
+  return isSameKey && (mod ? isModHeld : hasNoModifier) && event.shiftKey === shift && event.altKey === alt;
 }
 
 const NAMES: Readonly<Record<string, string>> = { Delete: "Del", Insert: "Ins", ArrowUp: "↑", ArrowDown: "↓" };
 
 /** Returns the keys as labeled on the keyboard: `Ctrl+Shift+S`. */
-export function keyText({ key, mod = false, shift = false, alt = false }: Shortcut): string {
+export function formatShortcut({ key, mod = false, shift = false, alt = false }: Shortcut): string {
   const name = NAMES[key] ?? key.toUpperCase();
-  if (MAC) return `${alt ? "⌥" : ""}${shift ? "⇧" : ""}${mod ? "⌘" : ""}${name}`;
+  if (IS_MAC) return `${alt ? "⌥" : ""}${shift ? "⇧" : ""}${mod ? "⌘" : ""}${name}`;
   return [...(mod ? ["Ctrl"] : []), ...(alt ? ["Alt"] : []), ...(shift ? ["Shift"] : []), name].join("+");
 }
 
-/** RViz's keys, or others where the browser uses these itself. */
+/** RViz's keys; different keys where the browser uses RViz's itself. */
 export const SHORTCUTS = {
   open: { key: "o", mod: true },
   save: { key: "s", mod: true },

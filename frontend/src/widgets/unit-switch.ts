@@ -18,13 +18,13 @@ export class UnitSwitch {
 
   private show(): void {
     const texts = strings.joints;
-    this.element.replaceChildren(this.choice("rad", texts.radians), this.choice("deg", texts.degrees));
+    this.element.replaceChildren(this.createChoice("rad", texts.radians), this.createChoice("deg", texts.degrees));
   }
 
-  private choice(unit: AngleUnit, label: string): HTMLElement {
-    const on = unit === this.angles.current;
-    const element = button(label, () => (this.angles.current = unit), on ? "on" : "", label);
-    element.setAttribute("aria-pressed", String(on));
+  private createChoice(unit: AngleUnit, label: string): HTMLElement {
+    const isCurrent = unit === this.angles.current;
+    const element = button(label, () => (this.angles.current = unit), isCurrent ? "on" : "", label);
+    element.setAttribute("aria-pressed", String(isCurrent));
     return element;
   }
 }

@@ -1,4 +1,4 @@
-import { coalesced, h } from "../dom";
+import { coalesce, h } from "../dom";
 
 /** The number of rows kept ready beyond the visible ones. */
 const OVERSCAN = 8;
@@ -13,12 +13,12 @@ export class VirtualList<T> {
   private items: readonly T[] = [];
   private first = -1;
   private last = -1;
-  private readonly draw = coalesced(() => this.fill());
+  private readonly draw = coalesce(() => this.fill());
 
   constructor(
     private readonly rowHeight: number,
-    private readonly makeRow: (item: T, index: number) => HTMLElement,
-    private readonly followingChanged: () => void,
+    private readonly createRow: (item: T, index: number) => HTMLElement,
+    private readonly onFollowingChanged: () => void,
   ) {
     this.element.append(this.space);
     this.element.addEventListener("scroll", () => this.onScroll());
@@ -34,16 +34,16 @@ export class VirtualList<T> {
   /** Scrolls to the end and follows it. */
   follow(): void {
     this.isFollowing = true;
-    this.followingChanged();
+    this.onFollowingChanged();
     this.draw();
   }
 
   private onScroll(): void {
     const { scrollTop, clientHeight, scrollHeight } = this.element;
-    const atEnd = scrollTop + clientHeight >= scrollHeight - this.rowHeight;
-    if (atEnd !== this.isFollowing) {
-      this.isFollowing = atEnd;
-      this.followingChanged();
+    const isAtEnd = scrollTop + clientHeight >= scrollHeight - this.rowHeight;
+    if (isAtEnd !== this.isFollowing) {
+      this.isFollowing = isAtEnd;
+      this.onFollowingChanged();
     }
     this.fill();
   }
@@ -52,14 +52,14 @@ export class VirtualList<T> {
     const { element, items, rowHeight } = this;
     const height = element.clientHeight;
     if (height === 0) return;
-    const whole = `${items.length * rowHeight}px`;
-    if (this.space.style.height !== whole) this.space.style.height = whole;
+    const totalHeight = `${items.length * rowHeight}px`;
+    if (this.space.style.height !== totalHeight) this.space.style.height = totalHeight;
     if (this.isFollowing) element.scrollTop = items.length * rowHeight;
     const first = Math.max(0, Math.floor(element.scrollTop / rowHeight) - OVERSCAN);
     const last = Math.min(items.length, Math.ceil((element.scrollTop + height) / rowHeight) + OVERSCAN);
     if (first === this.first && last === this.last) return;
     [this.first, this.last] = [first, last];
     this.rows.style.transform = `translateY(${first * rowHeight}px)`;
-    this.rows.replaceChildren(...items.slice(first, last).map((item, index) => this.makeRow(item, first + index)));
+    this.rows.replaceChildren(...items.slice(first, last).map((item, index) => this.createRow(item, first + index)));
   }
 }

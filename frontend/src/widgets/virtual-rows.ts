@@ -38,7 +38,7 @@ export class VirtualRows {
     return this.rows[index - this.first];
   }
 
-  /** Scrolls a row into view, if it is not; to a third of the height. */
+  /** Scrolls a row that is out of view to a third of the height. */
   reveal(index: number): void {
     const { element, rowHeight } = this;
     const top = index * rowHeight;
@@ -52,9 +52,9 @@ export class VirtualRows {
     const first = Math.max(0, Math.floor(scrollTop / this.rowHeight) - OVERSCAN);
     const end = Math.min(this.count, Math.ceil((scrollTop + clientHeight) / this.rowHeight) + OVERSCAN);
     if (!isStale && first === this.first && end === this.first + this.rows.length) return;
-    const old = isStale ? [] : this.rows;
-    const before = this.first;
-    this.rows = Array.from({ length: Math.max(0, end - first) }, (_, i) => old[first + i - before] ?? this.make(first + i));
+    const reusableRows = isStale ? [] : this.rows;
+    const previousFirst = this.first;
+    this.rows = Array.from({ length: Math.max(0, end - first) }, (_, i) => reusableRows[first + i - previousFirst] ?? this.make(first + i));
     this.first = first;
     this.body.replaceChildren(...this.rows);
   }

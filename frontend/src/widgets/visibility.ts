@@ -1,22 +1,22 @@
 /**
- * Calls `changed` when an element becomes visible or hidden; the dock removes the panels of hidden tabs from the page.
+ * Calls `onChanged` when an element becomes visible or hidden; the dock removes the panels of hidden tabs from the page.
  */
-export function onVisibilityChange(element: HTMLElement, changed: (seen: boolean) => void): void {
-  let seen = false;
+export function onVisibilityChange(element: HTMLElement, onChanged: (isVisible: boolean) => void): void {
+  let isVisible = false;
   new ResizeObserver(() => {
-    const now = element.isConnected && element.offsetWidth > 0;
-    if (now === seen) return;
-    seen = now;
-    changed(seen);
+    const isVisibleNow = element.isConnected && element.offsetWidth > 0;
+    if (isVisibleNow === isVisible) return;
+    isVisible = isVisibleNow;
+    onChanged(isVisible);
   }).observe(element);
 }
 
-/** Holds a resource while an element is visible; `shown` is called after each acquisition. */
-export function holdWhileVisible(element: HTMLElement, hold: () => () => void, shown: () => void): void {
+/** Holds a resource while an element is visible; `onShown` is called after each acquisition. */
+export function holdWhileVisible(element: HTMLElement, hold: () => () => void, onShown: () => void): void {
   let release: (() => void) | null = null;
-  onVisibilityChange(element, (seen) => {
+  onVisibilityChange(element, (isVisible) => {
     release?.();
-    release = seen ? hold() : null;
-    if (seen) shown();
+    release = isVisible ? hold() : null;
+    if (isVisible) onShown();
   });
 }

@@ -1,13 +1,13 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon, type IconName } from "../../icons";
 import type { ComparedItem, ComparedPlace } from "../../protocol";
 import { groupDifferences, MARK_COLORS, usedMarks, type DifferenceGroup } from "../../state/comparison";
 import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { tickBox } from "../../widgets/controls";
+import { createTickBox } from "../../widgets/controls";
 import type { Panel } from "../panel";
-import { shortPlace } from "../place";
+import { shortenPlace } from "../place";
 
 const KIND_ICONS = { added: "plus", removed: "minus", renamed: "rename", changed: "options" } as const satisfies Record<string, IconName>;
 const SUBJECT_ICONS = { robot: "diagram", link: "cube", joint: "joints", extension: "code" } as const satisfies Record<string, IconName>;
@@ -20,7 +20,7 @@ export class ComparisonPanel implements Panel {
   private readonly oldSwitch = this.switchOf("old", strings.comparison.old, strings.comparison.showOld);
   private readonly new = this.switchOf("new", strings.comparison.new, strings.comparison.showNew);
   private readonly alpha = h("input", { class: "slider", title: strings.comparison.alpha, aria: { label: strings.comparison.alpha } });
-  private readonly marks = tickBox(strings.comparison.marks, strings.comparison.marksHint, (isTicked) => (this.session.comparison.marks = isTicked));
+  private readonly marks = createTickBox(strings.comparison.marks, strings.comparison.marksHint, (isTicked) => (this.session.comparison.marks = isTicked));
   private readonly legend = h("ul", { class: "comparison-legend" });
   private readonly count = h("p", { class: "comparison-count", role: "status" });
   private readonly list = h("div", { class: "comparison-list", role: "list", aria: { label: strings.comparison.list } });
@@ -50,19 +50,19 @@ export class ComparisonPanel implements Panel {
     this.element = h("div", { class: "panel comparison" }, body);
     this.list.addEventListener("pointerleave", () => session.focus.setHovered(null));
     const { comparison, displays } = session;
-    const updateSwitches = coalesced(() => this.showSwitches());
+    const updateSwitches = coalesce(() => this.showSwitches());
     comparison.changed.on(() => this.show());
     displays.treeChanged.on(updateSwitches);
     displays.enabledChanged.on(updateSwitches);
     displays.valueChanged.on(({ display }) => {
       if (display) updateSwitches();
     });
-    session.focus.changed.on(coalesced(() => this.showFocus()));
+    session.focus.changed.on(coalesce(() => this.showFocus()));
     this.show();
   }
 
-  private switchOf(side: "old" | "new", text: string, hint: string): ReturnType<typeof tickBox> {
-    const tick = tickBox(text, hint, (isTicked) => {
+  private switchOf(side: "old" | "new", text: string, hint: string): ReturnType<typeof createTickBox> {
+    const tick = createTickBox(text, hint, (isTicked) => {
       const display = this.displayOf(side);
       if (display) this.session.setProperty(display.enabledId, isTicked);
     });
@@ -80,7 +80,7 @@ export class ComparisonPanel implements Panel {
     const texts = strings.comparison;
     for (const [tick, { label }] of [[this.oldSwitch, compared.old], [this.new, compared.new]] as const) {
       const file = tick.querySelector(".comparison-file");
-      if (file) file.textContent = shortPlace(label);
+      if (file) file.textContent = shortenPlace(label);
       tick.title = `${tick === this.oldSwitch ? texts.showOld : texts.showNew}\n${label}`;
     }
     const marks = usedMarks([compared.new, compared.old]);
@@ -174,7 +174,7 @@ export class ComparisonPanel implements Panel {
   private createPlace(place: ComparedPlace | null, side: "old" | "new"): HTMLElement | null {
     if (!place) return null;
     const { text, file, line } = place;
-    const parts = [h("span", { class: "difference-side" }, strings.comparison[side]), shortPlace(text)] as const;
+    const parts = [h("span", { class: "difference-side" }, strings.comparison[side]), shortenPlace(text)] as const;
     const display = this.session.comparison.compared?.[side].display ?? "";
     if (file === "" || display === "") return h("span", { class: "place", title: text }, ...parts);
     const name = text.replace(/(:\d+)+$/, "");

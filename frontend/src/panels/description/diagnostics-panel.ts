@@ -1,4 +1,4 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon, LEVEL_ICONS } from "../../icons";
 import type { DiagnosticItem, DiagnosticNote, StatusRow } from "../../protocol";
 import { problemsOf, type DisplayState } from "../../state/displays";
@@ -6,7 +6,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { formatTrouble } from "../displays/display-items";
 import type { Panel } from "../panel";
-import { placeText, shortPath } from "../place";
+import { formatPlace, shortenPath } from "../place";
 
 /** The findings on the description with the lines they point to, and the reasons why displays show nothing. */
 export class DiagnosticsPanel implements Panel {
@@ -22,7 +22,7 @@ export class DiagnosticsPanel implements Panel {
     this.element.append(this.noFindings, this.findings, this.displays);
     session.diagnosticsChanged.on(() => this.showFindings());
     const { displays } = session;
-    const show = coalesced(() => this.showDisplays());
+    const show = coalesce(() => this.showDisplays());
     for (const signal of [displays.statusChanged, displays.enabledChanged, displays.treeChanged]) {
       (signal as { on(listener: () => void): void }).on(show);
     }
@@ -123,8 +123,8 @@ function createCard(item: DiagnosticItem, show: ShowPlace): HTMLElement {
 /** Returns a button that shows a place in the Source panel. */
 function placeButton({ file, line, column }: Pick<DiagnosticNote, "file" | "line" | "column">, show: ShowPlace): HTMLElement | null {
   if (file === null) return null;
-  const text = placeText(shortPath(file), line, column);
-  return button(placeText(file, line, column), () => show(file, line ?? 1), "place", icon("file"), text);
+  const text = formatPlace(shortenPath(file), line, column);
+  return button(formatPlace(file, line, column), () => show(file, line ?? 1), "place", icon("file"), text);
 }
 
 /** Returns the source line of a finding, with the part in question marked. */

@@ -1,4 +1,4 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { DescriptionModel, ElementName } from "../../state/description-model";
 import { layOut, type Diagram, type DiagramNode } from "../../state/diagram-layout";
@@ -56,11 +56,11 @@ export class DiagramPanel implements Panel {
     );
     this.element = h("div", { class: "panel" }, bar, this.empty, this.canvas);
     const { description, focus } = session;
-    const update = coalesced(() => this.update());
+    const update = coalesce(() => this.update());
     holdWhileVisible(this.element, () => description.hold(), update);
     description.arrived.on(update);
     session.robotChanged.on(update);
-    focus.changed.on(coalesced(() => this.showFocus()));
+    focus.changed.on(coalesce(() => this.showFocus()));
     description.edited.on(({ links, joints }) => this.flash(links, joints));
     this.update();
   }

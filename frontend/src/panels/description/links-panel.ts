@@ -1,4 +1,4 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { DescriptionModel, ElementName } from "../../state/description-model";
 import { isSameElement } from "../../state/element-focus";
@@ -47,13 +47,13 @@ export class LinksPanel implements Panel {
     this.rows.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.rows.element.addEventListener("pointerleave", () => session.focus.setHovered(null));
     this.element = h("div", { class: "panel" }, bar, this.search, this.empty, this.rows.element);
-    const update = coalesced(() => this.update());
+    const update = coalesce(() => this.update());
     const { description, focus } = session;
     holdWhileVisible(this.element, () => description.hold(), update);
     description.arrived.on(update);
     description.findingsArrived.on(update);
     session.robotChanged.on(update);
-    focus.changed.on(coalesced(() => this.showFocus()));
+    focus.changed.on(coalesce(() => this.showFocus()));
     description.edited.on(({ links, joints }) => this.flash([...links, ...joints]));
     this.update();
   }

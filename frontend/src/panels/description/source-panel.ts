@@ -1,7 +1,7 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { CallSite, SourceRange } from "../../protocol";
-import { browserStorage } from "../../storage";
+import { openBrowserStorage } from "../../storage";
 import { EXPANDED, type DescriptionModel, type ElementName } from "../../state/description-model";
 import { isSameElement } from "../../state/element-focus";
 import type { Session } from "../../state/session";
@@ -9,7 +9,7 @@ import { strings } from "../../strings";
 import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { EditorPane } from "../source-editor/editor-pane";
-import { placeText, shortPath, shortPlace } from "../place";
+import { formatPlace, shortenPath, shortenPlace } from "../place";
 import { modelOfCurrentRobot } from "./current-model";
 import { SourceView, type Highlight } from "./source-view";
 
@@ -55,7 +55,7 @@ export class SourcePanel implements Panel {
     this.files.addEventListener("change", () => this.openFile(this.files.value));
     const createHeading = (text: string, title: string, ...elements: HTMLElement[]): HTMLElement =>
       h("div", { class: "source-heading" }, h("span", { class: "toolbar-label", title }, text), ...elements);
-    this.editor = new EditorPane(session, browserStorage(), (file, line) => this.chooseInEditor(file, line), (file) => {
+    this.editor = new EditorPane(session, openBrowserStorage(), (file, line) => this.chooseInEditor(file, line), (file) => {
       this.file = file ?? this.file;
       this.update();
     });
@@ -76,7 +76,7 @@ export class SourcePanel implements Panel {
     );
     this.element = h("div", { class: "panel source-panel" }, this.empty, this.panes);
     const { description, focus } = session;
-    const update = coalesced(() => this.update());
+    const update = coalesce(() => this.update());
     holdWhileVisible(
       this.element,
       () => {
@@ -89,10 +89,10 @@ export class SourcePanel implements Panel {
       },
       () => this.refresh(),
     );
-    description.arrived.on(coalesced(() => this.refresh()));
+    description.arrived.on(coalesce(() => this.refresh()));
     description.textArrived.on(update);
     description.textsOutdated.on(update);
-    focus.changed.on(coalesced(() => this.showFocus()));
+    focus.changed.on(coalesce(() => this.showFocus()));
     this.update();
   }
 
@@ -228,7 +228,7 @@ export class SourcePanel implements Panel {
   private listFiles(files: readonly string[]): void {
     const options = files.map((file) => {
       const name = this.requestedPlace?.file === file ? this.requestedPlace.name : undefined;
-      const option = h("option", { title: name ?? file }, name === undefined ? shortPath(file) : shortPlace(name));
+      const option = h("option", { title: name ?? file }, name === undefined ? shortenPath(file) : shortenPlace(name));
       option.value = file;
       return option;
     });
@@ -249,8 +249,8 @@ export class SourcePanel implements Panel {
     const texts = strings.description.source;
     const { origin, calls } = this.writtenPlaces();
     const steps = calls.map(({ macro, file, line, column }) => {
-      const text = texts.call(macro, placeText(shortPath(file, 1), line, null));
-      return button(placeText(file, line, column), () => this.reveal(file, line, { look: "focus" }), "trail-step", text);
+      const text = texts.call(macro, formatPlace(shortenPath(file, 1), line, null));
+      return button(formatPlace(file, line, column), () => this.reveal(file, line, { look: "focus" }), "trail-step", text);
     });
     const backButton = origin && this.requestedPlace
       ? button(texts.origin, () => this.showFocus(), "tool bare", icon("reset"))

@@ -59,7 +59,7 @@ export class AddDialog {
         h("label", { class: "form-field" }, h("span", {}, texts.displayName), this.name),
         ...(group ? [h("p", { class: "hint" }, texts.into(group.name))] : []),
       ],
-      [{ label: strings.shell.cancel }, { label: texts.add, main: true, run: () => this.accept() }],
+      [{ label: strings.shell.cancel }, { label: texts.add, isMain: true, run: () => this.accept() }],
       "add-dialog",
     );
     this.stopListening = session.configuration.choicesArrived.on(() => {
@@ -176,7 +176,7 @@ export class AddDialog {
       candidate.element.setAttribute("aria-selected", String(candidate === choice));
       candidate.element.tabIndex = candidate === choice ? 0 : -1;
     }
-    this.dialog.ready = choice !== null;
+    this.dialog.isReady = choice !== null;
     // Keep a name that the user typed.
     if (choice && (this.name.value === "" || this.name.value === this.suggestedName)) {
       this.suggestedName = shortName(choice.cls);

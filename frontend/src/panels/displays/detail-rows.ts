@@ -123,8 +123,8 @@ function createTextRow(key: string, name: string, readText: () => string): TreeI
       return readText();
     },
     description: name in strings.details ? strings.details[name as DetailName] : "",
-    readOnly: true,
-    live: true,
+    isReadOnly: true,
+    isLive: true,
   };
 }
 

@@ -3,7 +3,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { askName } from "../../widgets/dialog";
 import type { MenuEntry } from "../../widgets/menu";
-import { keyText, matches, SHORTCUTS } from "../../widgets/shortcuts";
+import { formatShortcut, matches, SHORTCUTS } from "../../widgets/shortcuts";
 import { AddDialog } from "./add-dialog";
 
 /** The commands for the selected display, or for all selected displays. */
@@ -87,13 +87,13 @@ export class DisplayCommands {
           for (const candidate of this.selectedDisplays()) session.setProperty(candidate.enabledId, !display.isChecked);
         },
       },
-      { label: texts.addHint, icon: "add", keys: keyText(SHORTCUTS.add), separate: true, run: () => this.add() },
-      { label: texts.duplicate, icon: "duplicate", keys: keyText(SHORTCUTS.duplicate), run: () => this.duplicate() },
-      { label: texts.rename, icon: "rename", keys: keyText(SHORTCUTS.rename), run: () => this.rename() },
-      { label: texts.remove, icon: "remove", keys: keyText(SHORTCUTS.remove), run: () => this.remove() },
-      { label: texts.group, icon: "Group", separate: true, run: () => this.groupSelected() },
-      { label: texts.moveUp, keys: keyText(SHORTCUTS.moveUp), run: () => this.move(true) },
-      { label: texts.moveDown, keys: keyText(SHORTCUTS.moveDown), run: () => this.move(false) },
+      { label: texts.addHint, icon: "add", keys: formatShortcut(SHORTCUTS.add), hasLineAbove: true, run: () => this.add() },
+      { label: texts.duplicate, icon: "duplicate", keys: formatShortcut(SHORTCUTS.duplicate), run: () => this.duplicate() },
+      { label: texts.rename, icon: "rename", keys: formatShortcut(SHORTCUTS.rename), run: () => this.rename() },
+      { label: texts.remove, icon: "remove", keys: formatShortcut(SHORTCUTS.remove), run: () => this.remove() },
+      { label: texts.group, icon: "Group", hasLineAbove: true, run: () => this.groupSelected() },
+      { label: texts.moveUp, keys: formatShortcut(SHORTCUTS.moveUp), run: () => this.move(true) },
+      { label: texts.moveDown, keys: formatShortcut(SHORTCUTS.moveDown), run: () => this.move(false) },
     ];
   }
 }

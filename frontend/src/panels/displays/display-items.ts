@@ -5,7 +5,7 @@ import type { DisplayState, ShownLevel } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { shortName } from "../../state/views/catalog";
 import { strings } from "../../strings";
-import { propertyItem } from "../../tree/property-item";
+import { createPropertyItem } from "../../tree/property-item";
 import type { TreeItem } from "../../tree/tree-item";
 import { createDisplayRows } from "./robot-rows";
 
@@ -22,10 +22,10 @@ export function createDisplayItems(session: Session): TreeItem[] {
       value: "",
       description: "",
       icon: "options",
-      strong: true,
-      wide: true,
-      expanded: true,
-      children: () => displays.globalOptions.nodes.map((node) => propertyItem(node, set)),
+      isStrong: true,
+      isWide: true,
+      isExpanded: true,
+      children: () => displays.globalOptions.nodes.map((node) => createPropertyItem(node, set)),
     },
     createStatusItem("#status", strings.tree.globalStatus, displays.globalLevel, displays.globalStatus, true),
     ...displays.childrenOf(null).map((display) => createDisplayItem(session, display, set)),
@@ -55,13 +55,13 @@ function createDisplayItem(
     value: display.isChecked,
     description: describe(display, hasDrawing),
     icon: hasDrawing ? displayIcon(display.drawing) : "unknown",
-    strong: true,
-    multiSelectable: true,
-    muted: !hasDrawing || !display.isEnabled,
+    isStrong: true,
+    isMultiSelectable: true,
+    isMuted: !hasDrawing || !display.isEnabled,
     ...(hasDrawing && display.isEnabled ? { level: worstLevelIn(session, display) } : {}),
     ...(display.problems.length > 0 ? { hint: [display.name, ...display.problems.map(formatTrouble)].join("\n") } : {}),
     ...(hasDrawing ? {} : { badge: strings.tree.notDrawn }),
-    expanded: display.isGroup || (display.isEnabled && isOnlyContent(session, display)),
+    isExpanded: display.isGroup || (display.isEnabled && isOnlyContent(session, display)),
     children: () => [...status, ...createDisplayRows(display, session, set).map(addTopics), ...childItems()],
     set: (value) => set(display.enabledId, value),
   };
@@ -141,10 +141,10 @@ function createStatusItem(
     value: "",
     description: "",
     level,
-    showLevelIcon: true,
-    strong: isStrong,
-    wide: true,
-    expanded: level === "error",
+    showsLevelIcon: true,
+    isStrong,
+    isWide: true,
+    isExpanded: level === "error",
     children: () =>
       sortWorstFirst(rows).map((row) => ({
         key: `${key}/${row.name}`,
@@ -153,7 +153,7 @@ function createStatusItem(
         value: row.text,
         description: row.text,
         level: level === "loading" && row.level === "ok" ? level : row.level,
-        showLevelIcon: true,
+        showsLevelIcon: true,
       })),
   };
 }

@@ -7,7 +7,7 @@ import { strings } from "../../strings";
 import { filterItems } from "../../tree/filter-items";
 import { TreeView } from "../../tree/tree-view";
 import { openMenuAt } from "../../widgets/menu";
-import { keyText, SHORTCUTS } from "../../widgets/shortcuts";
+import { formatShortcut, SHORTCUTS } from "../../widgets/shortcuts";
 import type { Panel } from "../panel";
 import { DisplayCommands } from "./display-commands";
 import { DisplayDrag } from "./display-drag";
@@ -62,10 +62,10 @@ export class DisplaysPanel implements Panel {
     return h(
       "div",
       { class: "toolbar", role: "toolbar", aria: { label: strings.panels.displays } },
-      button(`${texts.addHint} (${keyText(SHORTCUTS.add)})`, () => commands.add(), "tool", icon("add"), texts.add),
-      createTool(texts.duplicate, "duplicate", keyText(SHORTCUTS.duplicate), () => commands.duplicate()),
-      createTool(texts.rename, "rename", keyText(SHORTCUTS.rename), () => commands.rename()),
-      createTool(texts.remove, "remove", keyText(SHORTCUTS.remove), () => commands.remove()),
+      button(`${texts.addHint} (${formatShortcut(SHORTCUTS.add)})`, () => commands.add(), "tool", icon("add"), texts.add),
+      createTool(texts.duplicate, "duplicate", formatShortcut(SHORTCUTS.duplicate), () => commands.duplicate()),
+      createTool(texts.rename, "rename", formatShortcut(SHORTCUTS.rename), () => commands.rename()),
+      createTool(texts.remove, "remove", formatShortcut(SHORTCUTS.remove), () => commands.remove()),
     );
   }
 
@@ -117,7 +117,7 @@ export class DisplaysPanel implements Panel {
     });
     frames.tableChanged.on(this.tree.refresh);
     followLiveValues(this.tree, this.session);
-    this.tree.selected.on((item) => {
+    this.tree.itemSelected.on((item) => {
       const display = this.session.displays.find(item.key);
       if (display) this.explainDisplay(display);
       else this.explain(item.name, item.description);
@@ -151,7 +151,7 @@ export class DisplaysPanel implements Panel {
       const [x, y] = event.clientX === 0 && event.clientY === 0 ? [box.left + 24, box.bottom] : [event.clientX, event.clientY];
       openMenuAt(x, y, item.element, [
         ...commands.createMenu(display),
-        { label: texts.expandAll, icon: "expand", separate: true, run: () => tree.expandAll(item.item, true) },
+        { label: texts.expandAll, icon: "expand", hasLineAbove: true, run: () => tree.expandAll(item.item, true) },
         { label: texts.collapseAll, icon: "collapse", run: () => tree.expandAll(item.item, false) },
       ]);
     });
@@ -181,7 +181,7 @@ export class DisplaysPanel implements Panel {
     const key = JSON.stringify([name, description, troubles]);
     if (key === this.explained) return; // said once, not again with each message that comes
     this.explained = key;
-    this.tree.whenReleased(() => {
+    this.tree.runAfterRelease(() => {
       if (key !== this.explained) return;
       this.help.hidden = description === "" && troubles.length === 0;
       const problems = troubles.map((row) => h("p", { class: `trouble ${row.level}` }, icon(LEVEL_ICONS[row.level], `level-${row.level}`), formatTrouble(row)));

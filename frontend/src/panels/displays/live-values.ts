@@ -7,10 +7,10 @@ const INTERVAL_MS = 100;
 export function followLiveValues(tree: TreeView, session: Session): void {
   let timer = 0;
   const schedule = (): void => {
-    if (timer !== 0 || !tree.showsLive) return;
+    if (timer !== 0 || !tree.hasLiveRows) return;
     timer = window.setTimeout(() => {
       timer = 0;
-      tree.showLive();
+      tree.updateLiveRows();
     }, INTERVAL_MS);
   };
   session.frames.posesChanged.on(schedule);

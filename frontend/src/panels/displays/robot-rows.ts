@@ -3,7 +3,7 @@ import type { DisplayState } from "../../state/displays";
 import type { PropertyNode } from "../../state/properties";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { propertyItem } from "../../tree/property-item";
+import { createPropertyItem } from "../../tree/property-item";
 import type { TreeItem } from "../../tree/tree-item";
 import { createDetailRows } from "./detail-rows";
 
@@ -60,9 +60,9 @@ function isRobotRow(node: PropertyNode): boolean {
 }
 
 function createRowWithDetails(node: PropertyNode, display: DisplayState, session: Session, set: SetValue): TreeItem {
-  if (node.children.length === 0 && node.details === null) return propertyItem(node, set);
+  if (node.children.length === 0 && node.details === null) return createPropertyItem(node, set);
   return {
-    ...propertyItem(node, set),
+    ...createPropertyItem(node, set),
     children: () => [
       ...node.children.map((child) => createRowWithDetails(child, display, session, set)),
       ...createDetailRows(node, display, session),
@@ -113,7 +113,7 @@ class RobotTree {
       value: null,
       description: options?.description ?? "",
       children: () => [
-        ...(options?.children.filter(isShown).map((node) => propertyItem(node, this.set)) ?? []),
+        ...(options?.children.filter(isShown).map((node) => createPropertyItem(node, this.set)) ?? []),
         ...this.createRows(),
       ],
     };
@@ -159,7 +159,7 @@ class RobotTree {
     const { isTree } = this.style;
     const isOpen = rows.bool(false, "Links", node.details === "link" ? LINK_DETAILS : JOINT_DETAILS);
     const details = (): TreeItem[] => [
-      ...node.children.map((child) => propertyItem(child, this.set)),
+      ...node.children.map((child) => createPropertyItem(child, this.set)),
       ...createDetailRows(node, this.display, this.session),
     ];
     const group: TreeItem = {
@@ -168,12 +168,12 @@ class RobotTree {
       kind: "group",
       value: null,
       description: strings.details.Details,
-      expanded: isOpen,
+      isExpanded: isOpen,
       children: details,
     };
     return {
-      ...propertyItem(node, this.set),
-      expanded: isTree ? rows.bool(false, "Links", TREE) : isOpen,
+      ...createPropertyItem(node, this.set),
+      isExpanded: isTree ? rows.bool(false, "Links", TREE) : isOpen,
       children: () => (isTree ? [group, ...childRows()] : details()),
     };
   }

@@ -31,27 +31,27 @@ export class ColumnWidths {
   }
 
   private restore(): void {
-    const columns = this.columns();
+    const columns = this.listColumns();
     const scene = columns.findIndex((group) => hasScene(group));
     const widths = columns.map(({ id, width }) => this.widths.get(id) ?? width);
-    const rest = this.api.width - widths.reduce((sum, width, i) => (i === scene ? sum : sum + width), 0);
-    if (scene < 0 || rest < MIN_SCENE_WIDTH) return;
-    widths[scene] = rest;
-    // Each column takes its width from the last one, which therefore ends with its own width, too.
+    const sceneWidth = this.api.width - widths.reduce((sum, width, i) => (i === scene ? sum : sum + width), 0);
+    if (scene < 0 || sceneWidth < MIN_SCENE_WIDTH) return;
+    widths[scene] = sceneWidth;
+    // Each resized column takes the difference from the last column, so the last column also ends at its own width.
     for (const [i, group] of columns.slice(0, -1).entries()) group.api.setSize({ width: widths[i] ?? group.width });
   }
 
   /** Returns one group of each column, from the left; for the scene's column, the scene's group. */
-  private columns(): DockviewGroupPanel[] {
+  private listColumns(): DockviewGroupPanel[] {
     const boxes = this.api.groups.map((group) => ({ group, box: group.element.getBoundingClientRect() }));
     const scene = boxes.find(({ group }) => hasScene(group))?.box;
-    const found: typeof boxes = [];
-    for (const each of boxes.sort((a, b) => a.box.left - b.box.left)) {
-      const { group, box } = each;
-      const isOver = (other: DOMRect): boolean => box.left < other.right - 1 && other.left < box.right - 1;
-      if (hasScene(group) || !(scene && isOver(scene)) && !found.some((other) => isOver(other.box))) found.push(each);
+    const columns: typeof boxes = [];
+    for (const candidate of boxes.sort((a, b) => a.box.left - b.box.left)) {
+      const { group, box } = candidate;
+      const overlaps = (otherBox: DOMRect): boolean => box.left < otherBox.right - 1 && otherBox.left < box.right - 1;
+      if (hasScene(group) || !(scene && overlaps(scene)) && !columns.some((column) => overlaps(column.box))) columns.push(candidate);
     }
-    return found.map(({ group }) => group);
+    return columns.map(({ group }) => group);
   }
 }
 

@@ -15,16 +15,16 @@ const MAX_BELOW = 2;
  * width.
  */
 const MIN_SPLIT_WIDTH = 600;
-const SPLIT = 0.42;
+const SPLIT_SHARE = 0.42;
 /** Pixels; in a lower window, only one panel opens below the Displays panel. */
 const LOW = 700;
 
 interface Placement {
-  beside: string | undefined;
+  neighbor: string | undefined;
   direction: Direction;
   width?: number;
   height?: number;
-  inactive?: boolean;
+  isInactive?: boolean;
 }
 
 /** The panels of displays within the dock. A restored arrangement reserves their places until their displays arrive. */
@@ -33,12 +33,12 @@ export class DisplayPanels implements PanelHost {
   private readonly panels = new Map<string, DisplayPanel>();
 
   /** `api` is a function because the dock creates contents while it is itself being created. */
-  constructor(private readonly api: () => DockviewApi) {}
+  constructor(private readonly getApi: () => DockviewApi) {}
 
   offer(panel: DisplayPanel): void {
     this.panels.set(panel.key, panel);
-    if (this.api().getPanel(panel.key)) {
-      this.host(panel.key).replaceChildren(panel.element);
+    if (this.getApi().getPanel(panel.key)) {
+      this.ensureHost(panel.key).replaceChildren(panel.element);
       this.retitle(panel.key, panel.title);
     } else {
       this.add(panel);
@@ -51,28 +51,28 @@ export class DisplayPanels implements PanelHost {
   }
 
   retitle(key: string, title: string): void {
-    this.api().getPanel(key)?.api.setTitle(title);
+    this.getApi().getPanel(key)?.api.setTitle(title);
   }
 
   /** Removes the panels of displays that are not in the list. */
   prune(displays: readonly string[]): void {
     const keys = new Set(displays.map((id) => PREFIX + id));
-    for (const { id } of [...this.api().panels]) if (id.startsWith(PREFIX) && !keys.has(id)) this.withdraw(id);
+    for (const { id } of [...this.getApi().panels]) if (id.startsWith(PREFIX) && !keys.has(id)) this.withdraw(id);
   }
 
   /** Adds all panels again after the arrangement was cleared. */
   restore(): void {
-    for (const panel of this.panels.values()) if (!this.api().getPanel(panel.key)) this.add(panel);
+    for (const panel of this.panels.values()) if (!this.getApi().getPanel(panel.key)) this.add(panel);
   }
 
   /** Returns the content of a panel for the dock; null for a panel that belongs to no display. */
-  content(name: string): IContentRenderer | null {
+  createContent(name: string): IContentRenderer | null {
     if (!name.startsWith(PREFIX)) return null;
-    return { element: this.host(name), init: () => undefined };
+    return { element: this.ensureHost(name), init: () => undefined };
   }
 
   /** Returns the tab of a panel; null for a panel that belongs to no display. */
-  tab(key: string): PanelTab | null {
+  createTab(key: string): PanelTab | null {
     if (!key.startsWith(PREFIX)) return null;
     const close = (): void => {
       const panel = this.panels.get(key);
@@ -84,47 +84,47 @@ export class DisplayPanels implements PanelHost {
 
   private add(panel: DisplayPanel): void {
     const { key, title, element } = panel;
-    this.host(key).replaceChildren(element);
-    const others = this.api().panels.filter(({ id }) => id.startsWith(PREFIX));
-    const home = this.home(panel, others.at(-1)?.id, others.length);
-    const { width, height, inactive } = home;
+    this.ensureHost(key).replaceChildren(element);
+    const openPanels = this.getApi().panels.filter(({ id }) => id.startsWith(PREFIX));
+    const placement = this.place(panel, openPanels.at(-1)?.id, openPanels.length);
+    const { width, height, isInactive } = placement;
     const options: AddPanelOptions = { id: key, component: key, tabComponent: key, title };
     if (width !== undefined) options.initialWidth = width;
     if (height !== undefined) options.initialHeight = height;
-    if (inactive !== undefined) options.inactive = inactive;
-    const position = home.beside === undefined ? undefined : { referencePanel: home.beside, direction: home.direction };
-    const before = others.map(({ group }) => ({ group, height: group.height }));
-    const { group } = this.api().addPanel(position ? { ...options, floating: false, position } : options);
+    if (isInactive !== undefined) options.inactive = isInactive;
+    const position = placement.neighbor === undefined ? undefined : { referencePanel: placement.neighbor, direction: placement.direction };
+    const previousHeights = openPanels.map(({ group }) => ({ group, height: group.height }));
+    const { group } = this.getApi().addPanel(position ? { ...options, floating: false, position } : options);
     if (height === undefined) return;
     // The dock takes the space from the other panels: restore their heights.
-    for (const each of [...before, { group, height }]) each.group.api.setSize({ height: each.height });
+    for (const entry of [...previousHeights, { group, height }]) entry.group.api.setSize({ height: entry.height });
   }
 
   /** Returns the place of a new panel, after `count` others. */
-  private home({ replacesScene }: DisplayPanel, last: string | undefined, count: number): Placement {
-    const api = this.api();
+  private place({ replacesScene }: DisplayPanel, lastPanel: string | undefined, count: number): Placement {
+    const api = this.getApi();
     const form = formOf(api);
-    const narrow = form !== "wide";
+    const isNarrow = form !== "wide";
     // Where all panels share a group, a new image must not hide the panel that the user works with.
-    const shares = form === "low" || (narrow && api.width < MIN_SPLIT_WIDTH);
-    const most = narrow || api.height < LOW ? 1 : MAX_BELOW;
-    if (last !== undefined && replacesScene && count < MAX_BELOW) return { beside: last, direction: "right" };
-    if (last !== undefined && count >= most) return { beside: last, direction: "within", inactive: shares && !replacesScene };
+    const sharesGroup = form === "low" || (isNarrow && api.width < MIN_SPLIT_WIDTH);
+    const maxPanels = isNarrow || api.height < LOW ? 1 : MAX_BELOW;
+    if (lastPanel !== undefined && replacesScene && count < MAX_BELOW) return { neighbor: lastPanel, direction: "right" };
+    if (lastPanel !== undefined && count >= maxPanels) return { neighbor: lastPanel, direction: "within", isInactive: sharesGroup && !replacesScene };
     const scene = api.getPanel("scene") && "scene";
-    if (replacesScene && scene) return { beside: scene, direction: "within" };
-    if (narrow && !shares && scene) return { beside: scene, direction: "right", width: Math.round(api.width * SPLIT) };
-    const beside = api.getPanel("displays") ? "displays" : scene;
-    if (shares) return { beside, direction: "within", inactive: beside !== undefined };
-    return { beside, direction: "below", height: Math.min(HEIGHT, Math.round(api.height * MAX_HEIGHT_SHARE)) };
+    if (replacesScene && scene) return { neighbor: scene, direction: "within" };
+    if (isNarrow && !sharesGroup && scene) return { neighbor: scene, direction: "right", width: Math.round(api.width * SPLIT_SHARE) };
+    const neighbor = api.getPanel("displays") ? "displays" : scene;
+    if (sharesGroup) return { neighbor, direction: "within", isInactive: neighbor !== undefined };
+    return { neighbor, direction: "below", height: Math.min(HEIGHT, Math.round(api.height * MAX_HEIGHT_SHARE)) };
   }
 
   private remove(key: string): void {
-    const panel = this.api().getPanel(key);
-    if (panel) this.api().removePanel(panel);
+    const panel = this.getApi().getPanel(key);
+    if (panel) this.getApi().removePanel(panel);
     this.hosts.delete(key);
   }
 
-  private host(key: string): HTMLElement {
+  private ensureHost(key: string): HTMLElement {
     let host = this.hosts.get(key);
     if (!host) this.hosts.set(key, (host = h("div", { class: "display-panel-host" })));
     return host;

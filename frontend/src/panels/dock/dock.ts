@@ -48,8 +48,8 @@ export class Dock {
   ) {
     this.panels = new Map(panels.map((panel) => [panel.id, panel]));
     this.api = createDockview(parent, {
-      createComponent: ({ name }) => this.displayPanels.content(name) ?? this.content(name),
-      createTabComponent: ({ id }) => this.tab(id),
+      createComponent: ({ name }) => this.displayPanels.createContent(name) ?? this.createContent(name),
+      createTabComponent: ({ id }) => this.createTab(id),
       theme: { name: "linkwright", className: "dockview-theme-linkwright" },
       disableFloatingGroups: true,
       noPanelsOverlay: "emptyGroup",
@@ -64,7 +64,7 @@ export class Dock {
     this.api.layout(parent.clientWidth, parent.clientHeight);
     this.form = formOf(this.api);
     // Usually the file is the one of the last visit, and nothing moves once that is known.
-    const latest = layouts.latest(this.form);
+    const latest = layouts.findLatest(this.form);
     if (latest && this.restore(latest)) this.file = latest.file;
     else this.reset();
     this.hideLoneTabs();
@@ -109,14 +109,14 @@ export class Dock {
   }
 
   private retitle(): void {
-    const wrong = this.api.panels.filter(({ id, title }) => this.panels.has(id) && title !== this.titleOf(id));
-    for (const { id, api } of wrong) api.setTitle(this.titleOf(id));
-    if (wrong.length > 0) this.frontTabs.update();
+    const outdatedPanels = this.api.panels.filter(({ id, title }) => this.panels.has(id) && title !== this.titleOf(id));
+    for (const { id, api } of outdatedPanels) api.setTitle(this.titleOf(id));
+    if (outdatedPanels.length > 0) this.frontTabs.update();
   }
 
   private titleOf(id: string): string {
     const count = this.counts.get(id as PanelId) ?? 0;
-    return count > 0 ? `${title(id)} (${count})` : title(id);
+    return count > 0 ? `${translateTitle(id)} (${count})` : translateTitle(id);
   }
 
   /** Restores the arrangement of the first visit. */
@@ -127,8 +127,8 @@ export class Dock {
       this.arrangementReplaced.emit();
       return;
     }
-    const joints = this.api.getPanel("joints") !== undefined;
-    this.build(["scene", "time", "displays", "links", "views", "tool-properties", "selection", "diagnostics", ...(joints ? (["joints"] as const) : [])]);
+    const areJointsOpen = this.api.getPanel("joints") !== undefined;
+    this.build(["scene", "time", "displays", "links", "views", "tool-properties", "selection", "diagnostics", ...(areJointsOpen ? (["joints"] as const) : [])]);
     if (this.panelsOfFile) this.showOnly(this.panelsOfFile);
     this.arrangementReplaced.emit();
   }
@@ -195,13 +195,13 @@ export class Dock {
     this.arrangementReplaced.emit();
   }
 
-  private tab(id: string): PanelTab {
-    const tab = this.displayPanels.tab(id) ?? new PanelTab(this.panels.get(id)?.icon ?? "panels", id !== "scene");
+  private createTab(id: string): PanelTab {
+    const tab = this.displayPanels.createTab(id) ?? new PanelTab(this.panels.get(id)?.icon ?? "panels", id !== "scene");
     this.tabs.set(id, tab);
     return tab;
   }
 
-  private content(name: string): IContentRenderer {
+  private createContent(name: string): IContentRenderer {
     const panel = this.panels.get(name);
     if (!panel) throw new Error(`no panel '${name}'`);
     return { element: panel.element, init: () => panel.onOpened?.(), dispose: () => panel.onClosed?.() };
@@ -224,6 +224,6 @@ export class Dock {
   }
 }
 
-function title(id: string): string {
+function translateTitle(id: string): string {
   return strings.panels[id as PanelId];
 }

@@ -42,10 +42,10 @@ export class FilePanels {
   /** The number of the configuration shown; null after connecting, until one is known. */
   private shownNumber: number | null = null;
   /** The file's panels that were open at the last comparison. */
-  private openBefore: readonly PanelName[] | null = null;
+  private lastOpenPanels: readonly PanelName[] | null = null;
   /** Neither a file nor the browser specifies the arrangement of this page's panels. */
-  private unarranged = false;
-  private drivable = false;
+  private isUnarranged = false;
+  private isDrivable = false;
   /** Whether the browser stores no arrangement for the file. */
   private isFirstVisit = false;
   private hasVoice = false;
@@ -57,7 +57,7 @@ export class FilePanels {
   ) {
     connection.on("hello", () => {
       this.panelsMessage = this.configuration = this.shownNumber = null;
-      this.drivable = this.hasVoice = this.hasCourse = false;
+      this.isDrivable = this.hasVoice = this.hasCourse = false;
     });
     connection.on("panels", (message) => {
       this.panelsMessage = message;
@@ -68,7 +68,7 @@ export class FilePanels {
       this.apply();
     });
     connection.on("simulation_status", ({ drivable }) => {
-      this.drivable = drivable;
+      this.isDrivable = drivable;
       this.openTeleop();
     });
     connection.on("voice_node", ({ present }) => {
@@ -84,8 +84,8 @@ export class FilePanels {
 
   /** Opens the Teleop panel for a simulated robot that can be driven, unless the arrangement is specified. */
   private openTeleop(): void {
-    if (!this.drivable || !this.unarranged) return;
-    this.unarranged = false;
+    if (!this.isDrivable || !this.isUnarranged) return;
+    this.isUnarranged = false;
     this.dock.open("teleop");
   }
 
@@ -121,8 +121,8 @@ export class FilePanels {
     const isStored = file === dock.file || dock.arrange(file);
     dock.storeFor(file);
     if (panelsMessage.shown && (isReplaced || !isStored)) dock.showOnly(panelsMessage.shown);
-    this.openBefore = this.openNow;
-    this.unarranged = configuration.path === null && !isStored;
+    this.lastOpenPanels = this.openPanels;
+    this.isUnarranged = configuration.path === null && !isStored;
     this.openTeleop();
     this.isFirstVisit = !isStored;
     this.openVoice();
@@ -130,13 +130,13 @@ export class FilePanels {
   }
 
   private compare(): void {
-    const open = this.openNow;
-    if (this.openBefore === null || String(open) === String(this.openBefore)) return;
-    this.openBefore = open;
-    this.connection.send({ type: "show_panels", shown: open });
+    const openPanels = this.openPanels;
+    if (this.lastOpenPanels === null || String(openPanels) === String(this.lastOpenPanels)) return;
+    this.lastOpenPanels = openPanels;
+    this.connection.send({ type: "show_panels", shown: openPanels });
   }
 
-  private get openNow(): PanelName[] {
+  private get openPanels(): PanelName[] {
     return FILE_PANELS.filter((id) => this.dock.isOpen(id));
   }
 }

@@ -10,21 +10,21 @@ export class FrontTabs {
   update(): void {
     this.resizeObserver.disconnect();
     // The dock's button for hidden tabs appears later and takes some of the bar's width.
-    for (const bar of this.bars()) this.resizeObserver.observe(bar);
+    for (const bar of this.listTabBars()) this.resizeObserver.observe(bar);
     this.show();
   }
 
   private show(): void {
-    for (const bar of this.bars()) {
+    for (const bar of this.listTabBars()) {
       const tab = bar.querySelector(".dv-active-tab");
       if (!tab) continue;
-      const [all, own] = [bar.getBoundingClientRect(), tab.getBoundingClientRect()];
-      if (own.left < all.left) bar.scrollLeft -= all.left - own.left;
-      else if (own.right > all.right) bar.scrollLeft += Math.ceil(own.right - all.right);
+      const [barBox, tabBox] = [bar.getBoundingClientRect(), tab.getBoundingClientRect()];
+      if (tabBox.left < barBox.left) bar.scrollLeft -= barBox.left - tabBox.left;
+      else if (tabBox.right > barBox.right) bar.scrollLeft += Math.ceil(tabBox.right - barBox.right);
     }
   }
 
-  private bars(): Element[] {
+  private listTabBars(): Element[] {
     return this.api.groups.flatMap(({ element }) => element.querySelector(".dv-tabs-container") ?? []);
   }
 }

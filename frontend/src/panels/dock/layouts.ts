@@ -10,32 +10,32 @@ export interface Layout {
 }
 
 const KEY = "linkwright.layouts.3";
-/** The number of stored arrangements; beyond it, the browser drops the one used longest ago. */
+/** The number of stored arrangements; beyond it, the browser drops the least recently used one. */
 const MAX_LAYOUTS = 12;
 
 /** The arrangements of panels that the browser stores, one for each file and form of window. */
 export class Layouts {
   constructor(private readonly storage: TextStorage) {}
 
-  /** Returns the most recent arrangement for a form of window, of whichever file. */
-  latest(form: Form): Layout | null {
-    return this.read().find((each) => each.form === form) ?? null;
+  /** Returns the most recent arrangement for a form of window; its file does not matter. */
+  findLatest(form: Form): Layout | null {
+    return this.read().find((layout) => layout.form === form) ?? null;
   }
 
   find(file: string, form: Form): Layout | null {
-    return this.read().find((each) => each.file === file && each.form === form) ?? null;
+    return this.read().find((layout) => layout.file === file && layout.form === form) ?? null;
   }
 
   store(layout: Layout): void {
     // Read again each time: another tab may have stored another arrangement.
-    const others = this.read().filter(({ file, form }) => file !== layout.file || form !== layout.form);
-    this.storage.setItem(KEY, JSON.stringify([layout, ...others].slice(0, MAX_LAYOUTS)));
+    const otherLayouts = this.read().filter(({ file, form }) => file !== layout.file || form !== layout.form);
+    this.storage.setItem(KEY, JSON.stringify([layout, ...otherLayouts].slice(0, MAX_LAYOUTS)));
   }
 
   private read(): Layout[] {
     try {
-      const stored: unknown = JSON.parse(this.storage.getItem(KEY) ?? "[]");
-      return Array.isArray(stored) ? stored.filter(isLayout) : [];
+      const layouts: unknown = JSON.parse(this.storage.getItem(KEY) ?? "[]");
+      return Array.isArray(layouts) ? layouts.filter(isLayout) : [];
     } catch {
       return [];
     }

@@ -10,7 +10,7 @@ export class PanelTab implements ITabRenderer {
 
   constructor(
     private readonly iconName: IconName,
-    private readonly closable: boolean,
+    private readonly isClosable: boolean,
     private readonly onClose: (() => void) | null = null,
   ) {}
 
@@ -21,13 +21,13 @@ export class PanelTab implements ITabRenderer {
     this.title.textContent = title;
     api.onDidTitleChange((event) => (this.title.textContent = event.title));
     this.element.append(icon(this.iconName), this.title);
-    if (!this.closable) return;
+    if (!this.isClosable) return;
     this.close = () => {
       if (this.onClose) this.onClose();
       else api.close();
       return true;
     };
-    // Nothing else within a tab can have the focus: keyboard users close with Delete.
+    // A tab cannot contain another focusable element: keyboard users close the panel with Delete.
     const cross = h("span", { class: "tab-close", title: strings.closeTab, aria: { hidden: "true" } }, icon("close"));
     // Pressing the close button must not start a drag of the tab.
     cross.addEventListener("pointerdown", (event) => event.stopPropagation());

@@ -15,13 +15,13 @@ export class TimeStrip {
   /** The strip appeared, disappeared, or was folded or unfolded. */
   readonly changed = new Signal();
   private strip: DockviewGroupPanel | null = null;
-  private unfolded: boolean;
+  private isOpen: boolean;
 
   constructor(
     private readonly api: DockviewApi,
     private readonly storage: TextStorage,
   ) {
-    this.unfolded = storage.getItem(KEY) === "shown";
+    this.isOpen = storage.getItem(KEY) === "shown";
   }
 
   /** Whether there is a strip, folded or not. */
@@ -30,13 +30,13 @@ export class TimeStrip {
   }
 
   get isUnfolded(): boolean {
-    return this.unfolded;
+    return this.isOpen;
   }
 
   /** Shows or hides the strip. */
-  setUnfolded(unfolded: boolean): void {
-    this.unfolded = unfolded;
-    this.storage.setItem(KEY, unfolded ? "shown" : "hidden");
+  setUnfolded(isUnfolded: boolean): void {
+    this.isOpen = isUnfolded;
+    this.storage.setItem(KEY, isUnfolded ? "shown" : "hidden");
     this.show();
     this.changed.emit();
   }
@@ -66,7 +66,7 @@ export class TimeStrip {
   private show(): void {
     const { strip } = this;
     if (!strip) return;
-    if (strip.api.isVisible !== this.unfolded) strip.api.setVisible(this.unfolded);
-    if (this.unfolded) strip.api.setSize({ height: TIME_HEIGHT });
+    if (strip.api.isVisible !== this.isOpen) strip.api.setVisible(this.isOpen);
+    if (this.isOpen) strip.api.setSize({ height: TIME_HEIGHT });
   }
 }

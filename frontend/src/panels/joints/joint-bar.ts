@@ -5,7 +5,7 @@ import { strings } from "../../strings";
 import { UnitSwitch } from "../../widgets/unit-switch";
 
 /** Returns the controls of all joints: Randomize and Center as in joint_state_publisher_gui, and the unit of angles. */
-export function jointBar({ connection, angles }: Session): HTMLElement {
+export function createJointBar({ connection, angles }: Session): HTMLElement {
   const texts = strings.joints;
   return h(
     "div",

@@ -10,17 +10,17 @@ import { clamp, formatFixed, parseNumber } from "../../tree/numbers";
 const SERVER_DELAY_MS = 250;
 
 /**
- * The number of characters at the end of a name that remain visible in a narrow panel: names of related joints begin
- * alike, and often end in `_joint`.
+ * The number of characters at the end of a name that remain visible in a narrow panel: names of related joints often
+ * have the same beginning, and end in `_joint`.
  */
 const VISIBLE_END = 14;
-/** Names up to this length are never cut. */
+/** The maximum length of names that are never cut. */
 const UNCUT_LENGTH = 10;
 
 /** Splits a name into a part that may be cut, and its end, which always remains visible. */
 export function splitName(name: string): readonly [string, string] {
-  const cut = name.length > UNCUT_LENGTH ? name.length - Math.min(VISIBLE_END, Math.floor(name.length / 2)) : name.length;
-  return [name.slice(0, cut), name.slice(cut)];
+  const cutLength = name.length > UNCUT_LENGTH ? name.length - Math.min(VISIBLE_END, Math.floor(name.length / 2)) : name.length;
+  return [name.slice(0, cutLength), name.slice(cutLength)];
 }
 
 /** A joint in the Joints panel: name, number field, slider and limits. */
@@ -33,18 +33,18 @@ export class JointRow {
   private readonly relation = h("span");
   private position = 0;
   private touchedAt = -Infinity;
-  private dragging = false;
+  private isDragging = false;
 
   constructor(
     readonly joint: JointControl,
     private readonly angles: AngleUnits,
     private readonly onMoved: (position: number) => void,
   ) {
-    const follower = joint.mimic !== null;
-    const halves = splitName(joint.name).map((part) => h("span", {}, part));
+    const isFollower = joint.mimic !== null;
+    const halves = splitName(joint.name).map((fraction) => h("span", {}, fraction));
     // Screen readers get the whole name from the slider and the field.
     const name = h("span", { class: "joint-name", title: joint.name, aria: { hidden: "true" } }, ...halves);
-    const mimic = follower
+    const mimicElement = isFollower
       ? h("div", { class: "mimic", title: strings.joints.follows(joint.mimic ?? "") }, icon("link"), this.relation)
       : null;
     this.slider.type = "range";
@@ -53,16 +53,16 @@ export class JointRow {
     this.slider.step = "any";
     this.field.type = "text";
     this.field.inputMode = "decimal";
-    this.slider.disabled = this.field.disabled = follower;
+    this.slider.disabled = this.field.disabled = isFollower;
     this.slider.setAttribute("aria-label", joint.name);
     this.field.setAttribute("aria-label", strings.joints.position(joint.name));
     this.bindInputs();
     this.element = h(
       "div",
-      { class: follower ? "joint follower" : "joint", data: { joint: joint.name } },
+      { class: isFollower ? "joint follower" : "joint", data: { joint: joint.name } },
       h("div", { class: "joint-head" }, name, h("span", { class: "spacer" }), this.field, this.unit),
       h("div", { class: "joint-slide" }, this.limits[0], this.slider, this.limits[1]),
-      mimic,
+      mimicElement,
     );
     this.showUnit();
   }
@@ -79,21 +79,21 @@ export class JointRow {
 
   /** Shows a position from the server, except while the user is moving the joint. */
   setPosition(position: number): void {
-    if (this.dragging || performance.now() - this.touchedAt < SERVER_DELAY_MS) return;
+    if (this.isDragging || performance.now() - this.touchedAt < SERVER_DELAY_MS) return;
     this.position = position;
     this.show();
   }
 
   private bindInputs(): void {
     this.slider.addEventListener("input", () => this.move(Number(this.slider.value)));
-    this.slider.addEventListener("pointerdown", () => (this.dragging = true));
-    for (const end of ["pointerup", "pointercancel", "blur"]) {
-      this.slider.addEventListener(end, () => (this.dragging = false));
+    this.slider.addEventListener("pointerdown", () => (this.isDragging = true));
+    for (const eventType of ["pointerup", "pointercancel", "blur"]) {
+      this.slider.addEventListener(eventType, () => (this.isDragging = false));
     }
     this.field.addEventListener("focus", () => this.field.select());
-    this.field.addEventListener("blur", () => this.readField());
+    this.field.addEventListener("blur", () => this.applyField());
     this.field.addEventListener("keydown", (event) => {
-      if (event.key === "Enter") this.readField();
+      if (event.key === "Enter") this.applyField();
       else if (event.key === "Escape") this.show(true);
       else if (event.key === "ArrowUp") this.move(this.position + this.step);
       else if (event.key === "ArrowDown") this.move(this.position - this.step);
@@ -103,7 +103,7 @@ export class JointRow {
     });
   }
 
-  private readField(): void {
+  private applyField(): void {
     if (this.field.value === this.format(this.position)) return;
     const value = parseNumber(this.field.value);
     if (value === null) this.show(true);
@@ -117,15 +117,15 @@ export class JointRow {
     this.onMoved(this.position);
   }
 
-  private show(force = false): void {
+  private show(replacesTyped = false): void {
     const { lower, upper } = this.joint;
-    const part = upper > lower ? (this.position - lower) / (upper - lower) : 0;
-    if (!this.dragging) this.slider.value = String(this.position);
-    this.slider.style.setProperty("--part", String(clamp(part, 0, 1)));
-    const zero = upper > lower ? (this.joint.zero - lower) / (upper - lower) : 0;
-    this.slider.style.setProperty("--zero", String(clamp(zero, 0, 1)));
+    const fraction = upper > lower ? (this.position - lower) / (upper - lower) : 0;
+    if (!this.isDragging) this.slider.value = String(this.position);
+    this.slider.style.setProperty("--part", String(clamp(fraction, 0, 1)));
+    const zeroFraction = upper > lower ? (this.joint.zero - lower) / (upper - lower) : 0;
+    this.slider.style.setProperty("--zero", String(clamp(zeroFraction, 0, 1)));
     this.slider.setAttribute("aria-valuetext", `${this.format(this.position)} ${this.unit.textContent}`);
-    if (force || document.activeElement !== this.field) this.field.value = this.format(this.position);
+    if (replacesTyped || document.activeElement !== this.field) this.field.value = this.format(this.position);
   }
 
   private get scale(): number {

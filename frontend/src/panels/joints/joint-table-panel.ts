@@ -1,4 +1,4 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import type { JointDetails } from "../../protocol";
 import type { DescriptionModel } from "../../state/description-model";
 import { formatJointCells, COLUMNS, sortJoints, type Column } from "../../state/joint-table";
@@ -20,7 +20,7 @@ export class JointTablePanel implements Panel {
   private readonly box: HTMLElement;
   private readonly count = h("span", { class: "toolbar-label" });
   private readonly rows = new Map<string, HTMLElement>();
-  private order: { column: Column; descending: boolean } | null = null;
+  private order: { column: Column; isDescending: boolean } | null = null;
   private model: DescriptionModel | undefined;
 
   constructor(private readonly session: Session) {
@@ -30,12 +30,12 @@ export class JointTablePanel implements Panel {
     const bar = h("div", { class: "toolbar" }, this.count, h("span", { class: "spacer" }), units.element);
     this.element = h("div", { class: "panel" }, bar, this.empty, this.box);
     const { description, focus, angles } = session;
-    const update = coalesced(() => this.update());
+    const update = coalesce(() => this.update());
     holdWhileVisible(this.element, () => description.hold(), update);
     description.arrived.on(update);
     session.robotChanged.on(update);
     angles.changed.on(update);
-    focus.changed.on(coalesced(() => this.mark(true)));
+    focus.changed.on(coalesce(() => this.markCurrent(true)));
     this.update();
   }
 
@@ -45,25 +45,25 @@ export class JointTablePanel implements Panel {
     this.empty.hidden = this.model !== undefined;
     this.box.hidden = this.model === undefined;
     this.count.textContent = this.model ? strings.description.count(this.model.links.size, joints.length) : "";
-    this.head.replaceChildren(...COLUMNS.map((column) => this.heading(column)));
+    this.head.replaceChildren(...COLUMNS.map((column) => this.createHeading(column)));
     this.rows.clear();
     const { order } = this;
-    const shown = order ? sortJoints(joints, order.column, order.descending) : joints;
-    this.body.replaceChildren(...shown.map((joint) => this.row(joint)));
-    this.mark(false);
+    const sortedJoints = order ? sortJoints(joints, order.column, order.isDescending) : joints;
+    this.body.replaceChildren(...sortedJoints.map((joint) => this.createRow(joint)));
+    this.markCurrent(false);
   }
 
-  private heading(column: Column): HTMLElement {
+  private createHeading(column: Column): HTMLElement {
     const texts = strings.description.table;
-    const mine = this.order?.column === column;
-    const sign = mine ? (this.order?.descending ? " ▾" : " ▴") : "";
+    const isSorted = this.order?.column === column;
+    const sign = isSorted ? (this.order?.isDescending ? " ▾" : " ▴") : "";
     const cell = h("th", {}, button(texts.hints[column], () => this.sortBy(column), "", texts[column] + sign));
     cell.scope = "col";
-    cell.setAttribute("aria-sort", mine ? (this.order?.descending ? "descending" : "ascending") : "none");
+    cell.setAttribute("aria-sort", isSorted ? (this.order?.isDescending ? "descending" : "ascending") : "none");
     return cell;
   }
 
-  private row(joint: JointDetails): HTMLElement {
+  private createRow(joint: JointDetails): HTMLElement {
     const texts = formatJointCells(joint, this.session.angles, strings.description);
     const row = h(
       "tr",
@@ -75,8 +75,8 @@ export class JointTablePanel implements Panel {
     row.addEventListener("pointerenter", () => this.session.focus.setHovered(element));
     row.addEventListener("pointerleave", () => this.session.focus.setHovered(null));
     row.addEventListener("keydown", (event) => {
-      const other = { ArrowDown: row.nextElementSibling, ArrowUp: row.previousElementSibling }[event.key];
-      if (other instanceof HTMLElement) other.focus();
+      const neighbor = { ArrowDown: row.nextElementSibling, ArrowUp: row.previousElementSibling }[event.key];
+      if (neighbor instanceof HTMLElement) neighbor.focus();
       else if (event.key === "Enter" || event.key === " ") this.session.focus.select(element);
       else return;
       event.preventDefault();
@@ -87,18 +87,18 @@ export class JointTablePanel implements Panel {
 
   /** Cycles through ascending order, descending order, and the order of the file. */
   private sortBy(column: Column): void {
-    if (this.order?.column !== column) this.order = { column, descending: false };
-    else this.order = this.order.descending ? null : { column, descending: true };
+    if (this.order?.column !== column) this.order = { column, isDescending: false };
+    else this.order = this.order.isDescending ? null : { column, isDescending: true };
     this.update();
   }
 
-  private mark(scroll: boolean): void {
+  private markCurrent(scrollsIntoView: boolean): void {
     const { current } = this.session.focus;
     for (const [name, row] of this.rows) {
-      const mine = current?.display === this.model?.display && current?.kind === "joint" && current.name === name;
-      row.classList.toggle("selected", mine);
-      row.setAttribute("aria-selected", String(mine));
-      if (mine && scroll && !row.matches(":hover")) row.scrollIntoView({ block: "nearest" });
+      const isCurrent = current?.display === this.model?.display && current?.kind === "joint" && current.name === name;
+      row.classList.toggle("selected", isCurrent);
+      row.setAttribute("aria-selected", String(isCurrent));
+      if (isCurrent && scrollsIntoView && !row.matches(":hover")) row.scrollIntoView({ block: "nearest" });
     }
   }
 }

@@ -2,7 +2,7 @@ import { h } from "../../dom";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import type { Panel } from "../panel";
-import { jointBar } from "./joint-bar";
+import { createJointBar } from "./joint-bar";
 import { JointRow } from "./joint-row";
 import { PoseBar } from "./pose-bar";
 import { SweepBar } from "./sweep-bar";
@@ -26,7 +26,7 @@ export class JointsPanel implements Panel {
     this.filter.placeholder = texts.filter;
     this.filter.setAttribute("aria-label", texts.filter);
     this.filter.addEventListener("input", () => this.applyFilter());
-    const bar = jointBar(session);
+    const bar = createJointBar(session);
     this.bars = h("div", { class: "joint-bars" }, new PoseBar(session).element, new SweepBar(joints).element);
     this.element = h("div", { class: "panel joints-panel" }, bar, this.bars, this.filter, this.list);
     joints.controlsChanged.on(() => this.build());
@@ -41,9 +41,9 @@ export class JointsPanel implements Panel {
       (joint) => new JointRow(joint, angles, (position) => joints.move({ [joint.name]: position })),
     );
     this.list.replaceChildren(...this.rows.map((row) => row.element));
-    const none = this.rows.length === 0;
-    if (none) this.list.append(h("p", { class: "empty" }, strings.joints.none));
-    this.bars.hidden = none;
+    const isEmpty = this.rows.length === 0;
+    if (isEmpty) this.list.append(h("p", { class: "empty" }, strings.joints.none));
+    this.bars.hidden = isEmpty;
     this.filter.hidden = this.rows.length < MIN_FILTERED;
     if (this.filter.hidden) this.filter.value = "";
     this.applyFilter();

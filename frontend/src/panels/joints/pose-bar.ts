@@ -9,17 +9,17 @@ import { saveText } from "../../widgets/save-file";
 /** Named poses of the robot, which can be recalled, saved, and exported and imported as SRDF. */
 export class PoseBar {
   readonly element: HTMLElement;
-  private readonly chips = h("div", { class: "pose-chips" });
-  private readonly name = h("input", { class: "field pose-name" });
+  private readonly chipBox = h("div", { class: "pose-chips" });
+  private readonly nameField = h("input", { class: "field pose-name" });
   private readonly notice = h("p", { class: "hint pose-notice", role: "status" });
   private readonly picker = h("input");
 
   constructor(private readonly session: Session) {
     const texts = strings.description.poses;
-    this.name.placeholder = texts.nameShort;
-    this.name.setAttribute("aria-label", texts.name);
-    this.name.maxLength = 60;
-    this.name.addEventListener("keydown", (event) => {
+    this.nameField.placeholder = texts.nameShort;
+    this.nameField.setAttribute("aria-label", texts.name);
+    this.nameField.maxLength = 60;
+    this.nameField.addEventListener("keydown", (event) => {
       if (event.key === "Enter") this.save();
       event.stopPropagation();
     });
@@ -27,65 +27,65 @@ export class PoseBar {
     this.picker.accept = ".srdf,.xml,.xacro";
     this.picker.hidden = true;
     this.picker.addEventListener("change", () => void this.importFile());
-    const more = button(texts.more, () => this.openMore(more), "tool bare", icon("more"));
-    more.setAttribute("aria-haspopup", "menu");
+    const moreButton = button(texts.more, () => this.openMore(moreButton), "tool bare", icon("more"));
+    moreButton.setAttribute("aria-haspopup", "menu");
     const entry = h(
       "div",
       { class: "bar-row" },
       h("span", { class: "bar-label", title: texts.kept }, texts.label),
-      this.name,
+      this.nameField,
       button(texts.saveHint, () => this.save(), "tool", texts.save),
-      more,
+      moreButton,
     );
     this.notice.hidden = true;
-    this.element = h("div", { class: "joint-bar poses", role: "group", aria: { label: texts.label } }, entry, this.chips, this.notice, this.picker);
+    this.element = h("div", { class: "joint-bar poses", role: "group", aria: { label: texts.label } }, entry, this.chipBox, this.notice, this.picker);
     const { poses, joints, robotChanged } = session;
     poses.changed.on(() => this.show());
     robotChanged.on(() => this.show());
-    joints.positionsChanged.on(() => this.mark());
+    joints.positionsChanged.on(() => this.markCurrent());
     this.show();
   }
 
-  private get robot(): string {
+  private get robotName(): string {
     return this.session.robot?.name ?? "";
   }
 
   private show(): void {
-    this.chips.replaceChildren(...this.session.poses.posesOf(this.robot).map((pose) => this.chip(pose)));
-    this.mark();
+    this.chipBox.replaceChildren(...this.session.poses.posesOf(this.robotName).map((pose) => this.createChip(pose)));
+    this.markCurrent();
   }
 
-  private chip(pose: NamedPose): HTMLElement {
+  private createChip(pose: NamedPose): HTMLElement {
     const texts = strings.description.poses;
     return h(
       "span",
       { class: "chip", data: { pose: pose.name } },
       button(texts.recall(pose.name), () => this.session.joints.move(pose.positions), "chip-name", pose.name),
-      button(texts.remove(pose.name), () => this.session.poses.remove(this.robot, pose.name), "chip-remove", icon("close")),
+      button(texts.remove(pose.name), () => this.session.poses.remove(this.robotName, pose.name), "chip-remove", icon("close")),
     );
   }
 
-  /** Marks the poses that the robot is in. */
-  private mark(): void {
+  /** Marks the poses that match the robot's current joint positions. */
+  private markCurrent(): void {
     const { poses, joints } = this.session;
-    const known = poses.posesOf(this.robot);
-    this.chips.querySelectorAll<HTMLElement>(".chip").forEach((chip) => {
-      const pose = known.find((each) => each.name === chip.dataset["pose"]);
+    const namedPoses = poses.posesOf(this.robotName);
+    this.chipBox.querySelectorAll<HTMLElement>(".chip").forEach((chip) => {
+      const pose = namedPoses.find((namedPose) => namedPose.name === chip.dataset["pose"]);
       chip.classList.toggle("on", pose !== undefined && matchesPose(pose, joints.positions));
     });
   }
 
   private save(): void {
-    const name = this.name.value.trim();
+    const name = this.nameField.value.trim();
     const { controls, positions } = this.session.joints;
     if (name === "" || !controls) {
-      this.name.focus();
+      this.nameField.focus();
       return;
     }
-    const free = controls.filter((joint) => joint.mimic === null);
-    const saved = free.map((joint) => [joint.name, positions[joint.name] ?? joint.zero] as const);
-    this.session.poses.save(this.robot, { name, positions: Object.fromEntries(saved) });
-    this.name.value = "";
+    const independentJoints = controls.filter((joint) => joint.mimic === null);
+    const jointPositions = independentJoints.map((joint) => [joint.name, positions[joint.name] ?? joint.zero] as const);
+    this.session.poses.save(this.robotName, { name, positions: Object.fromEntries(jointPositions) });
+    this.nameField.value = "";
     this.notice.hidden = true;
   }
 
@@ -98,7 +98,7 @@ export class PoseBar {
   }
 
   private export(): void {
-    saveText(`${this.robot || "robot"}.srdf`, toSrdf(this.robot, this.session.poses.posesOf(this.robot)), "application/xml");
+    saveText(`${this.robotName || "robot"}.srdf`, toSrdf(this.robotName, this.session.poses.posesOf(this.robotName)), "application/xml");
   }
 
   private async importFile(): Promise<void> {
@@ -108,6 +108,6 @@ export class PoseBar {
     this.picker.value = "";
     this.notice.hidden = poses.length > 0;
     this.notice.textContent = strings.description.poses.nothingFound;
-    if (poses.length > 0) this.session.poses.save(this.robot, ...poses);
+    if (poses.length > 0) this.session.poses.save(this.robotName, ...poses);
   }
 }

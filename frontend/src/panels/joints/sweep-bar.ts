@@ -5,46 +5,46 @@ import { Sweep, type SweepOrder } from "../../state/sweep";
 import { strings } from "../../strings";
 
 const SPEEDS = [0.25, 0.5, 1, 2, 4] as const;
-/** The longest step of the sweep: a page that was suspended continues where it was. */
-const LONGEST_STEP_S = 0.1;
+/** The longest step of the sweep: after the page was suspended, the sweep continues from the same position. */
+const MAX_STEP_S = 0.1;
 
 /** Moves the joints through their ranges until the user stops it or the joints change. */
 export class SweepBar {
   readonly element: HTMLElement;
-  private readonly order = h("select", { class: "choice" });
-  private readonly speed = h("select", { class: "choice" });
-  private readonly start: HTMLButtonElement;
+  private readonly orderSelect = h("select", { class: "choice" });
+  private readonly speedSelect = h("select", { class: "choice" });
+  private readonly startButton: HTMLButtonElement;
   private sweep: Sweep | null = null;
   private seconds = 0;
   private lastMs = 0;
-  private sent: Readonly<Record<string, number>> = {};
+  private sentPositions: Readonly<Record<string, number>> = {};
 
   constructor(private readonly joints: JointsState) {
     const texts = strings.description.sweep;
-    fill(this.order, texts.order, [
+    fillSelect(this.orderSelect, texts.order, [
       ["one", texts.one],
       ["all", texts.all],
     ]);
-    fill(this.speed, texts.speed, SPEEDS.map((speed) => [String(speed), `${speed}×`]));
-    this.speed.value = "1";
-    this.order.addEventListener("change", () => this.sweep && this.begin());
-    this.start = button(texts.start, () => (this.sweep ? this.end() : this.begin()), "tool bare", icon("play"));
+    fillSelect(this.speedSelect, texts.speed, SPEEDS.map((speed) => [String(speed), `${speed}×`]));
+    this.speedSelect.value = "1";
+    this.orderSelect.addEventListener("change", () => this.sweep && this.begin());
+    this.startButton = button(texts.start, () => (this.sweep ? this.end() : this.begin()), "tool bare", icon("play"));
     const row = h(
       "div",
       { class: "bar-row" },
       h("span", { class: "bar-label", title: texts.hint }, texts.label),
-      this.order,
-      this.speed,
-      h("span", { class: "bar-buttons" }, dragSwitch(joints), this.start),
+      this.orderSelect,
+      this.speedSelect,
+      h("span", { class: "bar-buttons" }, createDragSwitch(joints), this.startButton),
     );
     this.element = h("div", { class: "joint-bar sweep", role: "group", aria: { label: texts.label } }, row);
     joints.controlsChanged.on(() => this.end());
   }
 
   private begin(): void {
-    this.sweep = new Sweep(this.joints.controls ?? [], this.joints.positions, this.order.value as SweepOrder);
+    this.sweep = new Sweep(this.joints.controls ?? [], this.joints.positions, this.orderSelect.value as SweepOrder);
     this.seconds = 0;
-    this.sent = this.joints.positions;
+    this.sentPositions = this.joints.positions;
     this.lastMs = performance.now();
     this.showState();
     requestAnimationFrame(this.tick);
@@ -58,27 +58,27 @@ export class SweepBar {
   private readonly tick = (): void => {
     if (!this.sweep) return;
     const now = performance.now();
-    this.seconds += Math.min((now - this.lastMs) / 1000, LONGEST_STEP_S) * Number(this.speed.value);
+    this.seconds += Math.min((now - this.lastMs) / 1000, MAX_STEP_S) * Number(this.speedSelect.value);
     this.lastMs = now;
     const positions = this.sweep.positionsAt(this.seconds);
-    const moved = Object.entries(positions).filter(([name, position]) => this.sent[name] !== position);
-    this.sent = positions;
-    this.joints.move(Object.fromEntries(moved));
+    const movedJoints = Object.entries(positions).filter(([name, position]) => this.sentPositions[name] !== position);
+    this.sentPositions = positions;
+    this.joints.move(Object.fromEntries(movedJoints));
     requestAnimationFrame(this.tick);
   };
 
   private showState(): void {
     const texts = strings.description.sweep;
-    const running = this.sweep !== null;
-    this.start.replaceChildren(icon(running ? "stop" : "play"));
-    this.start.title = running ? texts.stop : texts.start;
-    this.start.setAttribute("aria-label", this.start.title);
-    this.start.classList.toggle("on", running);
+    const isRunning = this.sweep !== null;
+    this.startButton.replaceChildren(icon(isRunning ? "stop" : "play"));
+    this.startButton.title = isRunning ? texts.stop : texts.start;
+    this.startButton.setAttribute("aria-label", this.startButton.title);
+    this.startButton.classList.toggle("on", isRunning);
   }
 }
 
 /** Returns the switch for dragging links without Alt, for touch screens and for frequent use. */
-function dragSwitch(joints: JointsState): HTMLElement {
+function createDragSwitch(joints: JointsState): HTMLElement {
   const toggle = (): void => {
     joints.dragsWithoutAlt = !joints.dragsWithoutAlt;
     show();
@@ -92,7 +92,7 @@ function dragSwitch(joints: JointsState): HTMLElement {
   return element;
 }
 
-function fill(select: HTMLSelectElement, label: string, options: readonly (readonly [string, string])[]): void {
+function fillSelect(select: HTMLSelectElement, label: string, options: readonly (readonly [string, string])[]): void {
   select.setAttribute("aria-label", label);
   select.title = label;
   select.append(

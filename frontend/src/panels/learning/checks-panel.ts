@@ -1,12 +1,12 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { StepCheck } from "../../protocol";
 import type { CourseState } from "../../state/course";
 import { languageTag, strings } from "../../strings";
-import { keyText, SHORTCUTS } from "../../widgets/shortcuts";
+import { formatShortcut, SHORTCUTS } from "../../widgets/shortcuts";
 import type { Panel } from "../panel";
 import { askToCatchUp } from "./catch-up";
-import { localText } from "./local-text";
+import { localize } from "./local-text";
 
 /** The results of the checks of the shown step. */
 export class ChecksPanel implements Panel {
@@ -17,25 +17,25 @@ export class ChecksPanel implements Panel {
   private readonly status = h("span", { class: "checks-status", role: "status" });
   private readonly list = h("ul", { class: "checks-list" });
   private readonly offerText = h("span");
-  private readonly offer: HTMLElement;
-  private readonly next: HTMLButtonElement;
+  private readonly offerBox: HTMLElement;
+  private readonly nextButton: HTMLButtonElement;
   private readonly content: HTMLElement;
 
   constructor(private readonly state: CourseState) {
     const texts = strings.learning;
-    const check = button(`${texts.checkHint} (${keyText(SHORTCUTS.checkStep)})`, () => state.check(), "tool framed", texts.check);
-    this.next = button(`${texts.nextHint} (${keyText(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed primary", texts.nextStep);
-    this.offer = h("div", { class: "checks-offer" }, this.offerText, button(texts.catchUpHint, () => state.askCatchUp(), "tool framed", texts.catchUp));
+    const checkButton = button(`${texts.checkHint} (${formatShortcut(SHORTCUTS.checkStep)})`, () => state.check(), "tool framed", texts.check);
+    this.nextButton = button(`${texts.nextHint} (${formatShortcut(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed primary", texts.nextStep);
+    this.offerBox = h("div", { class: "checks-offer" }, this.offerText, button(texts.catchUpHint, () => state.askCatchUp(), "tool framed", texts.catchUp));
     this.content = h(
       "div",
       { class: "checks" },
-      h("header", { class: "checks-head" }, this.status, h("span", { class: "spacer" }), check, this.next),
-      this.offer,
+      h("header", { class: "checks-head" }, this.status, h("span", { class: "spacer" }), checkButton, this.nextButton),
+      this.offerBox,
       h("div", { class: "scroll", role: "group", tabIndex: 0, aria: { label: texts.checks } }, this.list),
     );
     this.element = h("div", { class: "panel checks-panel" }, this.empty, this.content);
     state.catchUpAnswered.on((files) => askToCatchUp(state, files));
-    state.changed.on(coalesced(() => this.update()));
+    state.changed.on(coalesce(() => this.update()));
     this.update();
   }
 
@@ -44,16 +44,16 @@ export class ChecksPanel implements Panel {
     const { results } = state;
     this.empty.hidden = state.isAvailable;
     this.content.hidden = !state.isAvailable;
-    this.status.textContent = this.statusText();
+    this.status.textContent = this.formatStatus();
     this.element.classList.toggle("running", results?.is_running === true);
     this.element.classList.toggle("passed", state.isPassed);
-    this.offer.hidden = state.missingCount === 0;
+    this.offerBox.hidden = state.missingCount === 0;
     this.offerText.textContent = strings.learning.missingSteps(state.missingCount);
-    this.next.hidden = !state.isPassed || state.stepAt(1) === undefined;
-    this.list.replaceChildren(...(results?.checks ?? []).map((check) => row(check)));
+    this.nextButton.hidden = !state.isPassed || state.stepAt(1) === undefined;
+    this.list.replaceChildren(...(results?.checks ?? []).map((check) => createRow(check)));
   }
 
-  private statusText(): string {
+  private formatStatus(): string {
     const texts = strings.learning;
     const { results } = this.state;
     if (results === null || results.is_running) return results?.is_world_paused === true ? texts.checkingAlone : texts.checking;
@@ -64,9 +64,9 @@ export class ChecksPanel implements Panel {
   }
 }
 
-function row({ title, is_passed: isPassed, message }: StepCheck): HTMLElement {
+function createRow({ title, is_passed: isPassed, message }: StepCheck): HTMLElement {
   const mark = isPassed ? icon("check", "level-ok") : icon("close", "level-error");
   const state = h("span", { class: "hidden-text" }, isPassed ? strings.learning.passed : strings.learning.missing);
-  const text = message === null ? null : h("p", { class: "check-message" }, localText(message));
-  return h("li", { class: "step-check" }, mark, h("div", {}, state, localText(title), text));
+  const text = message === null ? null : h("p", { class: "check-message" }, localize(message));
+  return h("li", { class: "step-check" }, mark, h("div", {}, state, localize(title), text));
 }

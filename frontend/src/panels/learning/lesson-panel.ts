@@ -1,16 +1,16 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { CourseState } from "../../state/course";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
-import { keyText, SHORTCUTS } from "../../widgets/shortcuts";
+import { formatShortcut, SHORTCUTS } from "../../widgets/shortcuts";
 import { nameOf } from "../place";
 import type { Panel } from "../panel";
-import { lessonText } from "./lesson-text";
-import { localText } from "./local-text";
+import { createLessonText } from "./lesson-text";
+import { localize } from "./local-text";
 import { Outline } from "./outline";
 
-/** The text of the shown step, its files, answer, hints and solution, and the way to other steps. */
+/** The text of the shown step, its files, answer, hints and solution, and the controls to move to other steps. */
 export class LessonPanel implements Panel {
   readonly id = "lesson";
   readonly icon = "lesson";
@@ -19,28 +19,28 @@ export class LessonPanel implements Panel {
   private readonly place = h("span", { class: "lesson-place" });
   private readonly text = h("div", { class: "lesson-body scroll", tabIndex: 0 });
   private readonly problem = h("div", { class: "lesson-problem", role: "alert" });
-  private readonly answer = h("input", { class: "field lesson-answer" });
+  private readonly answerField = h("input", { class: "field lesson-answer" });
   private readonly outline: Outline;
   private readonly outlineToggle: HTMLButtonElement;
-  private readonly back: HTMLButtonElement;
-  private readonly next: HTMLButtonElement;
-  private readonly hint: HTMLButtonElement;
-  private readonly solution: HTMLButtonElement;
+  private readonly backButton: HTMLButtonElement;
+  private readonly nextButton: HTMLButtonElement;
+  private readonly hintButton: HTMLButtonElement;
+  private readonly solutionButton: HTMLButtonElement;
   private readonly course: HTMLElement;
-  /** What is shown, so that a new result does not scroll the text. */
-  private shown = "";
+  /** Identifies the drawn text, so that a new result does not draw it again and scroll it. */
+  private shownKey = "";
   private isOutlineShown = false;
 
   constructor(private readonly state: CourseState) {
     const texts = strings.learning;
     this.outline = new Outline(state, () => this.showOutline(false));
     this.outlineToggle = button(texts.outlineHint, () => this.showOutline(!this.isOutlineShown), "tool framed", icon("tree"), texts.outline);
-    this.back = button(`${texts.backHint} (${keyText(SHORTCUTS.previousStep)})`, () => state.move(-1), "tool framed", texts.back);
-    this.next = button(`${texts.nextHint} (${keyText(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed", texts.next);
-    this.hint = button(texts.hintHint, () => state.takeHint(), "tool framed", icon("bulb"), texts.hint);
-    this.solution = button(texts.solutionHint, () => this.askForSolution(), "tool framed", texts.solution);
-    this.answer.setAttribute("aria-label", texts.answer);
-    this.answer.addEventListener("keydown", (event) => {
+    this.backButton = button(`${texts.backHint} (${formatShortcut(SHORTCUTS.previousStep)})`, () => state.move(-1), "tool framed", texts.back);
+    this.nextButton = button(`${texts.nextHint} (${formatShortcut(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed", texts.next);
+    this.hintButton = button(texts.hintHint, () => state.takeHint(), "tool framed", icon("bulb"), texts.hint);
+    this.solutionButton = button(texts.solutionHint, () => this.askForSolution(), "tool framed", texts.solution);
+    this.answerField.setAttribute("aria-label", texts.answer);
+    this.answerField.addEventListener("keydown", (event) => {
       event.stopPropagation();
       if (event.key === "Enter" && !event.isComposing) this.sendAnswer();
     });
@@ -51,15 +51,15 @@ export class LessonPanel implements Panel {
       this.outline.element,
       this.text,
       this.problem,
-      h("footer", { class: "lesson-foot" }, this.back, this.hint, this.solution, h("span", { class: "spacer" }), this.next),
+      h("footer", { class: "lesson-foot" }, this.backButton, this.hintButton, this.solutionButton, h("span", { class: "spacer" }), this.nextButton),
     );
     this.element = h("div", { class: "panel lesson-panel" }, this.empty, this.course);
     this.showOutline(false);
-    state.changed.on(coalesced(() => this.update()));
+    state.changed.on(coalesce(() => this.update()));
     this.update();
   }
 
-  /** Returns what is shown, for tests. */
+  /** Returns the state of the panel for tests. */
   inspect(): object {
     return { step: this.state.step?.address ?? "", checks: this.state.results, problem: this.state.problem };
   }
@@ -72,14 +72,14 @@ export class LessonPanel implements Panel {
     if (step === null) return;
     const texts = strings.learning;
     const passedCount = state.steps.filter(({ is_passed: isPassed }) => isPassed).length;
-    this.place.replaceChildren(`${localText(step.lesson)} · `, h("span", {}, texts.progress(passedCount, state.steps.length)));
-    this.back.disabled = state.stepAt(-1) === undefined;
-    this.next.disabled = state.stepAt(1) === undefined;
-    this.next.classList.toggle("primary", state.isPassed);
-    this.hint.hidden = step.hint_count === 0;
-    this.hint.disabled = step.hints.length >= step.hint_count;
-    this.hint.lastChild?.replaceWith(texts.hintOf(step.hints.length, step.hint_count));
-    this.solution.hidden = !step.has_solution;
+    this.place.replaceChildren(`${localize(step.lesson)} · `, h("span", {}, texts.progress(passedCount, state.steps.length)));
+    this.backButton.disabled = state.stepAt(-1) === undefined;
+    this.nextButton.disabled = state.stepAt(1) === undefined;
+    this.nextButton.classList.toggle("primary", state.isPassed);
+    this.hintButton.hidden = step.hint_count === 0;
+    this.hintButton.disabled = step.hints.length >= step.hint_count;
+    this.hintButton.lastChild?.replaceWith(texts.hintOf(step.hints.length, step.hint_count));
+    this.solutionButton.hidden = !step.has_solution;
     this.problem.hidden = state.problem === null;
     this.problem.textContent = state.problem ? `${state.problem.message} ${state.problem.hint}`.trim() : "";
     if (this.isOutlineShown) this.outline.draw();
@@ -90,41 +90,41 @@ export class LessonPanel implements Panel {
     const { step } = this.state;
     if (step === null) return;
     const key = `${step.address} ${step.hints.length} ${step.right_answer ?? ""}`;
-    if (key === this.shown) return;
-    const isSame = this.shown.startsWith(`${step.address} `);
-    this.shown = key;
-    const hints = step.hints.map((hint) => lessonText(localText(hint), "lesson-text lesson-hint"));
-    const right = step.right_answer === null ? [] : [h("p", { class: "lesson-text lesson-hint" }, strings.learning.rightAnswer(withUnit(step.right_answer, step.unit)))];
+    if (key === this.shownKey) return;
+    const isSame = this.shownKey.startsWith(`${step.address} `);
+    this.shownKey = key;
+    const hints = step.hints.map((hint) => createLessonText(localize(hint), "lesson-text lesson-hint"));
+    const rightAnswer = step.right_answer === null ? [] : [h("p", { class: "lesson-text lesson-hint" }, strings.learning.rightAnswer(appendUnit(step.right_answer, step.unit)))];
     this.text.replaceChildren(
-      h("h2", {}, localText(step.title)),
-      ...(localText(step.introduction) === "" ? [] : [lessonText(localText(step.introduction), "lesson-text lesson-introduction")]),
-      lessonText(localText(step.body), "lesson-text"),
-      ...this.fileRow(step.files),
-      ...this.answerRow(step.unit, step.answer),
+      h("h2", {}, localize(step.title)),
+      ...(localize(step.introduction) === "" ? [] : [createLessonText(localize(step.introduction), "lesson-text lesson-introduction")]),
+      createLessonText(localize(step.body), "lesson-text"),
+      ...this.createFileRow(step.files),
+      ...this.createAnswerRow(step.unit, step.answer),
       ...hints,
-      ...right,
+      ...rightAnswer,
     );
-    if (isSame) [...hints, ...right].at(-1)?.scrollIntoView({ block: "nearest" });
+    if (isSame) [...hints, ...rightAnswer].at(-1)?.scrollIntoView({ block: "nearest" });
     else this.text.scrollTop = 0;
   }
 
-  private fileRow(files: readonly string[]): HTMLElement[] {
+  private createFileRow(files: readonly string[]): HTMLElement[] {
     if (files.length === 0) return [];
     const texts = strings.learning;
     const buttons = files.map((path) => button(texts.openFile(path), () => this.state.fileRequested.emit(path), "tool framed", icon("file"), nameOf(path)));
     return [h("div", { class: "lesson-row" }, h("span", { class: "toolbar-label" }, texts.files), ...buttons)];
   }
 
-  private answerRow(unit: string | null, answer: string | null): HTMLElement[] {
+  private createAnswerRow(unit: string | null, answer: string | null): HTMLElement[] {
     if (unit === null) return [];
     const texts = strings.learning;
-    this.answer.value = answer ?? "";
-    const send = button(texts.answerHint, () => this.sendAnswer(), "tool framed primary", texts.sendAnswer);
-    return [h("div", { class: "lesson-row" }, h("span", { class: "toolbar-label" }, texts.answer), this.answer, unit === "1" ? null : h("span", {}, unit), send)];
+    this.answerField.value = answer ?? "";
+    const sendButton = button(texts.answerHint, () => this.sendAnswer(), "tool framed primary", texts.sendAnswer);
+    return [h("div", { class: "lesson-row" }, h("span", { class: "toolbar-label" }, texts.answer), this.answerField, unit === "1" ? null : h("span", {}, unit), sendButton)];
   }
 
   private sendAnswer(): void {
-    if (this.answer.value.trim() !== "") this.state.answer(this.answer.value);
+    if (this.answerField.value.trim() !== "") this.state.answer(this.answerField.value);
   }
 
   private showOutline(isShown: boolean): void {
@@ -139,15 +139,15 @@ export class LessonPanel implements Panel {
     const texts = strings.learning;
     const folder = this.state.course?.folder ?? "";
     const files = (this.state.step?.solution ?? []).map((path) => path.slice(folder.length + 1));
-    const copied = [h("p", {}, texts.solutionText), h("ul", {}, ...files.map((path) => h("li", {}, path)))];
-    const shown = (this.state.step?.unit ?? null) === null ? [] : [h("p", {}, texts.solutionNumber)];
-    new Dialog(texts.solutionTitle, [...(files.length > 0 ? copied : []), ...shown], [
+    const copiedFiles = [h("p", {}, texts.solutionText), h("ul", {}, ...files.map((path) => h("li", {}, path)))];
+    const answerNote = (this.state.step?.unit ?? null) === null ? [] : [h("p", {}, texts.solutionNumber)];
+    new Dialog(texts.solutionTitle, [...(files.length > 0 ? copiedFiles : []), ...answerNote], [
       { label: strings.shell.cancel },
-      { label: texts.solutionTake, run: () => (this.state.takeSolution(), undefined), main: true },
+      { label: texts.solutionTake, run: () => (this.state.takeSolution(), undefined), isMain: true },
     ]).open();
   }
 }
 
-function withUnit(number: string, unit: string | null): string {
+function appendUnit(number: string, unit: string | null): string {
   return unit === null || unit === "1" ? number : `${number} ${unit}`;
 }

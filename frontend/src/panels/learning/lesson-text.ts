@@ -5,24 +5,24 @@ import { copyText } from "../../widgets/copy-text";
 import { sanitizeHtml } from "../source-editor/safe-html";
 
 /** The class of blocks that show output. */
-const OUTPUT = "language-text";
+const OUTPUT_CLASS = "language-text";
 
 /** Returns the text of a lesson as an element; code blocks get a button that copies them, unless they show output. */
-export function lessonText(html: string, className: string): HTMLElement {
+export function createLessonText(html: string, className: string): HTMLElement {
   const element = h("div", { class: className });
   element.innerHTML = sanitizeHtml(html, { allowsImages: true });
   for (const code of element.querySelectorAll<HTMLElement>("pre > code")) {
     const box = h("div", { class: "lesson-code" });
     code.parentElement?.replaceWith(box);
     box.append(h("pre", { tabIndex: 0 }, code));
-    if (code.classList.contains(OUTPUT)) continue;
+    if (code.classList.contains(OUTPUT_CLASS)) continue;
     box.append(button(strings.learning.copyHint, () => void copyText(code.textContent), "tool bare lesson-copy", icon("copy")));
   }
   for (const code of element.querySelectorAll(":not(pre) > code")) divideAtSlashes(code);
   return element;
 }
 
-/** Lets the lines of a long path end after its slashes, so that punctuation after the path stays with its last part. */
+/** Allows line breaks after the slashes of a long path, so that punctuation after it stays with its last part. */
 function divideAtSlashes(code: Element): void {
   const parts = code.textContent.split(/(?<=\/)/);
   code.replaceChildren(...parts.flatMap((part, index) => (index === 0 ? [part] : [h("wbr"), part])));

@@ -3,15 +3,13 @@ import { icon } from "../../icons";
 import type { CourseStepItem } from "../../protocol";
 import type { CourseState } from "../../state/course";
 import { strings } from "../../strings";
-import { localText } from "./local-text";
+import { localize } from "./local-text";
 
 /** The lessons and steps of the course, with the learner's progress. */
 export class Outline {
   readonly element = h("nav", { class: "course-outline", aria: { label: strings.learning.outline } });
 
-  /**
-   * @param onChosen - called when the learner has opened a step.
-   */
+  /** @param onChosen - called when the learner has opened a step. */
   constructor(
     private readonly state: CourseState,
     private readonly onChosen: () => void,
@@ -24,14 +22,14 @@ export class Outline {
         h(
           "section",
           {},
-          h("h3", {}, `${index + 1}. ${localText(title)}`),
-          ...steps.map((step) => this.row(step, localText(step.title))),
+          h("h3", {}, `${index + 1}. ${localize(title)}`),
+          ...steps.map((step) => this.createRow(step, localize(step.title))),
         ),
       ),
     );
   }
 
-  private row({ address, is_passed: isPassed, is_taken_over: isTakenOver }: CourseStepItem, name: string): HTMLElement {
+  private createRow({ address, is_passed: isPassed, is_taken_over: isTakenOver }: CourseStepItem, name: string): HTMLElement {
     const open = (): void => {
       this.state.open(address);
       this.onChosen();

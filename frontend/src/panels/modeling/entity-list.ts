@@ -21,11 +21,11 @@ export class EntityList {
   private readonly rows: VirtualRows;
   private entities: readonly WorldEntity[] = [];
   /** The row from which arrow keys continue, and the row where a range begins. */
-  private current = 0;
-  private anchor = 0;
+  private currentRow = 0;
+  private anchorRow = 0;
 
   constructor(private readonly modeling: Modeling) {
-    this.rows = new VirtualRows("entity-list", ROW_HEIGHT, (index) => this.row(index));
+    this.rows = new VirtualRows("entity-list", ROW_HEIGHT, (index) => this.createRow(index));
     this.element = this.rows.element;
     this.element.setAttribute("role", "listbox");
     this.element.setAttribute("aria-multiselectable", "true");
@@ -40,27 +40,27 @@ export class EntityList {
   private show(): void {
     this.entities = this.modeling.entities;
     this.rows.refresh(this.entities.length);
-    this.mark();
+    this.updateActiveDescendant();
   }
 
   private reveal(): void {
-    const last = this.modeling.selectedNames.at(-1);
-    const index = this.entities.findIndex(({ name }) => name === last);
-    if (index >= 0 && index !== this.current) {
-      this.current = this.anchor = index;
+    const lastSelected = this.modeling.selectedNames.at(-1);
+    const index = this.entities.findIndex(({ name }) => name === lastSelected);
+    if (index >= 0 && index !== this.currentRow) {
+      this.currentRow = this.anchorRow = index;
       this.rows.reveal(index);
     }
     this.rows.refresh();
-    this.mark();
+    this.updateActiveDescendant();
   }
 
-  private row(index: number): HTMLElement {
+  private createRow(index: number): HTMLElement {
     const entity = this.entities[index];
     const name = entity?.name ?? "";
-    const selected = this.modeling.selectedNames.includes(name);
+    const isSelected = this.modeling.selectedNames.includes(name);
     const row = h(
       "div",
-      { class: selected ? "entity-row selected" : "entity-row", role: "option", title: name, aria: { selected: String(selected) } },
+      { class: isSelected ? "entity-row selected" : "entity-row", role: "option", title: name, aria: { selected: String(isSelected) } },
       icon(entity ? iconOf(entity) : "unknown"),
       h("span", {}, name),
     );
@@ -69,35 +69,35 @@ export class EntityList {
     return row;
   }
 
-  /** Stops the browser from selecting text on Shift, which would start at the field edited last. */
+  /** Stops the browser from selecting text on Shift, which would start at the last edited field. */
   private onMouseDown(event: MouseEvent): void {
     if (!event.shiftKey) return;
     event.preventDefault();
     this.element.focus({ preventScroll: true });
   }
 
-  private selectRow(index: number, range: boolean, toggle: boolean): void {
+  private selectRow(index: number, extendsRange: boolean, isToggle: boolean): void {
     const entity = this.entities[index];
     if (!entity) return;
-    this.current = index;
-    if (!range) this.anchor = index;
-    const [from, to] = [Math.min(this.anchor, index), Math.max(this.anchor, index)];
-    if (toggle) this.modeling.select([entity.name], "toggle");
-    else this.modeling.select(range ? this.entities.slice(from, to + 1).map(({ name }) => name) : [entity.name]);
-    this.mark();
+    this.currentRow = index;
+    if (!extendsRange) this.anchorRow = index;
+    const [start, end] = [Math.min(this.anchorRow, index), Math.max(this.anchorRow, index)];
+    if (isToggle) this.modeling.select([entity.name], "toggle");
+    else this.modeling.select(extendsRange ? this.entities.slice(start, end + 1).map(({ name }) => name) : [entity.name]);
+    this.updateActiveDescendant();
   }
 
-  private mark(): void {
-    if (this.entities.length > 0) this.element.setAttribute("aria-activedescendant", `entity-${this.current}`);
+  private updateActiveDescendant(): void {
+    if (this.entities.length > 0) this.element.setAttribute("aria-activedescendant", `entity-${this.currentRow}`);
     else this.element.removeAttribute("aria-activedescendant");
   }
 
   private onKeyDown(event: KeyboardEvent): void {
-    const last = this.entities.length - 1;
-    const to = { ArrowDown: this.current + 1, ArrowUp: this.current - 1, Home: 0, End: last }[event.key];
-    if (to === undefined || last < 0) return;
+    const lastIndex = this.entities.length - 1;
+    const target = { ArrowDown: this.currentRow + 1, ArrowUp: this.currentRow - 1, Home: 0, End: lastIndex }[event.key];
+    if (target === undefined || lastIndex < 0) return;
     event.preventDefault();
-    const index = Math.max(0, Math.min(last, to));
+    const index = Math.max(0, Math.min(lastIndex, target));
     this.selectRow(index, event.shiftKey, false);
     this.rows.reveal(index);
   }

@@ -11,8 +11,8 @@ export class ModelDialog {
   private readonly search = h("input", { class: "field" });
   private readonly list = h("div", { class: "choices", role: "listbox", aria: { label: strings.modeling.models } });
   private models: readonly ModelChoice[] | null = null;
-  private shown: readonly ModelChoice[] = [];
-  private chosen: ModelChoice | null = null;
+  private listedModels: readonly ModelChoice[] = [];
+  private chosenModel: ModelChoice | null = null;
 
   constructor(private readonly modeling: Modeling) {
     const texts = strings.modeling;
@@ -20,18 +20,18 @@ export class ModelDialog {
     this.search.placeholder = texts.search;
     this.search.setAttribute("aria-label", texts.search);
     this.search.addEventListener("input", () => this.fill());
-    for (const each of [this.search, this.list]) each.addEventListener("keydown", (event) => this.onKeyDown(event));
+    for (const element of [this.search, this.list]) element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.dialog = new Dialog(
       texts.models,
       [h("div", { class: "search-box" }, icon("search"), this.search), this.list],
-      [{ label: strings.shell.cancel }, { label: texts.choose, main: true, run: () => this.accept() }],
+      [{ label: strings.shell.cancel }, { label: texts.choose, isMain: true, run: () => this.accept() }],
       "add-dialog",
     );
-    const forget = modeling.modelsArrived.on((models) => {
+    const unsubscribe = modeling.modelsArrived.on((models) => {
       this.models = models;
       this.fill();
     });
-    this.dialog.element.addEventListener("close", () => forget());
+    this.dialog.element.addEventListener("close", () => unsubscribe());
   }
 
   open(): void {
@@ -43,15 +43,15 @@ export class ModelDialog {
   private fill(): void {
     const texts = strings.modeling;
     const query = this.search.value.trim().toLowerCase();
-    this.shown = (this.models ?? []).filter(({ name, address }) => `${name} ${address}`.toLowerCase().includes(query));
-    this.list.replaceChildren(...this.shown.map((model) => this.row(model)));
-    if (this.models && this.shown.length === 0) {
+    this.listedModels = (this.models ?? []).filter(({ name, address }) => `${name} ${address}`.toLowerCase().includes(query));
+    this.list.replaceChildren(...this.listedModels.map((model) => this.createRow(model)));
+    if (this.models && this.listedModels.length === 0) {
       this.list.append(h("p", { class: "empty" }, this.models.length === 0 ? texts.noModels : texts.notFound));
     }
-    this.choose(this.shown.find(({ address }) => address === this.chosen?.address) ?? this.shown[0] ?? null);
+    this.choose(this.listedModels.find(({ address }) => address === this.chosenModel?.address) ?? this.listedModels[0] ?? null);
   }
 
-  private row(model: ModelChoice): HTMLElement {
+  private createRow(model: ModelChoice): HTMLElement {
     const { name, address } = model;
     const parts = [icon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
     const row = h("div", { class: "choice-row", role: "option", tabIndex: -1, onClick: () => this.choose(model) }, ...parts);
@@ -62,31 +62,31 @@ export class ModelDialog {
   }
 
   private choose(model: ModelChoice | null): void {
-    this.chosen = model;
-    this.dialog.ready = model !== null;
+    this.chosenModel = model;
+    this.dialog.isReady = model !== null;
     [...this.list.querySelectorAll<HTMLElement>("[role=option]")].forEach((row, index) => {
-      const on = this.shown[index] === model;
-      row.setAttribute("aria-selected", String(on));
-      row.tabIndex = on ? 0 : -1;
+      const isChosen = this.listedModels[index] === model;
+      row.setAttribute("aria-selected", String(isChosen));
+      row.tabIndex = isChosen ? 0 : -1;
     });
   }
 
   private onKeyDown(event: KeyboardEvent): void {
     if (event.key === "Enter" && event.target !== this.search && this.accept()) this.dialog.close();
     const step = event.key === "ArrowDown" ? 1 : event.key === "ArrowUp" ? -1 : 0;
-    const at = this.shown.findIndex((model) => model === this.chosen) + step;
-    const next = this.shown[at];
-    if (step === 0 || !next) return;
+    const index = this.listedModels.findIndex((model) => model === this.chosenModel) + step;
+    const nextModel = this.listedModels[index];
+    if (step === 0 || !nextModel) return;
     event.preventDefault();
-    this.choose(next);
-    const row = this.list.querySelectorAll<HTMLElement>("[role=option]")[at];
+    this.choose(nextModel);
+    const row = this.list.querySelectorAll<HTMLElement>("[role=option]")[index];
     row?.scrollIntoView({ block: "nearest" });
     if (event.target !== this.search) row?.focus();
   }
 
   private accept(): boolean {
-    if (!this.chosen) return false;
-    this.modeling.startPlacing({ kind: "model", address: this.chosen.address });
+    if (!this.chosenModel) return false;
+    this.modeling.startPlacing({ kind: "model", address: this.chosenModel.address });
     return true;
   }
 }

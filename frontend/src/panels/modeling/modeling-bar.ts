@@ -3,7 +3,7 @@ import { icon, type IconName } from "../../icons";
 import type { GizmoMode, Modeling, Placing } from "../../state/modeling/modeling";
 import type { NewKind } from "../../state/modeling/shapes";
 import { strings } from "../../strings";
-import { keyText, type Shortcut } from "../../widgets/shortcuts";
+import { formatShortcut, type Shortcut } from "../../widgets/shortcuts";
 import { ModelDialog } from "./model-dialog";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
 
@@ -27,29 +27,29 @@ const MODES: readonly (readonly [GizmoMode, IconName])[] = [
 /** The toolbar over the scene while the world is modeled: entities to add, modes of the gizmo, undo and save. */
 export class ModelingBar {
   readonly element: HTMLElement;
-  private readonly palette = new Map<NewKind, HTMLButtonElement>();
-  private readonly modes = new Map<GizmoMode, HTMLButtonElement>();
-  private readonly snap: HTMLButtonElement;
-  private readonly undo: HTMLButtonElement;
-  private readonly redo: HTMLButtonElement;
-  private readonly save: HTMLButtonElement;
+  private readonly addButtons = new Map<NewKind, HTMLButtonElement>();
+  private readonly modeButtons = new Map<GizmoMode, HTMLButtonElement>();
+  private readonly snapButton: HTMLButtonElement;
+  private readonly undoButton: HTMLButtonElement;
+  private readonly redoButton: HTMLButtonElement;
+  private readonly saveButton: HTMLButtonElement;
 
   constructor(
     private readonly modeling: Modeling,
     commands: WorldCommands,
   ) {
     const texts = strings.modeling;
-    for (const [kind, name] of PALETTE) this.palette.set(kind, this.addButton(kind, name));
-    this.palette.set("model", tool(texts.addModel, "library", () => new ModelDialog(modeling).open()));
+    for (const [kind, name] of PALETTE) this.addButtons.set(kind, this.createAddButton(kind, name));
+    this.addButtons.set("model", createTool(texts.addModel, "library", () => new ModelDialog(modeling).open()));
     for (const [mode, name] of MODES) {
-      this.modes.set(mode, tool(withKeys(texts.modes[mode], WORLD_KEYS[mode]), name, () => (modeling.gizmo = mode)));
+      this.modeButtons.set(mode, createTool(appendKeys(texts.modes[mode], WORLD_KEYS[mode]), name, () => (modeling.gizmo = mode)));
     }
-    this.snap = tool(texts.snap, "magnet", () => (modeling.snapping.isEnabled = !modeling.snapping.isEnabled));
-    this.undo = tool(withKeys(texts.undo, WORLD_KEYS.undo), "undo", () => modeling.undo());
-    this.redo = tool(withKeys(texts.redo, WORLD_KEYS.redo), "redo", () => modeling.redo());
-    this.save = tool(withKeys(texts.save, WORLD_KEYS.save), "save", () => commands.save());
-    const line = (): HTMLElement => h("span", { class: "bar-line" });
-    const tools = [...this.palette.values(), line(), ...this.modes.values(), this.snap, line(), this.undo, this.redo, this.save];
+    this.snapButton = createTool(texts.snap, "magnet", () => (modeling.snapping.isEnabled = !modeling.snapping.isEnabled));
+    this.undoButton = createTool(appendKeys(texts.undo, WORLD_KEYS.undo), "undo", () => modeling.undo());
+    this.redoButton = createTool(appendKeys(texts.redo, WORLD_KEYS.redo), "redo", () => modeling.redo());
+    this.saveButton = createTool(appendKeys(texts.save, WORLD_KEYS.save), "save", () => commands.save());
+    const createLine = (): HTMLElement => h("span", { class: "bar-line" });
+    const tools = [...this.addButtons.values(), createLine(), ...this.modeButtons.values(), this.snapButton, createLine(), this.undoButton, this.redoButton, this.saveButton];
     this.element = h("div", { class: "simulation-tools modeling-tools", role: "toolbar", aria: { label: texts.label } }, ...tools);
     for (const signal of [modeling.changed, modeling.selectionChanged, modeling.toolChanged, modeling.snapping.changed]) {
       signal.on(() => this.show());
@@ -60,25 +60,25 @@ export class ModelingBar {
   private show(): void {
     const { modeling } = this;
     this.element.hidden = !modeling.isActive;
-    for (const [kind, each] of this.palette) setPressed(each, modeling.placing?.kind === kind);
-    for (const [mode, each] of this.modes) setPressed(each, modeling.gizmo === mode);
-    const scale = this.modes.get("scale");
-    if (scale) scale.disabled = modeling.selectedNames.length > 0 && !modeling.canScale;
-    setPressed(this.snap, modeling.snapping.isEnabled);
-    this.undo.disabled = !modeling.canUndo;
-    this.redo.disabled = !modeling.canRedo;
-    this.save.classList.toggle("unsaved", modeling.isUnsaved);
+    for (const [kind, toolButton] of this.addButtons) setPressed(toolButton, modeling.placing?.kind === kind);
+    for (const [mode, toolButton] of this.modeButtons) setPressed(toolButton, modeling.gizmo === mode);
+    const scaleButton = this.modeButtons.get("scale");
+    if (scaleButton) scaleButton.disabled = modeling.selectedNames.length > 0 && !modeling.canScale;
+    setPressed(this.snapButton, modeling.snapping.isEnabled);
+    this.undoButton.disabled = !modeling.canUndo;
+    this.redoButton.disabled = !modeling.canRedo;
+    this.saveButton.classList.toggle("unsaved", modeling.isUnsaved);
   }
 
   /**
    * Returns a button that adds an entity: a click selects it for placing, dragging drops it onto the ground, and the
    * keyboard adds it at the center of the scene.
    */
-  private addButton(kind: Exclude<NewKind, "model">, name: IconName): HTMLButtonElement {
+  private createAddButton(kind: Exclude<NewKind, "model">, name: IconName): HTMLButtonElement {
     const { modeling } = this;
     const texts = strings.modeling;
     const placing: Placing = { kind, address: "" };
-    const toolButton = tool(kind === "wall" ? texts.addWall : texts.add(texts.kinds[kind]), name, () => undefined);
+    const toolButton = createTool(kind === "wall" ? texts.addWall : texts.add(texts.kinds[kind]), name, () => undefined);
     toolButton.setAttribute("aria-label", texts.kinds[kind]);
     let wasDropped = false;
     toolButton.addEventListener("click", (event) => {
@@ -92,21 +92,21 @@ export class ModelingBar {
       setTimeout(() => (wasDropped = false));
       modeling.drop({ placing, position: { x, y } });
     });
-    // Without the capture, dragging a finger would scroll the page, and the button would receive no further events.
+    // Without pointer capture, dragging a finger would scroll the page, and the button would get no further events.
     toolButton.addEventListener("pointerdown", ({ pointerId }) => toolButton.setPointerCapture(pointerId));
     return toolButton;
   }
 }
 
-function tool(label: string, name: IconName, run: () => void): HTMLButtonElement {
+function createTool(label: string, name: IconName, run: () => void): HTMLButtonElement {
   return button(label, run, "scene-tool small", icon(name));
 }
 
-function setPressed(element: HTMLButtonElement, on: boolean): void {
-  element.setAttribute("aria-pressed", String(on));
-  element.classList.toggle("active", on);
+function setPressed(element: HTMLButtonElement, isPressed: boolean): void {
+  element.setAttribute("aria-pressed", String(isPressed));
+  element.classList.toggle("active", isPressed);
 }
 
-function withKeys(label: string, shortcut: Shortcut): string {
-  return `${label} (${keyText(shortcut)})`;
+function appendKeys(label: string, shortcut: Shortcut): string {
+  return `${label} (${formatShortcut(shortcut)})`;
 }

@@ -28,7 +28,7 @@ const OVERLAYS = "dialog, [role=menu]";
 /** Panels have keys of their own; the world's keys also work in the World panel. */
 const OTHER_PANELS = ".panel:not(.world-panel)";
 
-/** The commands for modeling the world, as keys and buttons run them. */
+/** The commands for modeling the world, which keys and buttons run. */
 export class WorldCommands {
   private readonly actions: Readonly<Record<keyof typeof WORLD_KEYS, () => void>>;
 
@@ -82,15 +82,15 @@ export class WorldCommands {
 
   private runKey(event: KeyboardEvent): boolean {
     const names = Object.keys(WORLD_KEYS) as (keyof typeof WORLD_KEYS)[];
-    const name = names.find((each) => matches(event, WORLD_KEYS[each]));
+    const command = names.find((command) => matches(event, WORLD_KEYS[command]));
     const target = event.target instanceof Element ? event.target : null;
-    if (name === undefined || target?.closest(OVERLAYS) || target?.closest(OTHER_PANELS)) return false;
+    if (command === undefined || target?.closest(OVERLAYS) || target?.closest(OTHER_PANELS)) return false;
     if (target?.closest(TEXT)) {
-      if (name !== "save" && name !== "saveAs") return false;
-      if (target instanceof HTMLElement) target.blur(); // what is typed counts
+      if (command !== "save" && command !== "saveAs") return false;
+      if (target instanceof HTMLElement) target.blur(); // applies the text being typed
     }
-    if (name === "copy" && getSelection()?.isCollapsed === false) return false;
-    this.actions[name]();
+    if (command === "copy" && getSelection()?.isCollapsed === false) return false;
+    this.actions[command]();
     return true;
   }
 }

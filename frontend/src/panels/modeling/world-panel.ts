@@ -5,12 +5,12 @@ import type { Modeling } from "../../state/modeling/modeling";
 import { ANGLE_STEPS, LENGTH_STEPS } from "../../state/modeling/snapping";
 import { strings } from "../../strings";
 import { TreeView } from "../../tree/tree-view";
-import { choice } from "../../widgets/controls";
-import { keyText, type Shortcut } from "../../widgets/shortcuts";
+import { createSelect } from "../../widgets/controls";
+import { formatShortcut, type Shortcut } from "../../widgets/shortcuts";
 import { UnitSwitch } from "../../widgets/unit-switch";
 import type { Panel } from "../panel";
-import { shortPath } from "../place";
-import { entityItems } from "./entity-items";
+import { shortenPath } from "../place";
+import { createEntityItems } from "./entity-items";
 import { EntityList } from "./entity-list";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
 
@@ -22,7 +22,7 @@ export class WorldPanel implements Panel {
   private readonly inactiveView: HTMLElement;
   private readonly activeView: HTMLElement;
   private readonly file = h("span", { class: "world-file" });
-  private readonly mark = h("span", { class: "world-unsaved", title: strings.modeling.unsaved, role: "img", aria: { label: strings.modeling.unsaved } }, "●");
+  private readonly unsavedMark = h("span", { class: "world-unsaved", title: strings.modeling.unsaved, role: "img", aria: { label: strings.modeling.unsaved } }, "●");
   private readonly empty = h("p", { class: "hint empty" }, strings.modeling.empty);
   private readonly actions: readonly (readonly [HTMLButtonElement, () => boolean])[];
 
@@ -32,20 +32,20 @@ export class WorldPanel implements Panel {
     commands: WorldCommands,
   ) {
     const texts = strings.modeling;
-    const begin = button(texts.begin, () => modeling.setActive(true), "tool framed", texts.start);
-    this.inactiveView = h("div", { class: "world-off" }, h("p", { class: "hint" }, texts.off), begin);
-    const any = (): boolean => modeling.selectedNames.length > 0;
+    const beginButton = button(texts.begin, () => modeling.setActive(true), "tool framed", texts.start);
+    this.inactiveView = h("div", { class: "world-off" }, h("p", { class: "hint" }, texts.off), beginButton);
+    const hasSelection = (): boolean => modeling.selectedNames.length > 0;
     this.actions = [
-      [action(texts.duplicate, WORLD_KEYS.duplicate, "duplicate", () => modeling.duplicate()), any],
-      [action(texts.remove, WORLD_KEYS.remove, "remove", () => modeling.remove()), any],
-      [action(texts.group, WORLD_KEYS.group, "group", () => modeling.groupSelected()), () => modeling.canGroup],
-      [action(texts.ungroup, WORLD_KEYS.ungroup, "ungroup", () => modeling.ungroupSelected()), () => modeling.canUngroup],
+      [createAction(texts.duplicate, WORLD_KEYS.duplicate, "duplicate", () => modeling.duplicate()), hasSelection],
+      [createAction(texts.remove, WORLD_KEYS.remove, "remove", () => modeling.remove()), hasSelection],
+      [createAction(texts.group, WORLD_KEYS.group, "group", () => modeling.groupSelected()), () => modeling.canGroup],
+      [createAction(texts.ungroup, WORLD_KEYS.ungroup, "ungroup", () => modeling.ungroupSelected()), () => modeling.canUngroup],
     ];
-    const toolbar = h("div", { class: "toolbar", role: "toolbar", aria: { label: texts.panel } }, ...this.actions.map(([made]) => made));
-    const saveAs = action(texts.saveAs, WORLD_KEYS.saveAs, "download", () => commands.saveAs());
-    const head = h("div", { class: "world-head" }, icon("file"), this.file, this.mark, h("span", { class: "spacer" }), saveAs);
-    const tree = new TreeView(texts.properties, () => entityItems(modeling, angles), () => []);
-    this.activeView = h("div", { class: "world-work" }, head, toolbar, this.empty, new EntityList(modeling).element, tree.element, this.grid(angles));
+    const toolbar = h("div", { class: "toolbar", role: "toolbar", aria: { label: texts.panel } }, ...this.actions.map(([actionButton]) => actionButton));
+    const saveAsButton = createAction(texts.saveAs, WORLD_KEYS.saveAs, "download", () => commands.saveAs());
+    const head = h("div", { class: "world-head" }, icon("file"), this.file, this.unsavedMark, h("span", { class: "spacer" }), saveAsButton);
+    const tree = new TreeView(texts.properties, () => createEntityItems(modeling, angles), () => []);
+    this.activeView = h("div", { class: "world-work" }, head, toolbar, this.empty, new EntityList(modeling).element, tree.element, this.createGridControls(angles));
     this.element = h("div", { class: "panel world-panel" }, this.inactiveView, this.activeView);
     modeling.changed.on(() => this.show());
     modeling.selectionChanged.on(() => this.show());
@@ -57,29 +57,29 @@ export class WorldPanel implements Panel {
     const { isActive, file, isUnsaved, entities } = this.modeling;
     this.inactiveView.hidden = isActive;
     this.activeView.hidden = !isActive;
-    this.file.textContent = file === null ? strings.modeling.untitled : shortPath(file);
+    this.file.textContent = file === null ? strings.modeling.untitled : shortenPath(file);
     this.file.title = file ?? "";
-    this.mark.hidden = !isUnsaved;
+    this.unsavedMark.hidden = !isUnsaved;
     this.empty.hidden = entities.length > 0;
-    for (const [made, possible] of this.actions) made.disabled = !possible();
+    for (const [actionButton, isPossible] of this.actions) actionButton.disabled = !isPossible();
   }
 
-  private grid(angles: AngleUnits): HTMLElement {
+  private createGridControls(angles: AngleUnits): HTMLElement {
     const texts = strings.modeling;
     const { snapping } = this.modeling;
-    const steps = (values: readonly number[], unit: string): (readonly [string, string])[] => values.map((value) => [String(value), `${value}${unit}`]);
-    const length = choice(texts.lengthStep, steps(LENGTH_STEPS, " m"), (value) => (snapping.meters = Number(value)));
-    const angle = choice(texts.angleStep, steps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
+    const formatSteps = (values: readonly number[], unit: string): (readonly [string, string])[] => values.map((value) => [String(value), `${value}${unit}`]);
+    const lengthSelect = createSelect(texts.lengthStep, formatSteps(LENGTH_STEPS, " m"), (value) => (snapping.meters = Number(value)));
+    const angleSelect = createSelect(texts.angleStep, formatSteps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
     const show = (): void => {
-      length.value = String(snapping.meters);
-      angle.value = String(snapping.degrees);
+      lengthSelect.value = String(snapping.meters);
+      angleSelect.value = String(snapping.degrees);
     };
     snapping.changed.on(show);
     show();
-    return h("div", { class: "world-grid" }, icon("magnet"), length, angle, h("span", { class: "spacer" }), new UnitSwitch(angles).element);
+    return h("div", { class: "world-grid" }, icon("magnet"), lengthSelect, angleSelect, h("span", { class: "spacer" }), new UnitSwitch(angles).element);
   }
 }
 
-function action(label: string, keys: Shortcut, name: IconName, run: () => void): HTMLButtonElement {
-  return button(`${label} (${keyText(keys)})`, run, "tool bare", icon(name));
+function createAction(label: string, keys: Shortcut, name: IconName, run: () => void): HTMLButtonElement {
+  return button(`${label} (${formatShortcut(keys)})`, run, "tool bare", icon(name));
 }

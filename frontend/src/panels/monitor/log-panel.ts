@@ -1,10 +1,10 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { LogLine } from "../../protocol";
 import { formatClock } from "../../state/monitor/figure-text";
 import { LEVELS, levelOf, formatLine, type LogState } from "../../state/monitor/log";
 import { strings } from "../../strings";
-import { textField } from "../../widgets/controls";
+import { createTextField } from "../../widgets/controls";
 import { copyText } from "../../widgets/copy-text";
 import { VirtualList } from "../../widgets/virtual-list";
 import type { Panel } from "../panel";
@@ -40,7 +40,7 @@ export class LogPanel implements Panel {
       { class: "toolbar" },
       this.createLevels(),
       this.node,
-      textField(strings.monitor.filter, (text) => state.setText(text)),
+      createTextField(strings.monitor.filter, (text) => state.setText(text)),
       h("span", { class: "spacer" }),
       this.count,
     );
@@ -57,7 +57,7 @@ export class LogPanel implements Panel {
     for (const text of [texts.level, texts.time, texts.node, texts.message, texts.location]) head.append(h("span", {}, text));
     this.details.hidden = true;
     this.element = h("div", { class: "panel monitor log" }, bar, filters, head, this.list.element, this.details);
-    state.changed.on(coalesced(() => this.show()));
+    state.changed.on(coalesce(() => this.show()));
     this.show();
     this.showFollowing();
   }

@@ -3,7 +3,7 @@ import { icon } from "../../icons";
 import { buildGraph, type GraphMode, type GraphOptions, type GraphVertex } from "../../state/monitor/graph-model";
 import type { NodeGraphState } from "../../state/monitor/node-graph";
 import { strings } from "../../strings";
-import { choice, tickBox } from "../../widgets/controls";
+import { createSelect, createTickBox } from "../../widgets/controls";
 import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { NodeGraphDrawing } from "./node-graph-drawing";
@@ -33,13 +33,13 @@ export class NodeGraphPanel implements Panel {
       ["active", texts.modes.active],
       ["all", texts.modes.all],
     ];
-    const mode = choice(texts.mode, modes, (value) => {
+    const mode = createSelect(texts.mode, modes, (value) => {
       this.options.mode = value;
       this.show();
     });
     mode.value = this.options.mode;
     const tick = (name: "debug" | "tf" | "grouped", text: string, hint: string): HTMLElement => {
-      const label = tickBox(text, hint, (isTicked) => {
+      const label = createTickBox(text, hint, (isTicked) => {
         this.options[name] = isTicked;
         this.options.openGroups.clear();
         this.show();

@@ -2,7 +2,7 @@ import { button, h } from "../../dom";
 import { icon } from "../../icons";
 import type { ParametersState } from "../../state/monitor/parameters";
 import { strings } from "../../strings";
-import { textField } from "../../widgets/controls";
+import { createTextField } from "../../widgets/controls";
 import { saveText } from "../../widgets/save-file";
 import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
@@ -24,7 +24,7 @@ export class ParametersPanel implements Panel {
   constructor(private readonly state: ParametersState) {
     const texts = strings.monitor.parameters;
     this.dump = button(texts.dumpHint, () => state.dump(), "tool", icon("download"), texts.dump);
-    const filter = textField(strings.monitor.filter, (text) => {
+    const filter = createTextField(strings.monitor.filter, (text) => {
       this.filter = text.trim().toLowerCase();
       this.show();
     });

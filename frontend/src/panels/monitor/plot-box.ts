@@ -5,7 +5,7 @@ import { formatCsv } from "../../state/monitor/plot-table";
 import type { Plot, PlotsState, Series } from "../../state/monitor/plots";
 import type { TopicsState } from "../../state/monitor/topics";
 import { strings } from "../../strings";
-import { numberField } from "../../widgets/controls";
+import { createNumberField } from "../../widgets/controls";
 import { saveText } from "../../widgets/save-file";
 import { PlotChart, seriesColor } from "./plot-chart";
 import { PlotPicker } from "./plot-picker";
@@ -117,8 +117,8 @@ export class PlotBox {
     if (!range) return;
     const [low, high] = range;
     this.range.append(
-      numberField(texts.lowest, low, [-Infinity, high], (value) => this.state.setRange(this.plot, [value, high])),
-      numberField(texts.highest, high, [low, Infinity], (value) => this.state.setRange(this.plot, [low, value])),
+      createNumberField(texts.lowest, low, [-Infinity, high], (value) => this.state.setRange(this.plot, [value, high])),
+      createNumberField(texts.highest, high, [low, Infinity], (value) => this.state.setRange(this.plot, [low, value])),
     );
   }
 

@@ -1,10 +1,10 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { Plot, PlotsState } from "../../state/monitor/plots";
 import type { TimeSource } from "../../state/monitor/series-buffer";
 import type { TopicsState } from "../../state/monitor/topics";
 import { strings } from "../../strings";
-import { choice } from "../../widgets/controls";
+import { createSelect } from "../../widgets/controls";
 import type { Panel } from "../panel";
 import { PlotBox } from "./plot-box";
 
@@ -28,12 +28,12 @@ export class PlotPanel implements Panel {
     const texts = strings.monitor.plot;
     this.pause = button(texts.pauseHint, () => state.setPaused(!state.isPaused), "tool", strings.monitor.pause);
     const seconds = WINDOWS.map((count) => [String(count), texts.seconds(count)] as const);
-    this.seconds = choice(texts.windowHint, seconds, (count) => state.setSeconds(Number(count)));
+    this.seconds = createSelect(texts.windowHint, seconds, (count) => state.setSeconds(Number(count)));
     const sources: [TimeSource, string][] = [
       ["received", texts.sources.received],
       ["stamp", texts.sources.stamp],
     ];
-    this.source = choice(texts.sourceHint, sources, (source) => state.setSource(source));
+    this.source = createSelect(texts.sourceHint, sources, (source) => state.setSource(source));
     const bar = h(
       "div",
       { class: "toolbar" },
@@ -46,7 +46,7 @@ export class PlotPanel implements Panel {
     );
     this.element = h("div", { class: "panel monitor" }, bar, this.list);
     state.changed.on(() => this.show());
-    const draw = coalesced(() => this.draw());
+    const draw = coalesce(() => this.draw());
     state.moved.on(draw);
     // The colors on the canvas must follow the theme even while no values arrive.
     new MutationObserver(draw).observe(document.documentElement, { attributeFilter: ["data-theme"] });

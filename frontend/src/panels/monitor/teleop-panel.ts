@@ -4,7 +4,7 @@ import type { TwistKind } from "../../protocol";
 import { formatValue } from "../../state/monitor/field-text";
 import type { TeleopState } from "../../state/monitor/teleop";
 import { strings } from "../../strings";
-import { choice, numberField, tickBox } from "../../widgets/controls";
+import { createSelect, createNumberField, createTickBox } from "../../widgets/controls";
 import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { TeleopGamepad } from "./teleop-gamepad";
@@ -37,8 +37,8 @@ export class TeleopPanel implements Panel {
     this.pad = new TeleopPad(state);
     this.gamepad = new TeleopGamepad(state, (name) => (this.gamepadName.textContent = name ?? texts.noGamepad));
     this.limits = {
-      linear: numberField(texts.linearHint, settings.linear, [0, FASTEST], (linear) => state.configure({ linear })),
-      angular: numberField(texts.angularHint, settings.angular, [0, FASTEST], (angular) => state.configure({ angular })),
+      linear: createNumberField(texts.linearHint, settings.linear, [0, FASTEST], (linear) => state.configure({ linear })),
+      angular: createNumberField(texts.angularHint, settings.angular, [0, FASTEST], (angular) => state.configure({ angular })),
     };
     const stop = button(texts.stopHint, () => this.pad.release(), "tool stop", icon("stop"), texts.stop);
     const focus = h("div", { class: "note teleop-focus" }, this.focus.active, this.focus.inactive);
@@ -77,12 +77,12 @@ export class TeleopPanel implements Panel {
     topic.addEventListener("change", () => this.state.configure({ topic: topic.value.trim() }));
     frame.addEventListener("change", () => this.state.configure({ frameId: frame.value.trim() }));
     const kinds = (["auto", "Twist", "TwistStamped"] as const).map((kind) => [kind, texts.types[kind]] as const);
-    const kind = choice<TwistKind>(texts.type, kinds, (kind) => this.state.configure({ kind }));
+    const kind = createSelect<TwistKind>(texts.type, kinds, (kind) => this.state.configure({ kind }));
     kind.value = settings.kind;
     const rates = RATES.map((rate) => [String(rate), texts.hertz(rate)] as const);
-    const rate = choice(texts.rateHint, rates, (rateText) => this.state.configure({ rate: Number(rateText) }));
+    const rate = createSelect(texts.rateHint, rates, (rateText) => this.state.configure({ rate: Number(rateText) }));
     rate.value = String(settings.rate);
-    const gamepad = tickBox(texts.gamepad, texts.gamepadHint, (isTicked) => {
+    const gamepad = createTickBox(texts.gamepad, texts.gamepadHint, (isTicked) => {
       this.state.configure({ gamepad: isTicked });
       this.gamepad.run(isTicked && this.isVisible);
       if (!isTicked) this.gamepadName.textContent = "";

@@ -2,7 +2,7 @@ import { h } from "../../dom";
 import type { TopicRow } from "../../protocol";
 import type { TopicsState } from "../../state/monitor/topics";
 import { strings } from "../../strings";
-import { textField, tickBox } from "../../widgets/controls";
+import { createTextField, createTickBox } from "../../widgets/controls";
 import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { TopicLine } from "./topic-row";
@@ -26,11 +26,11 @@ export class TopicsPanel implements Panel {
     private readonly showInScene: (topic: string) => void,
   ) {
     const texts = strings.monitor.topics;
-    const filter = textField(strings.monitor.filter, (text) => {
+    const filter = createTextField(strings.monitor.filter, (text) => {
       this.filter = text.trim().toLowerCase();
       this.show();
     });
-    const hiddenBox = tickBox(texts.hidden, texts.hiddenHint, (isTicked) => {
+    const hiddenBox = createTickBox(texts.hidden, texts.hiddenHint, (isTicked) => {
       this.showsHidden = isTicked;
       this.show();
     });

@@ -27,14 +27,14 @@ export class ArgumentFormCard {
     const { file, names, values, choices } = form;
     this.element.hidden = file === "";
     if (file === "") return;
-    this.fields = new Map(names.map((name) => [name, field(name, values[name] ?? "")]));
+    this.fields = new Map(names.map((name) => [name, createField(name, values[name] ?? "")]));
     const submit = h("button", { class: "tool framed primary" }, texts.show);
     submit.type = "submit";
     const rows = [...this.fields].map(([name, input]) => h("label", { class: "argument-row" }, h("span", {}, name), input));
     this.element.replaceChildren(
       h("h2", {}, texts.title(file)),
       h("p", {}, choices.length > 0 ? texts.known : texts.unknown),
-      ...(choices.length > 1 ? [this.choice(form)] : []),
+      ...(choices.length > 1 ? [this.createChoiceRow(form)] : []),
       h("div", { class: "argument-rows" }, ...rows),
       h("footer", {}, submit),
     );
@@ -42,7 +42,7 @@ export class ArgumentFormCard {
   }
 
   /** Returns a choice of the argument sets found in launch files; choosing one fills the fields. */
-  private choice({ choices, names }: ArgumentForm): HTMLElement {
+  private createChoiceRow({ choices, names }: ArgumentForm): HTMLElement {
     const texts = strings.scene.arguments;
     const select = h("select", { class: "choice", aria: { label: texts.choose } });
     select.append(...choices.map(({ label }, index) => new Option(label, String(index))));
@@ -58,12 +58,12 @@ export class ArgumentFormCard {
 
   /** Sends the values. Empty fields are omitted: the file then uses its default, or reports the missing argument. */
   private submit(): void {
-    const given = [...this.fields].map(([name, { value }]) => [name, value.trim()] as const).filter(([, value]) => value !== "");
-    this.connection.send({ type: "give_arguments", values: Object.fromEntries(given) });
+    const argumentsGiven = [...this.fields].map(([name, { value }]) => [name, value.trim()] as const).filter(([, value]) => value !== "");
+    this.connection.send({ type: "give_arguments", values: Object.fromEntries(argumentsGiven) });
   }
 }
 
-function field(name: string, value: string): HTMLInputElement {
+function createField(name: string, value: string): HTMLInputElement {
   const input = h("input", { class: "field wide", aria: { label: name } });
   input.value = value;
   input.spellcheck = false;

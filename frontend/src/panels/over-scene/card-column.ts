@@ -1,9 +1,9 @@
 import { h } from "../../dom";
 
 /** The scene below the cards. */
-export interface SceneBelow {
+export interface CoveredScene {
   /** Returns the width covered at the right, pixels. */
-  coveredWidth: () => number;
+  getCoveredWidth: () => number;
   /** The rightmost pixel column that robots cover, from the left edge. */
   readonly robotsReach: number;
   /** Moves the focal point to the center of the uncovered part. */
@@ -15,20 +15,20 @@ export interface SceneBelow {
 /** The cards over the right side of the scene, one below the other, which share its height. */
 export class CardColumn {
   readonly element = h("div", { class: "stack" });
-  private below: SceneBelow | null = null;
+  private scene: CoveredScene | null = null;
 
-  connectScene(below: SceneBelow): void {
-    this.below = below;
-    below.coveredWidth = () => this.coveredWidth;
+  connectScene(scene: CoveredScene): void {
+    this.scene = scene;
+    scene.getCoveredWidth = () => this.coveredWidth;
   }
 
   /** Whether a card that opens would cover a robot. */
   get isOverRobots(): boolean {
-    return this.below !== null && this.below.robotsReach > this.left;
+    return this.scene !== null && this.scene.robotsReach > this.left;
   }
 
   /** Updates the scene after the user opened or closed a card. */
-  readonly changed = (): void => this.below?.makeRoom();
+  readonly onCardToggled = (): void => this.scene?.makeRoom();
 
   private get coveredWidth(): number {
     const cards = [...this.element.querySelectorAll<HTMLElement>(".inspect-card, .selection-card:not(.folded)")];

@@ -4,7 +4,7 @@ import type { DiagnosticItem } from "../../protocol";
 import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { placeText, shortPath } from "../place";
+import { formatPlace, shortenPath } from "../place";
 
 /** Codes of findings on files of the viewer, which do not prevent the robot from being shown. */
 const VIEWER_CODES = /^(RVIZ|VIEW)/;
@@ -24,7 +24,7 @@ const IMAGE_DISPLAYS = /\/(Camera|DepthCloud|Image)$/;
 export class DiagnosticsBanner {
   readonly element = h("div", { class: "banner", role: "alert" });
 
-  private readonly closed = new Set<string>();
+  private readonly closedMessages = new Set<string>();
 
   constructor(
     private readonly session: Session,
@@ -40,30 +40,30 @@ export class DiagnosticsBanner {
   }
 
   private update(): void {
-    const all = this.session.diagnostics;
-    const errors = all.filter((item) => item.severity === "error");
-    const first = errors[0] ?? all.find(({ code, message }) => EXPLAINING_CODES.has(code) && !this.closed.has(message));
-    this.element.hidden = !first;
-    if (!first) return;
+    const diagnostics = this.session.diagnostics;
+    const errors = diagnostics.filter((item) => item.severity === "error");
+    const item = errors[0] ?? diagnostics.find(({ code, message }) => EXPLAINING_CODES.has(code) && !this.closedMessages.has(message));
+    this.element.hidden = !item;
+    if (!item) return;
     const texts = strings.diagnostics;
-    const isError = first.severity === "error";
+    const isError = item.severity === "error";
     this.element.classList.toggle("warning", !isError);
-    const place = first.file === null ? "" : placeText(shortPath(first.file, 2), first.line, first.column);
-    const more = errors.length > 1 ? ` ${texts.more(errors.length - 1)}` : "";
+    const place = item.file === null ? "" : formatPlace(shortenPath(item.file, 2), item.line, item.column);
+    const furtherErrors = errors.length > 1 ? ` ${texts.more(errors.length - 1)}` : "";
     this.element.replaceChildren(
-      icon(LEVEL_ICONS[first.severity], `level-${first.severity}`),
+      icon(LEVEL_ICONS[item.severity], `level-${item.severity}`),
       h(
         "div",
         { class: "banner-text" },
-        h("strong", {}, first.message + more),
-        h("span", {}, place ? h("span", { class: "place" }, place) : null, first.hints[0] ?? ""),
-        isError && this.keepsRobot(first) ? h("span", {}, texts.lastGood) : null,
+        h("strong", {}, item.message + furtherErrors),
+        h("span", {}, place ? h("span", { class: "place" }, place) : null, item.hints[0] ?? ""),
+        isError && this.isRobotKept(item) ? h("span", {}, texts.lastGood) : null,
       ),
-      ...(first.code === SLOW_CODE && this.imageDisplays.length > 0
+      ...(item.code === SLOW_CODE && this.imageDisplays.length > 0
         ? [button(texts.withoutImages, () => this.switchOffImages(), "tool", texts.withoutImages)]
         : []),
       button(texts.show, this.showAll, "tool", texts.show),
-      ...(isError ? [] : [button(texts.close, () => this.close(first), "tool", icon("close"))]),
+      ...(isError ? [] : [button(texts.close, () => this.close(item), "tool", icon("close"))]),
     );
   }
 
@@ -77,12 +77,12 @@ export class DiagnosticsBanner {
   }
 
   private close({ message }: DiagnosticItem): void {
-    this.closed.add(message);
+    this.closedMessages.add(message);
     this.update();
   }
 
   /** Whether the robot shown is an earlier one: a description with an error does not replace it. */
-  private keepsRobot(error: DiagnosticItem): boolean {
+  private isRobotKept(error: DiagnosticItem): boolean {
     return this.session.robot !== null && !VIEWER_CODES.test(error.code);
   }
 }

@@ -1,4 +1,4 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { TopicChoice } from "../../protocol";
 import { largestRoot } from "../../state/frame-tree";
@@ -7,7 +7,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 
 const ROBOT_MODEL = "rviz_default_plugins/RobotModel";
-/** The notice waits so long (ms) for the frame: localization takes a moment to publish it. */
+/** How long (ms) the notice waits for the frame: localization takes a moment to publish it. */
 const PATIENCE_MS = 3000;
 
 /**
@@ -18,37 +18,37 @@ export class FrameNotice {
   readonly element = h("div", { class: "line-notice failed", role: "alert", data: { notice: "frame" } });
   private timer: ReturnType<typeof setTimeout> | undefined;
   /** The missing frame for which the notice was last shown or scheduled. */
-  private missingFrame: string | null = null;
+  private reportedFrame: string | null = null;
   private robotTopic: TopicChoice | null = null;
 
   constructor(private readonly session: Session) {
     const { displays, frames, configuration } = session;
     this.element.hidden = true;
-    const review = coalesced(() => this.review());
-    for (const signal of [displays.treeChanged, frames.tableChanged]) signal.on(review);
-    displays.statusChanged.on(review);
-    displays.valueChanged.on(review);
+    const updateFrame = coalesce(() => this.updateFrame());
+    for (const signal of [displays.treeChanged, frames.tableChanged]) signal.on(updateFrame);
+    displays.statusChanged.on(updateFrame);
+    displays.valueChanged.on(updateFrame);
     configuration.choicesArrived.on(({ topics }) => {
       this.robotTopic = topics.find((topic) => topic.classes.length > 0 && obviousDisplay(topic) === ROBOT_MODEL) ?? null;
       if (!this.element.hidden) this.show();
     });
   }
 
-  private get missing(): string | null {
+  private get currentMissingFrame(): string | null {
     const { globalStatus, fixedFrame } = this.session.displays;
     return globalStatus.some(({ name, level }) => name === "Fixed Frame" && level === "error") ? fixedFrame : null;
   }
 
-  private review(): void {
-    const { missing } = this;
-    if (missing === this.missingFrame) {
+  private updateFrame(): void {
+    const { currentMissingFrame } = this;
+    if (currentMissingFrame === this.reportedFrame) {
       if (!this.element.hidden) this.show();
       return;
     }
     clearTimeout(this.timer);
-    this.missingFrame = missing;
+    this.reportedFrame = currentMissingFrame;
     this.element.hidden = true;
-    if (missing === null) return;
+    if (currentMissingFrame === null) return;
     this.session.configuration.requestChoices();
     this.timer = setTimeout(() => this.show(), PATIENCE_MS);
   }
@@ -56,21 +56,21 @@ export class FrameNotice {
   private show(): void {
     const texts = strings.scene.frame;
     const root = largestRoot(this.session.frames);
-    if (this.missingFrame === null || root === null) return;
-    const close = button(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", icon("close"));
+    if (this.reportedFrame === null || root === null) return;
+    const closeButton = button(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", icon("close"));
     const { robotTopic } = this;
-    const adds = robotTopic !== null && !this.session.displays.displays.some(({ cls }) => cls === ROBOT_MODEL);
-    const label = adds ? texts.useWithRobot(root) : texts.use(root);
-    const use = button(label, () => this.use(root, adds ? robotTopic.topic : null), "tool framed primary", label);
+    const addsRobot = robotTopic !== null && !this.session.displays.displays.some(({ cls }) => cls === ROBOT_MODEL);
+    const label = addsRobot ? texts.useWithRobot(root) : texts.use(root);
+    const useButton = button(label, () => this.useFrame(root, addsRobot ? robotTopic.topic : null), "tool framed primary", label);
     this.element.replaceChildren(
-      h("header", {}, h("strong", {}, texts.missing(this.missingFrame)), close),
+      h("header", {}, h("strong", {}, texts.missing(this.reportedFrame)), closeButton),
       h("div", {}, texts.hint),
-      h("div", { class: "notice-choices" }, use),
+      h("div", { class: "notice-choices" }, useButton),
     );
     this.element.hidden = false;
   }
 
-  private use(frame: string, description: string | null): void {
+  private useFrame(frame: string, description: string | null): void {
     const { session } = this;
     const row = session.displays.globalOptions.find("Fixed Frame");
     if (row) session.setProperty(row.id, frame);

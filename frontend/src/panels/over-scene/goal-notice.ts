@@ -13,8 +13,8 @@ export class GoalNotice {
   constructor(navigation: NavigationState) {
     const texts = strings.monitor.navigation;
     const reason = h("div");
-    const close = button(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", icon("close"));
-    this.element.append(h("header", {}, h("strong", {}, texts.failed), close), reason);
+    const closeButton = button(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", icon("close"));
+    this.element.append(h("header", {}, h("strong", {}, texts.failed), closeButton), reason);
     this.element.hidden = true;
     navigation.outcomeChanged.on((outcome) => {
       reason.textContent = outcome.reason;

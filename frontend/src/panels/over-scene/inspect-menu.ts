@@ -1,4 +1,4 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { Inspected } from "../../state/inspect";
 import { formatGeneral } from "../../state/number-text";
@@ -20,20 +20,20 @@ export class InspectMenu {
   private readonly depth = h("input", { class: "slider" });
   private readonly depthText = h("output");
   private readonly scale = h("input", { class: "slider" });
-  private readonly open: HTMLButtonElement;
+  private readonly openButton: HTMLButtonElement;
   private release: () => void = () => undefined;
 
-  /** @param resized - called when the menu covers another part of the scene than before. */
+  /** @param onResized - called when the menu covers a different part of the scene. */
   constructor(
     private readonly session: Session,
-    private readonly resized: () => void,
+    private readonly onResized: () => void,
   ) {
     const texts = strings.description.inspect;
-    this.open = button(texts.hint, () => this.toggle(this.card.hidden !== false), "tool", icon("inspect"), texts.button);
-    this.card.append(...CHOICES.map((choice) => this.choice(choice)), this.depthRow(), this.scaleRow(), this.facts);
-    this.element.append(this.open, this.card);
+    this.openButton = button(texts.hint, () => this.toggle(this.card.hidden !== false), "tool", icon("inspect"), texts.button);
+    this.card.append(...CHOICES.map((choice) => this.createChoice(choice)), this.createDepthRow(), this.createScaleRow(), this.facts);
+    this.element.append(this.openButton, this.card);
     const { inspect, description, robotChanged } = session;
-    const show = coalesced(() => this.show());
+    const show = coalesce(() => this.show());
     inspect.changed.on(show);
     description.arrived.on(show);
     description.findingsArrived.on(show);
@@ -42,30 +42,30 @@ export class InspectMenu {
     this.show();
   }
 
-  private toggle(open: boolean): void {
+  private toggle(isOpen: boolean): void {
     this.release();
-    this.release = open ? closeOutside([this.element], (back) => this.closed(back)) : () => undefined;
-    this.card.hidden = !open;
-    this.open.setAttribute("aria-expanded", String(open));
-    this.resized();
+    this.release = isOpen ? closeOutside([this.element], (returnsFocus) => this.onClosed(returnsFocus)) : () => undefined;
+    this.card.hidden = !isOpen;
+    this.openButton.setAttribute("aria-expanded", String(isOpen));
+    this.onResized();
   }
 
-  private closed(back: boolean): void {
+  private onClosed(returnsFocus: boolean): void {
     this.toggle(false);
-    if (back) this.open.focus();
+    if (returnsFocus) this.openButton.focus();
   }
 
-  private choice(what: keyof Inspected): HTMLElement {
+  private createChoice(property: keyof Inspected): HTMLElement {
     const texts = strings.description.inspect;
     const box = h("input", { class: "check" });
     box.type = "checkbox";
-    box.addEventListener("change", () => this.session.inspect.set(what, box.checked));
-    this.boxes.set(what, box);
-    const label = h("label", { title: texts[`${what}Hint`], data: { inspect: what } }, box, texts[what]);
+    box.addEventListener("change", () => this.session.inspect.set(property, box.checked));
+    this.boxes.set(property, box);
+    const label = h("label", { title: texts[`${property}Hint`], data: { inspect: property } }, box, texts[property]);
     return label;
   }
 
-  private depthRow(): HTMLElement {
+  private createDepthRow(): HTMLElement {
     const { inspect } = this.session;
     this.depth.type = "range";
     this.depth.min = "0";
@@ -76,7 +76,7 @@ export class InspectMenu {
     return h("label", { class: "inspect-depth" }, strings.description.inspect.depth, this.depth, this.depthText);
   }
 
-  private scaleRow(): HTMLElement {
+  private createScaleRow(): HTMLElement {
     const { inspect } = this.session;
     this.scale.type = "range";
     this.scale.min = String(-SCALE_STEPS);
@@ -89,18 +89,18 @@ export class InspectMenu {
   private show(): void {
     const { inspect } = this.session;
     const model = modelOfCurrentRobot(this.session);
-    for (const [what, box] of this.boxes) box.checked = inspect.current[what];
-    this.open.classList.toggle("on", inspect.isActive);
-    const deepest = model?.maxDepth ?? 0;
+    for (const [property, box] of this.boxes) box.checked = inspect.current[property];
+    this.openButton.classList.toggle("on", inspect.isActive);
+    const maxDepth = model?.maxDepth ?? 0;
     this.depth.parentElement?.toggleAttribute("hidden", !inspect.current.frames);
-    this.depth.max = String(deepest);
-    this.depth.value = String(inspect.maxDepth ?? deepest);
+    this.depth.max = String(maxDepth);
+    this.depth.value = String(inspect.maxDepth ?? maxDepth);
     this.depthText.textContent = this.depth.value;
     this.scale.value = String(Math.log2(inspect.scale));
     for (const slider of [this.depth, this.scale]) {
       const [min, max] = [Number(slider.min), Number(slider.max)];
-      const part = max > min ? (Number(slider.value) - min) / (max - min) : 1;
-      slider.style.setProperty("--part", String(part));
+      const fraction = max > min ? (Number(slider.value) - min) / (max - min) : 1;
+      slider.style.setProperty("--part", String(fraction));
       slider.style.setProperty("--zero", slider === this.scale ? "0.5" : "0");
     }
     this.showFacts();
@@ -108,24 +108,24 @@ export class InspectMenu {
 
   /** Shows what the robot lacks, its mass, and each implausible link; a click on a link selects it. */
   private showFacts(): void {
-    const missing = this.missing().map((text) => h("div", { class: "missing" }, text));
-    this.facts.replaceChildren(...missing, ...this.massFacts());
+    const problems = this.listProblems().map((text) => h("div", { class: "missing" }, text));
+    this.facts.replaceChildren(...problems, ...this.createMassFacts());
     this.facts.hidden = this.facts.childElementCount === 0;
   }
 
   /** Returns the reasons why enabled choices show nothing. */
-  private missing(): string[] {
+  private listProblems(): string[] {
     const texts = strings.description.inspect;
     const { robot, inspect } = this.session;
     if (!robot) return [];
     const { contrast, joints } = inspect.current;
-    const found: string[] = [];
-    if (joints && robot.joints.every(({ kind }) => kind === "fixed")) found.push(texts.noJoints);
-    if (contrast && robot.links.every(({ collisions }) => collisions.length === 0)) found.push(texts.noCollisions);
-    return found;
+    const problems: string[] = [];
+    if (joints && robot.joints.every(({ kind }) => kind === "fixed")) problems.push(texts.noJoints);
+    if (contrast && robot.links.every(({ collisions }) => collisions.length === 0)) problems.push(texts.noCollisions);
+    return problems;
   }
 
-  private massFacts(): HTMLElement[] {
+  private createMassFacts(): HTMLElement[] {
     const texts = strings.description.inspect;
     const model = modelOfCurrentRobot(this.session);
     const { centers, boxes, ellipsoids } = this.session.inspect.current;
@@ -133,8 +133,8 @@ export class InspectMenu {
     const mass = [...model.links.values()].reduce((sum, { inertia }) => sum + (inertia?.mass ?? 0), 0);
     const findings = this.session.description.findingsOf(model.display);
     const links = new Set(findings.map(({ link }) => link));
-    const weightless = links.size === 0 && [...model.links.values()].every(({ inertia }) => inertia === null);
-    if (weightless) return [h("div", { class: "missing" }, texts.noInertials)];
+    const hasNoInertia = links.size === 0 && [...model.links.values()].every(({ inertia }) => inertia === null);
+    if (hasNoInertia) return [h("div", { class: "missing" }, texts.noInertials)];
     const rows = findings.map(({ link, code, message, hint }) => {
       const name = { display: model.display, kind: "link" as const, name: link };
       const row = button(hint || message, () => this.session.focus.select(name), "finding", h("strong", {}, link), ` ${message} `, h("code", { class: "code" }, code));

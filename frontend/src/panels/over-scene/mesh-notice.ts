@@ -1,4 +1,4 @@
-import { coalesced, h } from "../../dom";
+import { coalesce, h } from "../../dom";
 import { formatBytes } from "../../scene/meshes/mesh-error";
 import type { MeshLoad, MeshProgress } from "../../state/mesh-progress";
 import { strings } from "../../strings";
@@ -11,7 +11,7 @@ export class MeshNotice {
   readonly element = h("div", { class: "line-notice", role: "status", data: { notice: "meshes" } });
 
   constructor(private readonly progress: MeshProgress) {
-    progress.changed.on(coalesced(() => this.update()));
+    progress.changed.on(coalesce(() => this.update()));
     this.update();
   }
 
@@ -19,14 +19,14 @@ export class MeshNotice {
     const texts = strings.meshes.progress;
     const { loads } = this.progress;
     this.element.hidden = loads.length === 0;
-    const lines = loads.slice(0, MAX_LINES).map((load) => h("div", {}, h("b", {}, load.name), ` ${progressText(load)}`));
-    const more = loads.length > MAX_LINES ? h("div", {}, texts.more(String(loads.length - MAX_LINES))) : "";
-    this.element.replaceChildren(h("strong", {}, texts.title), ...lines, more);
+    const lines = loads.slice(0, MAX_LINES).map((load) => h("div", {}, h("b", {}, load.name), ` ${formatProgress(load)}`));
+    const furtherFiles = loads.length > MAX_LINES ? h("div", {}, texts.more(String(loads.length - MAX_LINES))) : "";
+    this.element.replaceChildren(h("strong", {}, texts.title), ...lines, furtherFiles);
   }
 }
 
 /** Returns the progress of a file: bytes of the total, or that it is being read. */
-export function progressText({ bytes, total, stage }: Readonly<MeshLoad>): string {
+export function formatProgress({ bytes, total, stage }: Readonly<MeshLoad>): string {
   const texts = strings.meshes.progress;
   if (stage === "reading") return texts.reading;
   return total === null ? formatBytes(bytes) : texts.of(formatBytes(bytes), formatBytes(total));

@@ -36,7 +36,7 @@ export class OrientationSign {
 
   private update(): void {
     const { right, up, back } = this.view.camera;
-    const drawn = this.arms.map(({ arm, line, label }, i) => {
+    const depths = this.arms.map(({ arm, line, label }, i) => {
       const [x, y, depth] = [right[i] ?? 0, -(up[i] ?? 0), back[i] ?? 0];
       line.setAttribute("x2", String(x * ARM));
       line.setAttribute("y2", String(y * ARM));
@@ -45,7 +45,7 @@ export class OrientationSign {
       return { arm, depth };
     });
     // Draw arms that point towards the viewer last.
-    drawn.sort((a, b) => a.depth - b.depth);
-    this.svg.append(...drawn.map(({ arm }) => arm));
+    depths.sort((a, b) => a.depth - b.depth);
+    this.svg.append(...depths.map(({ arm }) => arm));
   }
 }

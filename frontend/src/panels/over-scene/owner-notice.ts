@@ -18,7 +18,7 @@ export class OwnerNotice {
   constructor(private readonly session: Session) {
     this.element.hidden = true;
     session.displays.statusChanged.on((display) => {
-      if (display?.cls.endsWith("/RobotModel") === true) this.review(display);
+      if (display?.cls.endsWith("/RobotModel") === true) this.showWarning(display);
     });
   }
 
@@ -26,7 +26,7 @@ export class OwnerNotice {
    * Shows a warning about a RobotModel's topic. With a robot, such a warning means that several different descriptions
    * are published.
    */
-  private review({ id, name, status }: DisplayState): void {
+  private showWarning({ id, name, status }: DisplayState): void {
     if ((this.session.robots.get(id)?.links.length ?? 0) === 0) return;
     const text = status.find((row) => row.name === "Topic" && row.level === "warn")?.text ?? "";
     if (text === (this.lastTexts.get(id) ?? "")) return;

@@ -6,22 +6,22 @@ import { openMenu } from "../../widgets/menu";
 /**
  * Opens context menus of objects in the scene at the requested positions; a choice with submenu entries opens those.
  */
-export function bindSceneMenus(box: HTMLElement, asked: Signal<SceneMenu>): void {
+export function bindSceneMenus(box: HTMLElement, menuRequested: Signal<SceneMenu>): void {
   const anchor = h("div", { class: "scene-menu-anchor" });
   box.append(anchor);
   const open = (choices: readonly MenuChoice[]): void => {
     openMenu(
       anchor,
-      choices.map(({ label, run, choices: below }) => ({
-        label: below ? `${label} ›` : label,
+      choices.map(({ label, run, choices: submenu }) => ({
+        label: submenu ? `${label} ›` : label,
         run: () => {
-          if (below) open(below);
+          if (submenu) open(submenu);
           else run?.();
         },
       })),
     );
   };
-  asked.on(({ x, y, choices }) => {
+  menuRequested.on(({ x, y, choices }) => {
     anchor.style.left = `${x}px`;
     anchor.style.top = `${y}px`;
     open(choices);

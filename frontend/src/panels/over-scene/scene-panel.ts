@@ -3,10 +3,10 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import type { WorldCommands } from "../modeling/world-commands";
 import type { Panel } from "../panel";
-import { talkButton } from "../voice/talk-button";
+import { createTalkButton } from "../voice/talk-button";
 import { VoiceNotice } from "../voice/voice-notice";
 import { ArgumentFormCard } from "./argument-form";
-import { CardColumn, type SceneBelow } from "./card-column";
+import { CardColumn, type CoveredScene } from "./card-column";
 import { ConnectionNotice } from "./connection-notice";
 import { DiagnosticsBanner } from "./diagnostics-banner";
 import { FrameNotice } from "./frame-notice";
@@ -36,15 +36,15 @@ export class ScenePanel implements Panel {
   private readonly waiting = h("div", { class: "waiting" }, h("span", { class: "pulse" }), strings.scene.waiting);
 
   constructor(session: Session, commands: WorldCommands, fit: () => void, showDiagnostics: () => void, showKeys: () => void) {
-    const toolbar = new Toolbar(session.tools, fit, showKeys, talkButton(session.voice, "scene-tool small talk"));
+    const toolbar = new Toolbar(session.tools, fit, showKeys, createTalkButton(session.voice, "scene-tool small talk"));
     const banner = new DiagnosticsBanner(session, showDiagnostics);
-    const notice = new ConnectionNotice(session.connection);
+    const connectionNotice = new ConnectionNotice(session.connection);
     const card = new SelectionCard(session, this.column, () => session.editing.editRequested.emit());
-    const inspect = new InspectMenu(session, this.column.changed);
+    const inspect = new InspectMenu(session, this.column.onCardToggled);
     const sign = new OrientationSign(session);
-    const simulation = new SimulationBar(session.simulation, session.modeling, commands);
+    const simulationBar = new SimulationBar(session.simulation, session.modeling, commands);
     const form = new ArgumentFormCard(session.connection);
-    this.notices.append(simulation.element, notice.element, banner.element, form.element);
+    this.notices.append(simulationBar.element, connectionNotice.element, banner.element, form.element);
     const notices = [
       new ToolNotice(session.tools),
       new GoalNotice(session.monitor.navigation),
@@ -54,7 +54,7 @@ export class ScenePanel implements Panel {
       new MeshNotice(session.meshProgress),
       new VoiceNotice(session.voice, session.words),
     ];
-    this.column.element.append(inspect.element, card.element, ...notices.map((each) => each.element));
+    this.column.element.append(inspect.element, card.element, ...notices.map((notice) => notice.element));
     this.box = h(
       "div",
       { class: "scene-box" },
@@ -64,9 +64,9 @@ export class ScenePanel implements Panel {
     bindSceneMenus(this.box, session.sceneMenu);
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);
     const update = (): void => {
-      const awaited = session.displays.displays.some(({ cls, isEnabled }) => isEnabled && cls.endsWith("/RobotModel"));
+      const isRobotExpected = session.displays.displays.some(({ cls, isEnabled }) => isEnabled && cls.endsWith("/RobotModel"));
       // If a description has an error, the banner explains why no robot appears.
-      this.waiting.hidden = session.robot !== null || !awaited || banner.hasError;
+      this.waiting.hidden = session.robot !== null || !isRobotExpected || banner.hasError;
     };
     session.diagnosticsChanged.on(update);
     session.robotChanged.on(update);
@@ -75,7 +75,7 @@ export class ScenePanel implements Panel {
   }
 
   /** Connects the cards with the scene below them. */
-  connectScene(scene: SceneBelow): void {
+  connectScene(scene: CoveredScene): void {
     this.column.connectScene(scene);
     new ResizeObserver(() => scene.makeRoomAbove(this.notices.offsetHeight > 0 ? this.notices.offsetTop + this.notices.offsetHeight : 0)).observe(this.notices);
   }

@@ -3,17 +3,17 @@ import { icon } from "../../icons";
 import type { LinkScene, LinkProvenance } from "../../protocol";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { placeText, shortPath } from "../place";
+import { formatPlace, shortenPath } from "../place";
 import type { CardColumn } from "./card-column";
 
 /** The selected link: its place in the files, and the macros that it came from. */
 export class SelectionCard {
   readonly element = h("div", { class: "selection-card", role: "status" });
 
-  private folded = false;
+  private isFolded = false;
 
   /**
-   * @param column - the column of the card. Where the card would cover a robot, it is folded until the user unfolds it.
+   * @param column - the column of the card. A card that would cover a robot is folded until the user unfolds it.
    * @param edit - starts editing the link; null if links cannot be edited.
    */
   constructor(
@@ -33,51 +33,51 @@ export class SelectionCard {
     // While the link is edited, the Editing panel shows it, and its handles need the space.
     this.element.hidden = !selectedLink || this.session.editing.isActive;
     if (!selectedLink || this.session.editing.isActive) {
-      if (!wasHidden && !this.folded) this.column.changed();
+      if (!wasHidden && !this.isFolded) this.column.onCardToggled();
       return;
     }
-    if (wasHidden) this.folded = this.column.isOverRobots;
+    if (wasHidden) this.isFolded = this.column.isOverRobots;
     const { link } = selectedLink;
     const texts = strings.selection;
     const clear = button(texts.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
     const edit = this.edit && button(strings.editing.editHint, this.edit, "tool bare edit-link", icon("handles"));
     this.element.replaceChildren(
-      h("header", {}, icon("cube"), h("strong", { title: texts.title }, link.name), h("span", { class: "spacer" }), edit, this.foldButton(), clear),
-      ...details(link),
-      place(link, (file, line) => this.session.description.placeRequested.emit({ file, line })),
-      ...trail(link),
+      h("header", {}, icon("cube"), h("strong", { title: texts.title }, link.name), h("span", { class: "spacer" }), edit, this.createFoldButton(), clear),
+      ...createDetails(link),
+      createPlace(link, (file, line) => this.session.description.placeRequested.emit({ file, line })),
+      ...createTrail(link),
     );
     if (link.place) this.session.connection.send({ type: "ask_provenance", display: selectedLink.display, link: link.name });
   }
 
   /** Returns the button that folds the card to the link's name, or unfolds it. */
-  private foldButton(): HTMLButtonElement {
+  private createFoldButton(): HTMLButtonElement {
     const texts = strings.selection;
-    const turn = (): void => {
-      show(!this.folded);
-      this.column.changed();
+    const toggle = (): void => {
+      show(!this.isFolded);
+      this.column.onCardToggled();
     };
-    const fold: HTMLButtonElement = button(texts.fold, turn, "tool bare fold", icon("chevron"));
-    const show = (folded: boolean): void => {
-      this.folded = folded;
-      this.element.classList.toggle("folded", folded);
-      fold.setAttribute("aria-expanded", String(!folded));
+    const fold: HTMLButtonElement = button(texts.fold, toggle, "tool bare fold", icon("chevron"));
+    const show = (isFolded: boolean): void => {
+      this.isFolded = isFolded;
+      this.element.classList.toggle("folded", isFolded);
+      fold.setAttribute("aria-expanded", String(!isFolded));
     };
-    show(this.folded);
+    show(this.isFolded);
     return fold;
   }
 
-  /** Replaces the plain trail by the calls and values, which the server sends a moment later. */
+  /** Replaces the plain trail with the calls and values, which the server sends a moment later. */
   private show(provenance: LinkProvenance): void {
-    const selected = this.session.selection.selectedLink;
-    if (selected?.display !== provenance.display || selected.link.name !== provenance.link) return;
-    for (const old of this.element.querySelectorAll(".trail, .provenance")) old.remove();
+    const selectedLink = this.session.selection.selectedLink;
+    if (selectedLink?.display !== provenance.display || selectedLink.link.name !== provenance.link) return;
+    for (const element of this.element.querySelectorAll(".trail, .provenance")) element.remove();
     const [, ...lines] = provenance.lines; // the first is the place, which the card shows already
     if (lines.length > 0) this.element.append(h("pre", { class: "provenance", tabIndex: 0 }, lines.join("\n")));
   }
 }
 
-function details(link: LinkScene): HTMLElement[] {
+function createDetails(link: LinkScene): HTMLElement[] {
   const texts = strings.selection;
   const rows: [string, string][] = [];
   if (link.parent_joint !== null) rows.push([texts.joint, link.parent_joint]);
@@ -85,15 +85,15 @@ function details(link: LinkScene): HTMLElement[] {
   return rows.map(([name, value]) => h("div", { class: "detail" }, h("span", {}, name), h("span", {}, value)));
 }
 
-function place(link: LinkScene, show: (file: string, line: number) => void): HTMLElement {
+function createPlace(link: LinkScene, showSource: (file: string, line: number) => void): HTMLElement {
   const texts = strings.selection;
-  const at = link.place;
-  if (!at) return h("p", { class: "hint" }, texts.noPlace);
-  const full = placeText(at.file, at.line, at.column);
+  const place = link.place;
+  if (!place) return h("p", { class: "hint" }, texts.noPlace);
+  const fullPlace = formatPlace(place.file, place.line, place.column);
   const copy = button(
     texts.copy,
     () => {
-      void navigator.clipboard.writeText(full).then(() => {
+      void navigator.clipboard.writeText(fullPlace).then(() => {
         copy.classList.add("done");
         copy.title = texts.copied;
       });
@@ -101,11 +101,11 @@ function place(link: LinkScene, show: (file: string, line: number) => void): HTM
     "tool bare",
     icon("copy"),
   );
-  const text = button(full, () => show(at.file, at.line), "place", icon("file"), placeText(shortPath(at.file), at.line, at.column));
+  const text = button(fullPlace, () => showSource(place.file, place.line), "place", icon("file"), formatPlace(shortenPath(place.file), place.line, place.column));
   return h("div", { class: "card-place" }, text, copy);
 }
 
-function trail(link: LinkScene): HTMLElement[] {
+function createTrail(link: LinkScene): HTMLElement[] {
   const steps = link.place?.trail ?? [];
   if (steps.length === 0) return [];
   return [h("ol", { class: "trail" }, ...steps.map((step) => h("li", {}, step)))];

@@ -12,8 +12,8 @@ const NOTICE_MS = 8000;
 /** The toolbar over the scene while there is a simulation: play, pause, step, reset, and the real-time factor. */
 export class SimulationBar {
   readonly element: HTMLElement;
-  private readonly play: HTMLButtonElement;
-  private readonly step: HTMLButtonElement;
+  private readonly playButton: HTMLButtonElement;
+  private readonly stepButton: HTMLButtonElement;
   private readonly factor = h("output", { class: "simulation-figure", title: strings.simulation.factorHint });
   private readonly time = h("output", { class: "simulation-figure wide", title: strings.simulation.timeHint });
   private readonly notice = h("div", { class: "simulation-notice", role: "status" });
@@ -27,12 +27,12 @@ export class SimulationBar {
     commands: WorldCommands,
   ) {
     const texts = strings.simulation;
-    this.play = button(texts.pause, () => simulation.sendControl(simulation.isPaused ? "play" : "pause"), "scene-tool small", icon("pause"));
-    this.step = button(texts.step, () => simulation.sendControl("step"), "scene-tool small", icon("step"));
-    const reset = button(texts.reset, () => simulation.sendControl("reset"), "scene-tool small", icon("reset"));
-    const add = button(texts.spawn, () => this.askSpawn(simulation.freePlace()), "scene-tool small", icon("plus"));
+    this.playButton = button(texts.pause, () => simulation.sendControl(simulation.isPaused ? "play" : "pause"), "scene-tool small", icon("pause"));
+    this.stepButton = button(texts.step, () => simulation.sendControl("step"), "scene-tool small", icon("step"));
+    const resetButton = button(texts.reset, () => simulation.sendControl("reset"), "scene-tool small", icon("reset"));
+    const addButton = button(texts.spawn, () => this.askSpawn(simulation.freePlace()), "scene-tool small", icon("plus"));
     this.modelButton = button(strings.modeling.begin, () => modeling.setActive(!modeling.isActive), "scene-tool small", icon("build"));
-    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: texts.label } }, this.play, this.step, reset, add, this.modelButton, this.factor, this.time);
+    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: texts.label } }, this.playButton, this.stepButton, resetButton, addButton, this.modelButton, this.factor, this.time);
     this.element = h("div", { class: "simulation-bar" }, bar, new ModelingBar(modeling, commands).element, this.notice);
     simulation.changed.on(() => this.show());
     modeling.changed.on(() => this.show());
@@ -46,12 +46,12 @@ export class SimulationBar {
     const texts = strings.simulation;
     this.element.hidden = !isPresent;
     const label = isPaused ? texts.play : texts.pause;
-    if (this.play.title !== label) {
-      this.play.title = label;
-      this.play.setAttribute("aria-label", label);
-      this.play.replaceChildren(icon(isPaused ? "play" : "pause"));
+    if (this.playButton.title !== label) {
+      this.playButton.title = label;
+      this.playButton.setAttribute("aria-label", label);
+      this.playButton.replaceChildren(icon(isPaused ? "play" : "pause"));
     }
-    this.step.disabled = !isPaused;
+    this.stepButton.disabled = !isPaused;
     this.showModeling();
     this.factor.textContent = factor === null ? "–" : `${factor.toFixed(2)}×`;
     this.time.textContent = time === null ? "–" : `${time.toFixed(1)} s`;

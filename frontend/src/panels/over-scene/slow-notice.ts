@@ -1,4 +1,4 @@
-import { coalesced, h } from "../../dom";
+import { coalesce, h } from "../../dom";
 import type { Session } from "../../state/session";
 import type { Reduced } from "../../state/slow-connection";
 import type { SlowCause } from "../../state/slowness";
@@ -16,7 +16,7 @@ export class SlowNotice {
   private slowPageNotice: "not yet" | "now" | "done" = "not yet";
 
   constructor(private readonly session: Session) {
-    const update = coalesced(() => this.update());
+    const update = coalesce(() => this.update());
     session.slowConnection.changed.on(update);
     session.slowness.changed.on(update);
     session.displays.treeChanged.on(update);
@@ -31,9 +31,9 @@ export class SlowNotice {
     const { slowConnection, slowness, drawingPace } = this.session;
     const { reduced: reducedDisplays } = slowConnection;
     const texts = strings.sharing;
-    const cause = causeOf(slowness.cause, this.slowPageNotice === "now", reducedDisplays.length);
+    const cause = chooseCause(slowness.cause, this.slowPageNotice === "now", reducedDisplays.length);
     this.element.hidden = reducedDisplays.length === 0 && this.slowPageNotice !== "now";
-    const lines = reducedDisplays.map((each) => h("div", {}, h("b", {}, this.name(each)), ` ${reductionText(each)}`));
+    const lines = reducedDisplays.map((reduced) => h("div", {}, h("b", {}, this.nameOf(reduced)), ` ${formatReduction(reduced)}`));
     if (this.slowPageNotice === "now" && drawingPace.software !== null) lines.push(h("div", {}, texts.software(drawingPace.software)));
     if (this.slowPageNotice === "now" && this.isLitAutomatically) lines.push(h("div", {}, texts.plainLight));
     this.element.replaceChildren(h("strong", {}, texts.slow[cause]), h("div", {}, texts.slowHints[cause]), ...lines);
@@ -54,7 +54,7 @@ export class SlowNotice {
     }, NOTICE_MS);
   }
 
-  private name({ display }: Reduced): string {
+  private nameOf({ display }: Reduced): string {
     return this.session.displays.find(display)?.name ?? display;
   }
 }
@@ -63,12 +63,12 @@ export class SlowNotice {
  * Returns the cause to show. The notice about a slow page stays for a while after the page has recovered, unless data
  * is reduced.
  */
-export function causeOf(cause: SlowCause, isNoticeShown: boolean, reduced: number): SlowCause {
-  return isNoticeShown && reduced === 0 ? "page" : cause;
+export function chooseCause(cause: SlowCause, isNoticeShown: boolean, reducedCount: number): SlowCause {
+  return isNoticeShown && reducedCount === 0 ? "page" : cause;
 }
 
-function reductionText({ reduction, rate }: Reduced): string {
+function formatReduction({ reduction, rate }: Reduced): string {
   const texts = strings.sharing;
-  const what = reduction.kind === "points" ? texts.points(reduction.step) : texts.image(reduction);
-  return rate === null ? what : `${what}, ${rate.toFixed(1)} Hz`;
+  const amount = reduction.kind === "points" ? texts.points(reduction.step) : texts.image(reduction);
+  return rate === null ? amount : `${amount}, ${rate.toFixed(1)} Hz`;
 }

@@ -21,7 +21,7 @@ export class SpawnDialog {
     private readonly simulation: SimulationState,
     modeling: Modeling,
     position: readonly number[],
-    closed: () => void,
+    onClosed: () => void,
   ) {
     const texts = strings.simulation;
     this.address.placeholder = texts.addressHint;
@@ -37,9 +37,9 @@ export class SpawnDialog {
       h("div", { class: "spawn-row" }, h("span", {}, texts.position), h("span", { class: "spawn-places" }, ...this.positionFields)),
       this.problem,
     ];
-    const choices = [{ label: strings.shell.cancel }, { label: texts.spawn, main: true, run: () => this.run() }];
+    const choices = [{ label: strings.shell.cancel }, { label: texts.spawn, isMain: true, run: () => this.run() }];
     this.dialog = new Dialog(texts.spawnTitle, rows, choices, "spawn-dialog");
-    const forget = [
+    const unsubscribers = [
       modeling.modelsArrived.on((models) => {
         this.models = models;
         this.fill();
@@ -48,8 +48,8 @@ export class SpawnDialog {
       simulation.refused.on((text) => this.showProblem(text)),
     ];
     this.dialog.element.addEventListener("close", () => {
-      for (const each of forget) each();
-      closed();
+      for (const unsubscribe of unsubscribers) unsubscribe();
+      onClosed();
     });
     this.dialog.open(this.address);
     this.onAddressChanged();
@@ -59,25 +59,25 @@ export class SpawnDialog {
   /** Removes the message about the previous address. */
   private onAddressChanged(): void {
     this.fill();
-    this.dialog.ready = this.address.value.trim() !== "";
+    this.dialog.isReady = this.address.value.trim() !== "";
     this.problem.textContent = "";
   }
 
   /** Lists the models whose names contain the typed text; all models once one of them is chosen. */
   private fill(): void {
     const texts = strings.simulation;
-    const typed = this.address.value.trim();
+    const query = this.address.value.trim();
     const models = this.models ?? [];
-    const chosen = models.some(({ address }) => address === typed);
-    const shown = chosen ? models : models.filter(({ name }) => name.toLowerCase().includes(typed.toLowerCase()));
-    this.list.replaceChildren(...shown.map((model) => this.row(model, model.address === typed)));
-    this.list.role = shown.length > 0 ? "listbox" : "group"; // a listbox without options is none
-    if (this.models && shown.length === 0) {
+    const isModelChosen = models.some(({ address }) => address === query);
+    const listedModels = isModelChosen ? models : models.filter(({ name }) => name.toLowerCase().includes(query.toLowerCase()));
+    this.list.replaceChildren(...listedModels.map((model) => this.createRow(model, model.address === query)));
+    this.list.role = listedModels.length > 0 ? "listbox" : "group"; // a listbox must have options
+    if (this.models && listedModels.length === 0) {
       this.list.append(h("p", { class: "empty" }, models.length === 0 ? texts.noModels : texts.notListed));
     }
   }
 
-  private row(model: ModelChoice, chosen: boolean): HTMLElement {
+  private createRow(model: ModelChoice, isChosen: boolean): HTMLElement {
     const { name, address } = model;
     const choose = (): void => {
       this.address.value = address;
@@ -85,7 +85,7 @@ export class SpawnDialog {
       this.list.querySelector<HTMLElement>("[aria-selected=true]")?.focus();
     };
     const parts = [icon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
-    const row = h("div", { class: "choice-row", role: "option", tabIndex: 0, aria: { selected: String(chosen) }, onClick: choose }, ...parts);
+    const row = h("div", { class: "choice-row", role: "option", tabIndex: 0, aria: { selected: String(isChosen) }, onClick: choose }, ...parts);
     row.addEventListener("keydown", (event) => {
       if (event.key === "Enter" || event.key === " ") choose();
       else if (event.key === "ArrowDown") (row.nextElementSibling as HTMLElement | null)?.focus();
@@ -97,12 +97,12 @@ export class SpawnDialog {
   }
 
   private run(): boolean {
-    const typed = this.address.value.trim();
+    const address = this.address.value.trim();
     const numbers = this.positionFields.map((field) => Number(field.value));
-    if (typed === "" || numbers.some((number) => !Number.isFinite(number))) return false;
-    const named = this.models?.find(({ name }) => name === typed);
-    this.simulation.spawn(named?.address ?? typed, numbers);
-    this.dialog.ready = false;
+    if (address === "" || numbers.some((number) => !Number.isFinite(number))) return false;
+    const model = this.models?.find(({ name }) => name === address);
+    this.simulation.spawn(model?.address ?? address, numbers);
+    this.dialog.isReady = false;
     this.problem.classList.remove("problem");
     this.problem.textContent = strings.simulation.adding;
     return false;
@@ -111,6 +111,6 @@ export class SpawnDialog {
   private showProblem(text: string): void {
     this.problem.classList.add("problem");
     this.problem.textContent = text;
-    this.dialog.ready = true;
+    this.dialog.isReady = true;
   }
 }

@@ -9,7 +9,7 @@ import { openMenu } from "../../widgets/menu";
 export const FIT_KEY = "Shift F";
 
 /** Returns the name of a tool in the user's language. */
-export function toolName({ cls, name }: Pick<ToolState, "cls" | "name">): string {
+export function translateToolName({ cls, name }: Pick<ToolState, "cls" | "name">): string {
   const names: Readonly<Record<string, string>> = strings.tools.names;
   return names[cls] ?? name;
 }
@@ -36,31 +36,31 @@ export class Toolbar {
     const { tools } = this;
     const texts = strings.tools;
     this.buttons.clear();
-    for (const tool of tools.tools) this.buttons.set(tool, this.buttonOf(tool));
-    const add: HTMLButtonElement = button(
+    for (const tool of tools.tools) this.buttons.set(tool, this.createToolButton(tool));
+    const addButton: HTMLButtonElement = button(
       texts.add,
-      () => openMenu(add, tools.classes.map((tool) => ({ label: toolName(tool), run: () => tools.add(tool.cls) }))),
+      () => openMenu(addButton, tools.classes.map((tool) => ({ label: translateToolName(tool), run: () => tools.add(tool.cls) }))),
       "scene-tool small",
       icon("plus"),
     );
-    const remove: HTMLButtonElement = button(
+    const removeButton: HTMLButtonElement = button(
       texts.remove,
-      () => openMenu(remove, tools.tools.map((each) => ({ label: toolName(each), run: () => tools.remove(each.id) }))),
+      () => openMenu(removeButton, tools.tools.map((tool) => ({ label: translateToolName(tool), run: () => tools.remove(tool.id) }))),
       "scene-tool small",
       icon("minus"),
     );
-    remove.disabled = tools.tools.length === 0;
-    for (const each of [add, remove]) each.setAttribute("aria-haspopup", "menu");
-    const fit = button(texts.withKey(texts.fitHint, FIT_KEY), this.fit, "scene-tool small fit", icon("fit"), h("span", { class: "tool-name" }, texts.fit));
-    fit.setAttribute("aria-label", texts.fit);
-    const help = button(texts.help, this.showKeys, "scene-tool small", icon("keys"));
-    this.element.replaceChildren(...this.buttons.values(), add, remove, h("span", { class: "spacer" }), fit, this.talk, help);
+    removeButton.disabled = tools.tools.length === 0;
+    for (const menuButton of [addButton, removeButton]) menuButton.setAttribute("aria-haspopup", "menu");
+    const fitButton = button(texts.withKey(texts.fitHint, FIT_KEY), this.fit, "scene-tool small fit", icon("fit"), h("span", { class: "tool-name" }, texts.fit));
+    fitButton.setAttribute("aria-label", texts.fit);
+    const helpButton = button(texts.help, this.showKeys, "scene-tool small", icon("keys"));
+    this.element.replaceChildren(...this.buttons.values(), addButton, removeButton, h("span", { class: "spacer" }), fitButton, this.talk, helpButton);
     this.mark();
   }
 
-  private buttonOf(tool: ToolState): HTMLButtonElement {
+  private createToolButton(tool: ToolState): HTMLButtonElement {
     const entry = TOOLS.get(tool.cls);
-    const name = toolName(tool);
+    const name = translateToolName(tool);
     const texts = strings.tools;
     const label = tool.isSupported && entry ? texts.withKey(name, entry.key) : texts.unknown(tool.cls);
     const sign = icon(entry?.icon ?? "unknown");
@@ -83,9 +83,9 @@ export class Toolbar {
   private onKeyDown(event: KeyboardEvent): void {
     const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     if (step === 0) return;
-    const all = [...this.element.querySelectorAll<HTMLButtonElement>("button:not(:disabled)")];
-    const at = all.indexOf(document.activeElement as HTMLButtonElement);
-    all[(at + step + all.length) % all.length]?.focus();
+    const buttons = [...this.element.querySelectorAll<HTMLButtonElement>("button:not(:disabled)")];
+    const index = buttons.indexOf(document.activeElement as HTMLButtonElement);
+    buttons[(index + step + buttons.length) % buttons.length]?.focus();
     event.preventDefault();
   }
 }

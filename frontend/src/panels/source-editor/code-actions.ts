@@ -80,7 +80,7 @@ export class CodeActions {
       return {
         label: action.title,
         hint: action.title,
-        separate: previous !== undefined && groupOf(previous) !== groupOf(action),
+        hasLineAbove: previous !== undefined && groupOf(previous) !== groupOf(action),
         run: () => void this.run(action).then(this.tell, (error: unknown) => this.tell(messageOf(error))),
       };
     });

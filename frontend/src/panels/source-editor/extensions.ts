@@ -6,7 +6,7 @@ import { highlightSelectionMatches, search, searchKeymap } from "@codemirror/sea
 import { EditorState, type Extension } from "@codemirror/state";
 import { drawSelection, EditorView, highlightActiveLine, highlightSpecialChars, keymap, lineNumbers, tooltips } from "@codemirror/view";
 import { strings } from "../../strings";
-import { shortPath } from "../place";
+import { shortenPath } from "../place";
 import { detectIndentation, syntaxOf } from "./languages";
 import { markedLines } from "./marks";
 import { phrases } from "./phrases";
@@ -15,7 +15,7 @@ import { pageTheme } from "./theme";
 /** Returns everything of an editor that needs no language server. */
 export function createBaseExtensions(path: string, text: string, isReadOnly: boolean): Extension {
   const texts = strings.sourceEditor;
-  const label = texts.text(shortPath(path, 2));
+  const label = texts.text(shortenPath(path, 2));
   return [
     lineNumbers(),
     foldGutter(),

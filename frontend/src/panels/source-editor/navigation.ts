@@ -2,7 +2,7 @@ import type { LSPClient } from "@codemirror/lsp-client";
 import type { ChangeSet } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
 import { strings } from "../../strings";
-import { shortPath } from "../place";
+import { shortenPath } from "../place";
 import type { Documents } from "./documents";
 import type { ListedFile, ListedPlace, PlaceList } from "./place-list";
 import { pathOf, placeOf, offsetOf, type ServerRange } from "./server-places";
@@ -135,7 +135,7 @@ export class Navigation {
     for (const [uri, ranges] of files) {
       const path = pathOf(uri);
       const document = path === null ? null : await this.documents.load(path);
-      if (document) listedFiles.push({ name: shortPath(document.path), path: document.path, places: ranges.map(({ range }) => this.listPlace(document, range)) });
+      if (document) listedFiles.push({ name: shortenPath(document.path), path: document.path, places: ranges.map(({ range }) => this.listPlace(document, range)) });
     }
     this.list.show(heading, listedFiles);
   }

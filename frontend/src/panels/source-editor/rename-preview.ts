@@ -1,7 +1,7 @@
 import { h } from "../../dom";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
-import { shortPath } from "../place";
+import { shortenPath } from "../place";
 import { excerptOf } from "./navigation";
 import type { SourceDocument } from "./source-document";
 import type { TextEdit } from "./workspace-edit";
@@ -37,7 +37,7 @@ export function confirmRename(name: string, newName: string, files: readonly Ren
     const dialog = new Dialog(
       texts.renameTitle(name, newName),
       [h("p", {}, texts.renameCount(count, files.length)), region, ...notes],
-      [{ label: strings.shell.cancel }, { label: texts.rename, run: accept, main: true }],
+      [{ label: strings.shell.cancel }, { label: texts.rename, run: accept, isMain: true }],
       "rename-preview",
     );
     dialog.element.addEventListener("close", () => resolve(isWanted));
@@ -51,5 +51,5 @@ function createFileList(document: SourceDocument, edits: readonly TextEdit[]): H
     const code = h("code", {}, textBefore, h("del", {}, name), h("ins", {}, newText), textAfter);
     return h("li", {}, h("span", { class: "place-list-line" }, String(line)), code);
   });
-  return h("section", {}, h("h3", { title: document.path }, shortPath(document.path)), h("ul", {}, ...lines));
+  return h("section", {}, h("h3", { title: document.path }, shortenPath(document.path)), h("ul", {}, ...lines));
 }

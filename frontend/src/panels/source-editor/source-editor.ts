@@ -3,7 +3,7 @@ import { nextDiagnostic, openLintPanel, previousDiagnostic, diagnosticCount } fr
 import { formatDocument } from "@codemirror/lsp-client";
 import { EditorState, type Transaction, type TransactionSpec } from "@codemirror/state";
 import { EditorView, keymap } from "@codemirror/view";
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { UnsavedTextEdited } from "../../protocol";
 import { Signal } from "../../signal";
@@ -103,7 +103,7 @@ export class SourceEditor implements Documents {
       tell,
     });
     this.files.changed.on(() => this.changed.emit());
-    this.changed.on(coalesced(() => this.refresh()));
+    this.changed.on(coalesce(() => this.refresh()));
     connection.on("description_changed", () => {
       if (this.liveTexts.outcome !== null) return; // the language server has the unsaved texts
       const shownFiles = session.description.modelOf(this.shownDisplay)?.description.files ?? [];

@@ -2,7 +2,7 @@ import type { LSPClient } from "@codemirror/lsp-client";
 import { button, h } from "../../dom";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
-import { shortPath } from "../place";
+import { shortenPath } from "../place";
 import type { Documents } from "./documents";
 import type { ServerLocation } from "./navigation";
 import { pathOf, type ServerRange } from "./server-places";
@@ -69,7 +69,7 @@ export class SymbolSearch {
       if (symbol) open(symbol.location);
     };
     const scopes = h("div", { class: "symbol-scopes", role: "group", aria: { label: texts.symbolsIn } }, ...this.scopes);
-    this.dialog = new Dialog(texts.symbols, [scopes, this.field, this.list, this.status], [{ label: strings.shell.cancel }, { label: texts.goTo, run: go, main: true }], "symbol-search");
+    this.dialog = new Dialog(texts.symbols, [scopes, this.field, this.list, this.status], [{ label: strings.shell.cancel }, { label: texts.goTo, run: go, isMain: true }], "symbol-search");
     this.field.addEventListener("input", () => this.searchLater());
     this.dialog.element.addEventListener("keydown", (event) => this.onKeyDown(event), true);
     this.list.addEventListener("click", ({ target }) => {
@@ -125,7 +125,7 @@ export class SymbolSearch {
     this.listedSymbols = symbols.slice(0, MAX_LISTED);
     this.list.replaceChildren(...this.listedSymbols.map((symbol, index) => this.optionOf(symbol, index)));
     this.status.textContent = strings.sourceEditor.symbolCount(symbols.length);
-    this.dialog.ready = symbols.length > 0;
+    this.dialog.isReady = symbols.length > 0;
     this.choose(0);
   }
 
@@ -164,6 +164,6 @@ function flatten(symbols: readonly DocumentSymbol[], uri: string, depth: number)
 
 function listSymbol({ name, location, containerName }: WorkspaceSymbol): ListedSymbol {
   const path = pathOf(location.uri);
-  const file = path === null ? (containerName ?? "") : shortPath(path);
+  const file = path === null ? (containerName ?? "") : shortenPath(path);
   return { name, detail: `${file}:${location.range.start.line + 1}`, depth: 0, location };
 }

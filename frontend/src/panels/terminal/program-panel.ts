@@ -18,7 +18,7 @@ export class ProgramPanel implements Panel {
   private readonly empty = h("p", { class: "empty" }, strings.terminal.noProgram);
   private readonly tabs = h("div", { class: "segmented program-tabs", role: "group", aria: { label: strings.terminal.programs } });
   private readonly bar: HTMLElement;
-  private readonly place = h("div", { class: "program-place" });
+  private readonly frameBox = h("div", { class: "program-place" });
   private readonly frames = new Map<number, HTMLIFrameElement>();
   private current: ProgramPage | undefined;
 
@@ -27,13 +27,13 @@ export class ProgramPanel implements Panel {
     private readonly theme: ThemeState,
   ) {
     this.bar = h("div", { class: "toolbar" }, this.tabs);
-    this.element = h("div", { class: "panel program-panel" }, this.empty, this.bar, this.place);
+    this.element = h("div", { class: "panel program-panel" }, this.empty, this.bar, this.frameBox);
     state.programsChanged.on(() => this.update());
     theme.changed.on(() => this.load());
     this.update();
   }
 
-  /** Follows the programs: removes the pages of those that ended, and shows a new one. */
+  /** Removes the pages of programs that ended, and shows the page of a new program. */
   private update(): void {
     const { programs } = this.state;
     for (const [id, frame] of this.frames) {
@@ -45,18 +45,18 @@ export class ProgramPanel implements Panel {
     for (const program of programs) {
       if (this.frames.has(program.id)) continue;
       this.current = program;
-      const frame = makeFrame(program.title);
+      const frame = createFrame(program.title);
       this.frames.set(program.id, frame);
-      this.place.append(frame);
+      this.frameBox.append(frame);
     }
     this.empty.hidden = programs.length > 0;
-    this.place.hidden = programs.length === 0;
+    this.frameBox.hidden = programs.length === 0;
     this.bar.hidden = programs.length < 2;
     this.load();
     this.show();
   }
 
-  /** Loads the pages whose address has changed, because it requests another theme. */
+  /** Loads the pages whose address has changed: it contains the theme. */
   private load(): void {
     for (const { id, url } of this.state.programs) {
       const frame = this.frames.get(id);
@@ -82,7 +82,7 @@ export class ProgramPanel implements Panel {
   }
 }
 
-function makeFrame(title: string): HTMLIFrameElement {
+function createFrame(title: string): HTMLIFrameElement {
   const frame = h("iframe", { title: title || strings.panels.program });
   frame.setAttribute("sandbox", SANDBOX);
   frame.allow = FEATURES;

@@ -1,8 +1,8 @@
 import type { ITheme } from "@xterm/xterm";
 import type { Theme } from "../../state/theme";
 
-/** The colors that programs name, which the page's sheet does not contain. */
-const NAMED: Readonly<Record<Theme, ITheme>> = {
+/** The named colors of terminals, which the page's style sheet does not contain. */
+const ANSI_COLORS: Readonly<Record<Theme, ITheme>> = {
   dark: {
     black: "#2a2f37",
     red: "#ff6f64",
@@ -42,15 +42,15 @@ const NAMED: Readonly<Record<Theme, ITheme>> = {
 };
 
 /** Returns the colors of terminals for a theme of the page. */
-export function terminalColors(theme: Theme): ITheme {
+export function readTerminalColors(theme: Theme): ITheme {
   const styles = getComputedStyle(document.documentElement);
-  const color = (name: string): string => styles.getPropertyValue(name).trim();
+  const readColor = (name: string): string => styles.getPropertyValue(name).trim();
   return {
-    ...NAMED[theme],
-    background: color("--bg-field"),
-    foreground: color("--text"),
-    cursor: color("--text"),
-    cursorAccent: color("--bg-field"),
-    selectionBackground: color("--selection"),
+    ...ANSI_COLORS[theme],
+    background: readColor("--bg-field"),
+    foreground: readColor("--text"),
+    cursor: readColor("--text"),
+    cursorAccent: readColor("--bg-field"),
+    selectionBackground: readColor("--selection"),
   };
 }

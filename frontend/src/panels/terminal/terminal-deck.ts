@@ -12,28 +12,28 @@ import { TerminalScreen } from "./terminal-screen";
 const READER_KEY = "linkwright.terminal-reader";
 const ON = "1";
 /** The size of a terminal until its place on the page is known. */
-const INITIAL: TerminalSize = { columns: 80, rows: 24 };
-/** Browsers slow down hidden pages; after this time the server does not wait for one that does not read. */
+const INITIAL_SIZE: TerminalSize = { columns: 80, rows: 24 };
+/** Browsers slow down hidden pages: after this time, the server no longer waits for the page to read the output. */
 const LEAVE_MS = 60_000;
 
 /** The terminals of the page: a tab for each, and the screen of the chosen one. */
 export class TerminalDeck {
   readonly element: HTMLElement;
   private readonly tabs = h("div", { class: "segmented terminal-tabs", role: "tablist", aria: { label: strings.terminal.tabs } });
-  private readonly place = h("div", { class: "terminal-place" });
+  private readonly screenBox = h("div", { class: "terminal-place" });
   private readonly notice = h("div", { class: "terminal-notice", role: "status" });
   private readonly noticeText = h("span");
   private readonly noticeButton: HTMLButtonElement;
   private readonly closeButton: HTMLButtonElement;
-  private readonly reader: HTMLButtonElement;
+  private readonly readerButton: HTMLButtonElement;
   private readonly screens = new Map<number, TerminalScreen>();
   private current: number | null = null;
   private isVisible = false;
   private usesReader: boolean;
   /** The terminal that was requested, or 0 for a new one, until the server has answered. */
-  private requested: number | null = null;
-  private lostInput: number | null = null;
-  private leaving: ReturnType<typeof setTimeout> | undefined;
+  private requestedId: number | null = null;
+  private lostInputId: number | null = null;
+  private leaveTimer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
     private readonly state: TerminalsState,
@@ -45,8 +45,8 @@ export class TerminalDeck {
     this.noticeButton = button(texts.restart, () => this.runNotice(), "tool framed", texts.restart);
     this.notice.append(this.noticeText, this.noticeButton);
     this.closeButton = button(texts.closeHint, () => this.close(), "tool", icon("close"), texts.close);
-    this.reader = button(texts.readerHint, () => this.toggleReader(), "tool", icon("speech"));
-    const copy = button(texts.copyHint, () => void this.screen?.copy(), "tool", icon("copy"));
+    this.readerButton = button(texts.readerHint, () => this.toggleReader(), "tool", icon("speech"));
+    const copyButton = button(texts.copyHint, () => void this.screen?.copy(), "tool", icon("copy"));
     const bar = h(
       "div",
       { class: "toolbar" },
@@ -54,26 +54,26 @@ export class TerminalDeck {
       button(texts.newHint, () => this.openNew(), "tool", icon("plus"), texts.new),
       h("span", { class: "spacer" }),
       h("span", { class: "note terminal-keys" }, texts.keys),
-      copy,
-      this.reader,
+      copyButton,
+      this.readerButton,
       this.closeButton,
     );
-    this.element = h("div", { class: "terminal-deck" }, bar, this.place, this.notice);
+    this.element = h("div", { class: "terminal-deck" }, bar, this.screenBox, this.notice);
     this.tabs.addEventListener("keydown", (event) => this.onTabKey(event));
-    new ResizeObserver(() => this.screen?.fit()).observe(this.place);
+    new ResizeObserver(() => this.screen?.fit()).observe(this.screenBox);
     state.changed.on(() => this.update());
     state.connectionChanged.on(() => this.showNotice());
     state.connected.on((isSameRun) => {
-      this.requested = null;
+      this.requestedId = null;
       if (!isSameRun) this.discard(() => true);
     });
-    state.output.on((output) => this.screenOf(output.terminal).receive(output));
+    state.output.on((output) => this.ensureScreen(output.terminal).receive(output));
     state.inputLost.on((id) => {
-      this.lostInput = id;
+      this.lostInputId = id;
       this.showNotice();
     });
-    theme.changed.on((now) => {
-      for (const screen of this.screens.values()) screen.setTheme(now);
+    theme.changed.on((newTheme) => {
+      for (const screen of this.screens.values()) screen.setTheme(newTheme);
     });
     document.addEventListener("visibilitychange", () => this.followPage());
     this.showReader();
@@ -90,11 +90,11 @@ export class TerminalDeck {
     return {
       current: this.current,
       terminals: this.state.items.map((item) => ({ ...item })),
-      text: screen?.text() ?? "",
+      text: screen?.readText() ?? "",
       size: screen?.size ?? null,
       scrollback: screen?.xterm.buffer.active.length ?? 0,
       notice: this.notice.hidden ? "" : this.noticeText.textContent,
-      focused: this.place.contains(document.activeElement),
+      focused: this.screenBox.contains(document.activeElement),
     };
   }
 
@@ -107,47 +107,47 @@ export class TerminalDeck {
   }
 
   private get size(): TerminalSize {
-    return this.screen?.size ?? INITIAL;
+    return this.screen?.size ?? INITIAL_SIZE;
   }
 
-  private screenOf(id: number): TerminalScreen {
+  private ensureScreen(id: number): TerminalScreen {
     const existing = this.screens.get(id);
     if (existing) return existing;
     const screen = new TerminalScreen(id, this.state, this.theme.theme, this.usesReader, () => this.tabOf(id)?.focus(), () => this.restartEnded());
     this.screens.set(id, screen);
     screen.element.hidden = true;
-    this.place.append(screen.element);
+    this.screenBox.append(screen.element);
     return screen;
   }
 
-  /** Follows the server: removes closed terminals, chooses one, and requests it if no page shows it. */
+  /** Adopts the server's list: removes closed terminals, chooses one, and requests it if no page shows it. */
   private update(): void {
     const { items } = this.state;
     this.discard((id) => this.state.find(id) === undefined);
-    if (this.requested !== null && this.state.unavailableReason !== "") this.requested = null;
-    if (this.requested === 0) {
-      const opened = items.findLast(({ id, shown }) => shown === "here" && id !== this.current);
-      if (opened) this.choose(opened.id);
-    } else if (this.requested !== null && this.state.find(this.requested)?.shown === "here") this.requested = null;
+    if (this.requestedId !== null && this.state.unavailableReason !== "") this.requestedId = null;
+    if (this.requestedId === 0) {
+      const openedItem = items.findLast(({ id, shown }) => shown === "here" && id !== this.current);
+      if (openedItem) this.choose(openedItem.id);
+    } else if (this.requestedId !== null && this.state.find(this.requestedId)?.shown === "here") this.requestedId = null;
     if (this.item === undefined) this.current = (items.find(({ shown }) => shown !== "elsewhere") ?? items[0])?.id ?? null;
     this.showTabs();
     this.showNotice();
     if (!this.isVisible || document.hidden) return;
     if (this.current === null && this.state.unavailableReason === "") this.openNew();
     this.showScreen();
-    if (this.item?.shown === "nowhere" && this.requested !== this.current) this.request();
+    if (this.item?.shown === "nowhere" && this.requestedId !== this.current) this.request();
   }
 
-  private discard(isGone: (id: number) => boolean): void {
+  private discard(isObsolete: (id: number) => boolean): void {
     for (const [id, screen] of this.screens) {
-      if (!isGone(id)) continue;
+      if (!isObsolete(id)) continue;
       screen.dispose();
       this.screens.delete(id);
     }
   }
 
   private choose(id: number): void {
-    this.requested = null;
+    this.requestedId = null;
     this.current = id;
     this.update();
     this.screen?.xterm.focus();
@@ -156,20 +156,20 @@ export class TerminalDeck {
   private showScreen(): void {
     const { current } = this;
     if (current === null) return;
-    this.screenOf(current);
+    this.ensureScreen(current);
     for (const [id, screen] of this.screens) screen.element.hidden = id !== current || this.item?.shown === "elsewhere";
     this.screen?.fit();
   }
 
   private request(): void {
     if (this.current === null) return;
-    this.requested = this.current;
+    this.requestedId = this.current;
     this.state.show(this.current, this.size);
   }
 
   private openNew(): void {
-    if (this.requested === 0) return;
-    this.requested = 0;
+    if (this.requestedId === 0) return;
+    this.requestedId = 0;
     this.state.open(this.size);
   }
 
@@ -177,13 +177,13 @@ export class TerminalDeck {
     if (this.current === null) return;
     const ids = this.state.items.map(({ id }) => id);
     const index = ids.indexOf(this.current);
-    const closed = this.current;
+    const closedId = this.current;
     this.current = ids[index + 1] ?? ids[index - 1] ?? null;
-    this.state.close(closed);
+    this.state.close(closedId);
     this.update();
   }
 
-  /** Restarts the shell if it has ended, and returns whether it had. */
+  /** Restarts the shell if it has ended, and returns whether it had ended. */
   private restartEnded(): boolean {
     if (this.current === null || (this.item?.status ?? null) === null) return false;
     this.state.restart(this.current, this.size);
@@ -192,7 +192,7 @@ export class TerminalDeck {
   }
 
   private showTabs(): void {
-    const focused = this.tabs.contains(document.activeElement);
+    const hasFocus = this.tabs.contains(document.activeElement);
     const tabs = this.state.items.map(({ id, status }) => {
       const isCurrent = id === this.current;
       const name = strings.terminal.name(id);
@@ -206,7 +206,7 @@ export class TerminalDeck {
     this.tabs.replaceChildren(...tabs);
     this.tabs.hidden = tabs.length === 0;
     this.closeButton.disabled = this.current === null;
-    if (focused && this.current !== null) this.tabOf(this.current)?.focus();
+    if (hasFocus && this.current !== null) this.tabOf(this.current)?.focus();
   }
 
   private tabOf(id: number): HTMLElement | null {
@@ -216,12 +216,12 @@ export class TerminalDeck {
   private onTabKey(event: KeyboardEvent): void {
     const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     const ids = this.state.items.map(({ id }) => id);
-    const next = ids[(ids.indexOf(this.current ?? -1) + step + ids.length) % ids.length];
-    if (step === 0 || next === undefined) return;
+    const nextId = ids[(ids.indexOf(this.current ?? -1) + step + ids.length) % ids.length];
+    if (step === 0 || nextId === undefined) return;
     event.preventDefault();
-    this.current = next;
+    this.current = nextId;
     this.update();
-    this.tabOf(next)?.focus();
+    this.tabOf(nextId)?.focus();
   }
 
   /** Shows why the terminal cannot be used now, and what the user can do. */
@@ -231,7 +231,7 @@ export class TerminalDeck {
     let [text, action] = [this.state.isConnected ? this.state.unavailableReason : texts.disconnected, ""];
     if (text === "" && item?.shown === "elsewhere") [text, action] = [texts.elsewhere, texts.showHere];
     else if (text === "" && item && item.status !== null) [text, action] = [texts.endedWith(item.status), texts.restart];
-    else if (text === "" && this.lostInput === this.current && item) text = texts.inputLost;
+    else if (text === "" && this.lostInputId === this.current && item) text = texts.inputLost;
     this.noticeText.textContent = text;
     this.noticeButton.textContent = action;
     this.noticeButton.title = action;
@@ -253,15 +253,15 @@ export class TerminalDeck {
   }
 
   private showReader(): void {
-    this.reader.classList.toggle("on", this.usesReader);
-    this.reader.setAttribute("aria-pressed", String(this.usesReader));
+    this.readerButton.classList.toggle("on", this.usesReader);
+    this.readerButton.setAttribute("aria-pressed", String(this.usesReader));
   }
 
-  /** Leaves the terminals some time after the page was hidden, and shows the chosen one again with the page. */
+  /** Leaves the terminals some time after the page was hidden, and shows the chosen one again when the page is shown. */
   private followPage(): void {
-    clearTimeout(this.leaving);
+    clearTimeout(this.leaveTimer);
     if (!document.hidden) this.update();
-    else this.leaving = setTimeout(() => this.leaveAll(), LEAVE_MS);
+    else this.leaveTimer = setTimeout(() => this.leaveAll(), LEAVE_MS);
   }
 
   private leaveAll(): void {

@@ -1,13 +1,13 @@
 import { h } from "../../dom";
 import type { TerminalsState } from "../../state/terminals";
 import type { ThemeState } from "../../state/theme";
-import { browserStorage } from "../../storage";
+import { openBrowserStorage } from "../../storage";
 import { strings } from "../../strings";
 import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import type { TerminalDeck } from "./terminal-deck";
 
-/** The place of the terminals, whose code is loaded when the panel is shown first. */
+/** The panel of the terminals, whose code is loaded when the panel is first shown. */
 export class TerminalPanel implements Panel {
   readonly id = "terminal";
   readonly icon = "terminal";
@@ -47,7 +47,7 @@ export class TerminalPanel implements Panel {
     this.isLoading = true;
     try {
       const { TerminalDeck } = await import("./terminal-deck");
-      this.deck = new TerminalDeck(this.state, this.theme, browserStorage());
+      this.deck = new TerminalDeck(this.state, this.theme, openBrowserStorage());
       this.element.append(this.deck.element);
       this.update();
     } catch {

@@ -7,14 +7,14 @@ import type { TerminalSize, TerminalsState } from "../../state/terminals";
 import type { Theme } from "../../state/theme";
 import { strings } from "../../strings";
 import { copyText } from "../../widgets/copy-text";
-import { terminalColors } from "./terminal-colors";
+import { readTerminalColors } from "./terminal-colors";
 import { TERMINAL_KEYS } from "./terminal-keys";
 
-/** Messages with output that are processed before they are acknowledged; the server waits at a few times as many. */
-const ACKNOWLEDGED_TOGETHER = 4;
+/** The number of messages with output per acknowledgment; the server waits after a few times as many. */
+const MESSAGES_PER_ACKNOWLEDGMENT = 4;
 const SCROLLBACK_LINES = 5000;
-/** Contrast of text, as WCAG AA requires it, whatever colors a program combines. */
-const CONTRAST = 4.5;
+/** The contrast of text that WCAG AA requires, for all combinations of colors. */
+const MIN_CONTRAST = 4.5;
 /** Clears the screen and all modes, in the order of the output. */
 const FULL_RESET = "\x1bc";
 
@@ -24,9 +24,9 @@ export class TerminalScreen {
   readonly xterm: Terminal;
   private readonly fitAddon = new FitAddon();
   private isOpened = false;
-  /** The number of replays that are being processed; queries in them were answered before. */
-  private replays = 0;
-  private acknowledged = 0;
+  /** The number of replays that are being processed; their queries to the terminal were answered earlier. */
+  private replayCount = 0;
+  private acknowledgedNumber = 0;
 
   /**
    * @param onLeave - called when the user leaves the terminal with the keyboard.
@@ -36,18 +36,18 @@ export class TerminalScreen {
     private readonly id: number,
     private readonly state: TerminalsState,
     theme: Theme,
-    screenReader: boolean,
+    usesReader: boolean,
     private readonly onLeave: () => void,
     private readonly onEnter: () => boolean,
   ) {
     this.xterm = new Terminal({
-      allowProposedApi: true, // of the widths of characters
+      allowProposedApi: true, // for the widths of characters
       fontFamily: getComputedStyle(document.documentElement).getPropertyValue("--mono"),
       fontSize: 13,
-      minimumContrastRatio: CONTRAST,
-      screenReaderMode: screenReader,
+      minimumContrastRatio: MIN_CONTRAST,
+      screenReaderMode: usesReader,
       scrollback: SCROLLBACK_LINES,
-      theme: terminalColors(theme),
+      theme: readTerminalColors(theme),
     });
     this.xterm.loadAddon(this.fitAddon);
     this.xterm.loadAddon(new Unicode11Addon());
@@ -76,17 +76,17 @@ export class TerminalScreen {
   }
 
   receive({ number, text, is_replay: isReplay }: TerminalOutput): void {
-    if (isReplay) this.replays += 1;
+    if (isReplay) this.replayCount += 1;
     this.xterm.write(isReplay ? FULL_RESET + text : text, () => {
-      if (isReplay) this.replays -= 1;
-      if (!isReplay && number - this.acknowledged < ACKNOWLEDGED_TOGETHER) return;
-      this.acknowledged = number;
+      if (isReplay) this.replayCount -= 1;
+      if (!isReplay && number - this.acknowledgedNumber < MESSAGES_PER_ACKNOWLEDGMENT) return;
+      this.acknowledgedNumber = number;
       this.state.acknowledge(this.id, number);
     });
   }
 
   setTheme(theme: Theme): void {
-    this.xterm.options.theme = terminalColors(theme);
+    this.xterm.options.theme = readTerminalColors(theme);
   }
 
   setScreenReader(isOn: boolean): void {
@@ -100,7 +100,7 @@ export class TerminalScreen {
   }
 
   /** Returns the text of the screen and of the lines above it, for tests. */
-  text(): string {
+  readText(): string {
     const { active } = this.xterm.buffer;
     return Array.from({ length: active.length }, (_, row) => active.getLine(row)?.translateToString(true) ?? "").join("\n").trimEnd();
   }
@@ -111,7 +111,7 @@ export class TerminalScreen {
   }
 
   private write(text: string, isBinary: boolean): void {
-    if (this.replays > 0 || (text === "\r" && this.onEnter())) return;
+    if (this.replayCount > 0 || (text === "\r" && this.onEnter())) return;
     this.state.write(this.id, text, isBinary);
   }
 
@@ -121,7 +121,7 @@ export class TerminalScreen {
     if (!event.ctrlKey || !event.shiftKey || event.altKey || event.metaKey) return true;
     switch (event.code) {
       case TERMINAL_KEYS.copy:
-        event.preventDefault(); // browsers would open their tools
+        event.preventDefault(); // the browser would open its developer tools
         if (event.type === "keydown") void this.copy();
         return false;
       case TERMINAL_KEYS.paste:

@@ -6,7 +6,7 @@ import { Dialog, showNotice } from "../../widgets/dialog";
 import { openMenu, type MenuEntry } from "../../widgets/menu";
 import { saveFrom } from "../../widgets/save-file";
 import { chooseTopics } from "./record-dialog";
-import { amountText, lengthText, secondsText } from "./timeline-text";
+import { formatAmount, formatLength, formatSeconds } from "./timeline-text";
 
 /** The number of recorded files that the menu lists. */
 const MAX_FILES = 5;
@@ -19,11 +19,11 @@ export class RecordButton {
 
   constructor(private readonly session: Session) {
     const { recording } = session;
-    this.button = button(strings.recording.record, () => this.click(), "timeline-live timeline-record", "");
+    this.button = button(strings.recording.record, () => this.onClick(), "timeline-live timeline-record", "");
     this.element = h("span", { class: "timeline-recorder" }, this.problem, this.button);
     recording.changed.on(() => this.show());
     recording.finished.on((file) => this.showFile(file));
-    recording.refused.on((why) => showNotice(strings.recording.refused, why));
+    recording.refused.on((reason) => showNotice(strings.recording.refused, reason));
     this.show();
   }
 
@@ -32,40 +32,40 @@ export class RecordButton {
     const texts = strings.recording;
     this.element.hidden = !isPossible;
     this.button.classList.toggle("on", isRecording);
-    const text = isRecording ? amountText(length, size) : savedBytes === null ? texts.record : texts.saving(Math.floor(100 * savedBytes));
+    const text = isRecording ? formatAmount(length, size) : savedBytes === null ? texts.record : texts.saving(Math.floor(100 * savedBytes));
     if (this.button.textContent !== text) this.button.textContent = text;
     const label = isRecording ? texts.stopHint(path) : texts.recordHint;
     this.button.title = label;
     this.button.setAttribute("aria-label", isRecording ? `${texts.stop}: ${text}` : text);
     if (isRecording) this.button.removeAttribute("aria-haspopup");
     else this.button.setAttribute("aria-haspopup", "menu");
-    const shown = isRecording ? "" : problem;
-    if (this.problem.textContent !== shown) this.problem.textContent = this.problem.title = shown;
+    const problemText = isRecording ? "" : problem;
+    if (this.problem.textContent !== problemText) this.problem.textContent = this.problem.title = problemText;
   }
 
-  private click(): void {
+  private onClick(): void {
     const { recording } = this.session;
     if (recording.isRecording) recording.stop();
-    else openMenu(this.button, this.entries());
+    else openMenu(this.button, this.createEntries());
   }
 
-  private entries(): MenuEntry[] {
+  private createEntries(): MenuEntry[] {
     const { recording, timeline } = this.session;
     const { extent, mark } = timeline;
     const texts = strings.recording;
-    const saving = recording.savedBytes !== null;
-    const minutes: MenuEntry[] = [
+    const isSaving = recording.savedBytes !== null;
+    const historyEntries: MenuEntry[] = [
       {
-        label: texts.saveMinutes(extent ? lengthText(extent.end - extent.start) : ""),
+        label: texts.saveMinutes(extent ? formatLength(extent.end - extent.start) : ""),
         hint: texts.saveHint,
-        separate: true,
-        disabled: saving || extent === null,
+        hasLineAbove: true,
+        isDisabled: isSaving || extent === null,
         run: () => recording.save(null, null),
       },
       {
-        label: texts.savePart(mark ? lengthText(mark.end - mark.start) : ""),
+        label: texts.savePart(mark ? formatLength(mark.end - mark.start) : ""),
         hint: mark ? texts.saveHint : texts.markHint,
-        disabled: saving || mark === null,
+        isDisabled: isSaving || mark === null,
         run: () => mark && recording.save(mark.start, mark.end),
       },
       { label: texts.markStart, keys: "[", hint: texts.markHint, run: () => timeline.markHere("start") },
@@ -75,13 +75,13 @@ export class RecordButton {
     return [
       { label: texts.all, icon: "record", hint: texts.allHint, run: () => recording.record([]) },
       { label: texts.chosen, run: () => chooseTopics(this.session) },
-      ...(timeline.timeline?.live === true ? minutes : []),
+      ...(timeline.timeline?.live === true ? historyEntries : []),
       ...recording.files.slice(0, MAX_FILES).map(
-        (file, number): MenuEntry => ({
+        (file, index): MenuEntry => ({
           label: texts.fetch(file.name),
-          hint: `${file.path}\n${amountText(file.length, file.size)}`,
+          hint: `${file.path}\n${formatAmount(file.length, file.size)}`,
           icon: "download",
-          separate: number === 0,
+          hasLineAbove: index === 0,
           run: () => downloadFile(file),
         }),
       ),
@@ -94,8 +94,8 @@ export class RecordButton {
     new Dialog(
       texts.made,
       [
-        h("p", {}, texts.madeHint(amountText(file.length, file.size))),
-        file.simulated === null ? "" : h("p", {}, texts.simulated(secondsText(file.length), secondsText(file.simulated))),
+        h("p", {}, texts.madeHint(formatAmount(file.length, file.size))),
+        file.simulated === null ? "" : h("p", {}, texts.simulated(formatSeconds(file.length), formatSeconds(file.simulated))),
         h("pre", { class: "copyable" }, file.path),
         h("p", {}, texts.openHint),
         h("pre", { class: "copyable" }, `linkwright view ${file.name}`),
@@ -111,7 +111,7 @@ export class RecordButton {
         { label: strings.shell.ok },
         {
           label: texts.openHere,
-          main: true,
+          isMain: true,
           run: () => {
             this.session.recording.viewRequested.emit(file);
             return undefined;

@@ -8,7 +8,7 @@ import { Dialog } from "../../widgets/dialog";
 export function chooseTopics(session: Session): void {
   const texts = strings.recording;
   const { topics } = session.monitor;
-  const chosen = new Set<string>();
+  const chosenTopics = new Set<string>();
   const list = h("div", { class: "choices record-topics", role: "group", aria: { label: texts.topics } });
   const dialog = new Dialog(
     texts.chooseTitle,
@@ -17,9 +17,9 @@ export function chooseTopics(session: Session): void {
       { label: strings.shell.cancel },
       {
         label: texts.begin,
-        main: true,
+        isMain: true,
         run: () => {
-          session.recording.record([...chosen]);
+          session.recording.record([...chosenTopics]);
           return undefined;
         },
       },
@@ -28,28 +28,28 @@ export function chooseTopics(session: Session): void {
   );
   const fill = (): void => {
     // Listed rows must not move under the mouse: only new topics are added.
-    const known = new Set([...list.querySelectorAll("input")].map(({ value }) => value));
-    list.append(...topics.topics.filter(({ name }) => !known.has(name)).map((topic) => row(topic, chosen, () => (dialog.ready = chosen.size > 0))));
+    const listedNames = new Set([...list.querySelectorAll("input")].map(({ value }) => value));
+    list.append(...topics.topics.filter(({ name }) => !listedNames.has(name)).map((topic) => createRow(topic, chosenTopics, () => (dialog.isReady = chosenTopics.size > 0))));
   };
   topics.watchList(dialog, true);
-  const forget = topics.listChanged.on(fill);
+  const unsubscribe = topics.listChanged.on(fill);
   dialog.element.addEventListener("close", () => {
-    forget();
+    unsubscribe();
     topics.watchList(dialog, false);
   });
   fill();
-  dialog.ready = false;
+  dialog.isReady = false;
   dialog.open(list.querySelector("input") ?? undefined);
 }
 
-function row({ name, types }: TopicRow, chosen: Set<string>, changed: () => void): HTMLElement {
+function createRow({ name, types }: TopicRow, chosenTopics: Set<string>, onChanged: () => void): HTMLElement {
   const box = h("input", { class: "check" });
   box.type = "checkbox";
   box.value = name;
   box.addEventListener("change", () => {
-    if (box.checked) chosen.add(name);
-    else chosen.delete(name);
-    changed();
+    if (box.checked) chosenTopics.add(name);
+    else chosenTopics.delete(name);
+    onChanged();
   });
   return h("label", { class: "check-label record-topic" }, box, h("span", {}, name), h("small", {}, types.join(", ")));
 }

@@ -18,9 +18,9 @@ export class TimePanel implements Panel {
   readonly id = "time";
   readonly icon = "clock";
   readonly element: HTMLElement;
-  private readonly pause: HTMLButtonElement;
-  private readonly mode = h("select", { class: "choice", title: strings.time.syncHint });
-  private readonly source = h("select", { class: "choice", title: strings.time.sourceHint });
+  private readonly pauseButton: HTMLButtonElement;
+  private readonly modeSelect = h("select", { class: "choice", title: strings.time.syncHint });
+  private readonly sourceSelect = h("select", { class: "choice", title: strings.time.sourceHint });
   private readonly figures = TIME_FIELDS.map((name) => ({ name, output: h("output", { class: "figure" }) }));
 
   private timer = 0;
@@ -31,19 +31,19 @@ export class TimePanel implements Panel {
     close: () => void,
   ) {
     const texts = strings.time;
-    this.pause = button(texts.pauseHint, () => time.set({ paused: !time.isPaused }), "tool", icon("pause"), texts.pause);
-    this.mode.append(...MODES.map((mode) => new Option(texts.modes[mode], mode)));
-    this.mode.setAttribute("aria-label", texts.sync);
-    this.source.setAttribute("aria-label", texts.source);
-    this.mode.addEventListener("change", () => time.set({ mode: this.mode.value as SyncMode }));
-    this.source.addEventListener("change", () => time.set({ source: this.source.value }));
+    this.pauseButton = button(texts.pauseHint, () => time.set({ paused: !time.isPaused }), "tool", icon("pause"), texts.pause);
+    this.modeSelect.append(...MODES.map((mode) => new Option(texts.modes[mode], mode)));
+    this.modeSelect.setAttribute("aria-label", texts.sync);
+    this.sourceSelect.setAttribute("aria-label", texts.source);
+    this.modeSelect.addEventListener("change", () => time.set({ mode: this.modeSelect.value as SyncMode }));
+    this.sourceSelect.addEventListener("change", () => time.set({ source: this.sourceSelect.value }));
     this.element = h(
       "div",
       { class: "panel time-panel" },
-      this.pause,
-      labeled(texts.sync, this.mode),
-      labeled(texts.source, this.source),
-      ...this.figures.map(({ name, output }) => labeled(texts[name], output, name)),
+      this.pauseButton,
+      createLabel(texts.sync, this.modeSelect),
+      createLabel(texts.source, this.sourceSelect),
+      ...this.figures.map(({ name, output }) => createLabel(texts[name], output, name)),
       h("span", { class: "spacer" }),
       button(texts.resetHint, () => time.reset(), "tool", icon("reset"), texts.reset),
       button(strings.close, close, "tool bare strip-close", icon("close")),
@@ -51,27 +51,27 @@ export class TimePanel implements Panel {
     time.changed.on(() => this.update());
     this.update();
     // Request times only while they are visible.
-    onVisibilityChange(this.element, (seen) => {
-      time.watch(seen);
+    onVisibilityChange(this.element, (isVisible) => {
+      time.watch(isVisible);
       clearInterval(this.timer);
-      if (seen) this.timer = window.setInterval(() => this.tick(), REFRESH_MS);
-      if (seen) this.tick();
+      if (isVisible) this.timer = window.setInterval(() => this.updateTimes(), REFRESH_MS);
+      if (isVisible) this.updateTimes();
     });
   }
 
   private update(): void {
     const { isPaused, mode, source, sources } = this.time;
-    this.pause.setAttribute("aria-pressed", String(isPaused));
-    this.pause.classList.toggle("active", isPaused);
-    this.mode.value = mode;
+    this.pauseButton.setAttribute("aria-pressed", String(isPaused));
+    this.pauseButton.classList.toggle("active", isPaused);
+    this.modeSelect.value = mode;
     const names = source === "" || sources.includes(source) ? sources : [...sources, source];
-    this.source.replaceChildren(...["", ...names].map((name) => new Option(name)));
-    this.source.value = source;
-    this.source.disabled = mode === "Off";
-    this.tick();
+    this.sourceSelect.replaceChildren(...["", ...names].map((name) => new Option(name)));
+    this.sourceSelect.value = source;
+    this.sourceSelect.disabled = mode === "Off";
+    this.updateTimes();
   }
 
-  private tick(): void {
+  private updateTimes(): void {
     const times = document.hidden ? null : this.time.currentTimes();
     if (!times) return;
     for (const { name, output } of this.figures) {
@@ -81,6 +81,6 @@ export class TimePanel implements Panel {
   }
 }
 
-function labeled(text: string, element: HTMLElement, name = ""): HTMLElement {
+function createLabel(text: string, element: HTMLElement, name = ""): HTMLElement {
   return h("label", { class: `labeled-row ${name}` }, h("span", {}, text), element);
 }

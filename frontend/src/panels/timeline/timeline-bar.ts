@@ -1,4 +1,4 @@
-import { button, coalesced, h } from "../../dom";
+import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { HistoryExtent } from "../../protocol";
 import { TAKES_LETTERS } from "../../scene/keyboard";
@@ -7,14 +7,14 @@ import type { Session } from "../../state/session";
 import { SPEEDS, type TimelineState } from "../../state/timeline";
 import { strings } from "../../strings";
 import { RecordButton } from "./record-button";
-import { agoText, clockText, densities, extentText, momentText, elapsedText } from "./timeline-text";
+import { formatAge, formatClock, computeDensities, formatExtent, formatMoment, formatElapsed } from "./timeline-text";
 
-/** From this share of its memory limit on, the history counts as full. */
+/** The share of its memory limit from which the history counts as full. */
 const FULL_SHARE = 0.9;
 
-/** Returns the tooltip on the history, and how to extend it if its memory is full. */
-function extentTip(extent: HistoryExtent): string {
-  const text = strings.timeline.kept(extentText(extent), (extent.most / 1e6).toFixed(0));
+/** Returns the tooltip of the history; if its memory is full, the tooltip says how to extend it. */
+function formatExtentTip(extent: HistoryExtent): string {
+  const text = strings.timeline.kept(formatExtent(extent), (extent.most / 1e6).toFixed(0));
   return extent.size < FULL_SHARE * extent.most ? text : `${text}\n${strings.timeline.more}`;
 }
 
@@ -22,27 +22,27 @@ function extentTip(extent: HistoryExtent): string {
 const PAGE_SHARE = 0.1;
 
 /**
- * The bar in the foot of the page while a recording or the history is shown: play, step, speed, loop, and a track to
+ * The bar in the footer of the page while a recording or the history is shown: play, step, speed, loop, and a track to
  * drag on. Otherwise it has only the record button.
  */
 export class TimelineBar {
   readonly element: HTMLElement;
-  private readonly play: HTMLButtonElement;
-  private readonly loop: HTMLButtonElement;
-  private readonly speed = h("select", { class: "choice", title: strings.timeline.speed, aria: { label: strings.timeline.speed } });
-  private readonly steps = h("select", { class: "choice timeline-steps", title: strings.timeline.steps, aria: { label: strings.timeline.steps } });
-  /** Whether the focused element got the focus by a press rather than by Tab. */
-  private pressed = false;
-  private readonly time = h("output", { class: "timeline-time" });
+  private readonly playButton: HTMLButtonElement;
+  private readonly loopButton: HTMLButtonElement;
+  private readonly speedSelect = h("select", { class: "choice", title: strings.timeline.speed, aria: { label: strings.timeline.speed } });
+  private readonly stepSelect = h("select", { class: "choice timeline-steps", title: strings.timeline.steps, aria: { label: strings.timeline.steps } });
+  /** Whether the focused element was focused with the pointer, not with Tab. */
+  private isFocusedByPress = false;
+  private readonly timeOutput = h("output", { class: "timeline-time" });
   private readonly marks = h("canvas", { class: "timeline-marks" });
   private readonly head = h("div", { class: "timeline-head" });
   private readonly markedPart = h("div", { class: "timeline-part" });
-  /** Where the user started to mark a part, s since the epoch; null while no part is being marked. */
-  private markFrom: number | null = null;
+  /** The time at which the user started to mark a part, s since the epoch; null while no part is being marked. */
+  private markStart: number | null = null;
   private readonly track: HTMLElement;
-  private readonly live: HTMLButtonElement;
-  private readonly back: HTMLButtonElement;
-  private readonly forward: HTMLButtonElement;
+  private readonly liveButton: HTMLButtonElement;
+  private readonly backButton: HTMLButtonElement;
+  private readonly forwardButton: HTMLButtonElement;
   private readonly problem = h("span", { class: "timeline-problem", role: "alert" });
 
   private readonly timeline: TimelineState;
@@ -53,41 +53,41 @@ export class TimelineBar {
     this.timeline = timeline;
     this.recording = session.recording;
     const texts = strings.timeline;
-    this.play = button(texts.play, () => timeline.play(!timeline.isPlaying), "tool bare", icon("play"));
-    this.loop = button(texts.loop, () => timeline.setLoop(!timeline.isLooping), "tool bare", icon("loop"));
-    this.live = button(texts.live, () => timeline.goLive(), "timeline-live");
-    this.live.textContent = texts.liveShort;
-    this.back = button(texts.back, () => timeline.step(false), "tool bare", icon("stepBack"));
-    this.forward = button(texts.forward, () => timeline.step(true), "tool bare", icon("step"));
-    this.speed.append(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed))));
-    this.speed.addEventListener("change", () => timeline.setSpeed(Number(this.speed.value)));
-    this.steps.addEventListener("change", () => (timeline.stepTopic = this.steps.value));
+    this.playButton = button(texts.play, () => timeline.play(!timeline.isPlaying), "tool bare", icon("play"));
+    this.loopButton = button(texts.loop, () => timeline.setLoop(!timeline.isLooping), "tool bare", icon("loop"));
+    this.liveButton = button(texts.live, () => timeline.goLive(), "timeline-live");
+    this.liveButton.textContent = texts.liveShort;
+    this.backButton = button(texts.back, () => timeline.step(false), "tool bare", icon("stepBack"));
+    this.forwardButton = button(texts.forward, () => timeline.step(true), "tool bare", icon("step"));
+    this.speedSelect.append(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed))));
+    this.speedSelect.addEventListener("change", () => timeline.setSpeed(Number(this.speedSelect.value)));
+    this.stepSelect.addEventListener("change", () => (timeline.stepTopic = this.stepSelect.value));
     this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: texts.position } }, this.marks, this.markedPart, this.head);
-    this.track.addEventListener("pointerdown", (event) => this.drag(event));
+    this.track.addEventListener("pointerdown", (event) => this.onPointerDown(event));
     this.track.addEventListener("pointermove", (event) => {
       if (!this.track.hasPointerCapture(event.pointerId)) return;
-      if (this.markFrom === null) this.goTo(event);
-      else timeline.setMark({ start: this.markFrom, end: this.timeAt(event) });
+      if (this.markStart === null) this.goTo(event);
+      else timeline.setMark({ start: this.markStart, end: this.timeAt(event) });
     });
     this.track.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.element = h(
       "section",
       { class: "timeline-bar", aria: { label: texts.label } },
-      this.back,
-      this.play,
-      this.forward,
-      this.steps,
+      this.backButton,
+      this.playButton,
+      this.forwardButton,
+      this.stepSelect,
       this.track,
       this.problem,
-      this.time,
-      this.speed,
-      this.loop,
+      this.timeOutput,
+      this.speedSelect,
+      this.loopButton,
       new RecordButton(session).element,
-      this.live,
+      this.liveButton,
     );
     timeline.changed.on(() => this.show());
     session.recording.changed.on(() => this.updateVisibility());
-    timeline.moved.on(coalesced(() => this.showPosition()));
+    timeline.moved.on(coalesce(() => this.showPosition()));
     new ResizeObserver(() => this.drawMarks()).observe(this.track);
     this.bindKeys();
     this.bindSceneKeys();
@@ -97,24 +97,24 @@ export class TimelineBar {
   private show(): void {
     const { timeline, isPlaying, speed, isLooping, problem } = this.timeline;
     const texts = strings.timeline;
-    const minutes = timeline?.live ?? false;
+    const isLiveHistory = timeline?.live ?? false;
     this.updateVisibility();
-    this.element.classList.toggle("minutes", minutes);
-    this.live.hidden = !minutes;
-    this.live.setAttribute("aria-pressed", String(this.timeline.isLive));
-    this.forward.hidden = this.speed.hidden = minutes && this.timeline.isLive;
-    this.loop.hidden = minutes;
-    this.track.setAttribute("aria-label", minutes ? texts.minutes : texts.position);
+    this.element.classList.toggle("minutes", isLiveHistory);
+    this.liveButton.hidden = !isLiveHistory;
+    this.liveButton.setAttribute("aria-pressed", String(this.timeline.isLive));
+    this.forwardButton.hidden = this.speedSelect.hidden = isLiveHistory && this.timeline.isLive;
+    this.loopButton.hidden = isLiveHistory;
+    this.track.setAttribute("aria-label", isLiveHistory ? texts.minutes : texts.position);
     this.offerSteps();
     const label = isPlaying ? texts.pause : texts.play;
-    if (this.play.title !== label) {
-      this.play.title = label;
-      this.play.setAttribute("aria-label", label);
-      this.play.replaceChildren(icon(isPlaying ? "pause" : "play"));
+    if (this.playButton.title !== label) {
+      this.playButton.title = label;
+      this.playButton.setAttribute("aria-label", label);
+      this.playButton.replaceChildren(icon(isPlaying ? "pause" : "play"));
     }
-    this.loop.setAttribute("aria-pressed", String(isLooping));
-    this.loop.classList.toggle("on", isLooping);
-    this.speed.value = String(speed);
+    this.loopButton.setAttribute("aria-pressed", String(isLooping));
+    this.loopButton.classList.toggle("on", isLooping);
+    this.speedSelect.value = String(speed);
     this.problem.textContent = problem;
     this.problem.title = problem;
     this.drawMarks();
@@ -124,40 +124,40 @@ export class TimelineBar {
   /** Offers the topics to step by: those of the recording, or for live data those that are displayed. */
   private offerSteps(): void {
     const topics = (this.timeline.timeline?.topics ?? []).filter(({ count }) => count > 0).map(({ name }) => name);
-    this.steps.hidden = topics.length < 2;
-    const offered = [new Option(strings.timeline.allSteps, ""), ...topics.map((name) => new Option(name, name))];
-    if (this.steps.options.length !== offered.length) this.steps.replaceChildren(...offered);
-    this.steps.value = this.timeline.stepTopic;
+    this.stepSelect.hidden = topics.length < 2;
+    const options = [new Option(strings.timeline.allSteps, ""), ...topics.map((name) => new Option(name, name))];
+    if (this.stepSelect.options.length !== options.length) this.stepSelect.replaceChildren(...options);
+    this.stepSelect.value = this.timeline.stepTopic;
   }
 
   private updateVisibility(): void {
-    const without = this.timeline.timeline === null;
-    this.element.hidden = without && !this.recording.isPossible;
-    this.element.classList.toggle("recorder-only", without);
+    const hasNoTimeline = this.timeline.timeline === null;
+    this.element.hidden = hasNoTimeline && !this.recording.isPossible;
+    this.element.classList.toggle("recorder-only", hasNoTimeline);
   }
 
   private showPosition(): void {
     const { timeline, position, isLive, extent } = this.timeline;
     if (!timeline) return;
     const { start, end } = timeline;
-    const part = end > start ? Math.min(1, Math.max(0, (position - start) / (end - start))) : 1;
-    this.head.style.left = `${(part * 100).toFixed(3)}%`;
+    const fraction = end > start ? Math.min(1, Math.max(0, (position - start) / (end - start))) : 1;
+    this.head.style.left = `${(fraction * 100).toFixed(3)}%`;
     // The age cannot identify the displayed moment, because it keeps growing while time is paused.
-    const passed = extent ? (isLive ? extentText(extent) : momentText(position)) : elapsedText(position - start, end - start);
-    this.time.textContent = passed;
-    this.time.title = extent ? `${clockText(position)}${isLive ? "" : ` ${agoText(end - position)}`}\n${extentTip(extent)}` : clockText(position);
+    const timeText = extent ? (isLive ? formatExtent(extent) : formatMoment(position)) : formatElapsed(position - start, end - start);
+    this.timeOutput.textContent = timeText;
+    this.timeOutput.title = extent ? `${formatClock(position)}${isLive ? "" : ` ${formatAge(end - position)}`}\n${formatExtentTip(extent)}` : formatClock(position);
     this.showMark(start, end);
     this.track.setAttribute("aria-valuemin", "0");
     this.track.setAttribute("aria-valuemax", String(end - start));
     this.track.setAttribute("aria-valuenow", (position - start).toFixed(3));
-    this.track.setAttribute("aria-valuetext", passed);
+    this.track.setAttribute("aria-valuetext", timeText);
   }
 
-  private drag(event: PointerEvent): void {
+  private onPointerDown(event: PointerEvent): void {
     if (event.button !== 0) return;
     this.track.setPointerCapture(event.pointerId);
-    this.markFrom = event.shiftKey && this.timeline.timeline?.live === true ? this.timeAt(event) : null;
-    if (this.markFrom === null) this.goTo(event);
+    this.markStart = event.shiftKey && this.timeline.timeline?.live === true ? this.timeAt(event) : null;
+    if (this.markStart === null) this.goTo(event);
     else this.timeline.setMark(null);
   }
 
@@ -184,27 +184,27 @@ export class TimelineBar {
     const { timeline, position } = this.timeline;
     if (!timeline || event.ctrlKey || event.metaKey || event.altKey) return;
     const page = PAGE_SHARE * (timeline.end - timeline.start);
-    const places: Record<string, number> = {
+    const targetTimes: Record<string, number> = {
       Home: timeline.start,
       End: timeline.end,
       PageUp: position - page,
       PageDown: position + page,
     };
-    const place = places[event.key];
-    if (place === undefined) return;
-    this.timeline.seek(place);
+    const targetTime = targetTimes[event.key];
+    if (targetTime === undefined) return;
+    this.timeline.seek(targetTime);
     event.preventDefault();
   }
 
-  /** Binds Space to play and pause, and the arrow keys to stepping, where nothing else uses them. */
+  /** Binds Space to play and pause, and the arrow keys to steps, unless the focused element uses these keys. */
   private bindKeys(): void {
     document.addEventListener("keydown", (event) => {
       const { target } = event;
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !this.timeline.timeline) return;
       if (!(target instanceof Element) || target.closest(TAKES_LETTERS)) return;
       if (event.key === " " && !target.closest("button, input, summary, a")) this.timeline.play(!this.timeline.isPlaying);
-      else if (event.key === "ArrowLeft" && this.isFree(target)) this.timeline.step(false);
-      else if (event.key === "ArrowRight" && this.isFree(target)) this.timeline.step(true);
+      else if (event.key === "ArrowLeft" && this.isUnclaimed(target)) this.timeline.step(false);
+      else if (event.key === "ArrowRight" && this.isUnclaimed(target)) this.timeline.step(true);
       else if (event.key === "[" && this.timeline.timeline.live) this.timeline.markHere("start");
       else if (event.key === "]" && this.timeline.timeline.live) this.timeline.markHere("end");
       else return;
@@ -212,18 +212,18 @@ export class TimelineBar {
     });
   }
 
-  /** Binds the arrow keys to stepping after a press into the scene of a past time; after Tab they rotate the camera. */
+  /** Binds the arrow keys to steps after a press on the scene at a past time; after Tab they rotate the camera. */
   private bindSceneKeys(): void {
-    document.addEventListener("pointerdown", () => (this.pressed = true), true);
+    document.addEventListener("pointerdown", () => (this.isFocusedByPress = true), true);
     document.addEventListener(
       "keydown",
       (event) => {
-        if (event.key === "Tab") this.pressed = false;
-        const forward = event.key === "ArrowRight";
-        if (!forward && event.key !== "ArrowLeft") return;
-        if (event.shiftKey || event.ctrlKey || event.metaKey || event.altKey || !this.pressed) return;
+        if (event.key === "Tab") this.isFocusedByPress = false;
+        const isForward = event.key === "ArrowRight";
+        if (!isForward && event.key !== "ArrowLeft") return;
+        if (event.shiftKey || event.ctrlKey || event.metaKey || event.altKey || !this.isFocusedByPress) return;
         if (!(event.target instanceof HTMLCanvasElement) || !this.timeline.timeline || this.timeline.isLive) return;
-        this.timeline.step(forward);
+        this.timeline.step(isForward);
         event.preventDefault();
         event.stopPropagation();
       },
@@ -231,13 +231,13 @@ export class TimelineBar {
     );
   }
 
-  private isFree(target: Element): boolean {
+  private isUnclaimed(target: Element): boolean {
     return target === document.body || this.element.contains(target);
   }
 
   /** Draws the density of messages, in one row for each topic with messages; darker means more messages. */
   private drawMarks(): void {
-    const rows = densities(this.timeline.timeline?.topics ?? []);
+    const rows = computeDensities(this.timeline.timeline?.topics ?? []);
     const { width, height } = this.track.getBoundingClientRect();
     const scale = window.devicePixelRatio;
     this.marks.width = Math.max(1, Math.round(width * scale));
@@ -246,12 +246,12 @@ export class TimelineBar {
     if (!context || rows.length === 0) return;
     context.fillStyle = getComputedStyle(this.track).getPropertyValue("--accent");
     const rowHeight = this.marks.height / rows.length;
-    rows.forEach((row, number) => {
+    rows.forEach((row, rowIndex) => {
       const partWidth = this.marks.width / row.length;
-      row.forEach((dense, part) => {
-        if (dense === 0) return;
-        context.globalAlpha = dense;
-        context.fillRect(part * partWidth, number * rowHeight, partWidth, Math.max(1, rowHeight - 1));
+      row.forEach((density, index) => {
+        if (density === 0) return;
+        context.globalAlpha = density;
+        context.fillRect(index * partWidth, rowIndex * rowHeight, partWidth, Math.max(1, rowHeight - 1));
       });
     });
   }

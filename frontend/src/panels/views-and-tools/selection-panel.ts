@@ -16,7 +16,7 @@ export class SelectionPanel implements Panel {
   readonly id = "selection";
   readonly icon = "select";
   readonly element: HTMLElement;
-  private readonly none = h("p", { class: "hint empty" }, strings.selected.none);
+  private readonly emptyHint = h("p", { class: "hint empty" }, strings.selected.none);
   private readonly tree: TreeView;
   private timer = 0;
 
@@ -26,10 +26,10 @@ export class SelectionPanel implements Panel {
   ) {
     this.tree = new TreeView(
       strings.selected.label,
-      () => this.items(),
+      () => this.createItems(),
       () => [],
     );
-    this.element = h("div", { class: "panel" }, this.none, this.tree.element);
+    this.element = h("div", { class: "panel" }, this.emptyHint, this.tree.element);
     session.selection.changed.on(this.tree.refresh);
     onVisibilityChange(this.element, this.tree.refresh);
     session.frames.posesChanged.on(() => this.scheduleRefresh());
@@ -44,26 +44,26 @@ export class SelectionPanel implements Panel {
     }, REFRESH_MS);
   }
 
-  private items(): TreeItem[] {
+  private createItems(): TreeItem[] {
     const { items } = this.session.selection;
-    this.none.hidden = items.length > 0;
+    this.emptyHint.hidden = items.length > 0;
     const rows: TreeItem[] = [];
     for (const item of items) {
-      const described = this.describe(item);
-      if (described) rows.push(row(`${item.display} ${item.key}`, described, items.length === 1));
+      const description = this.describe(item);
+      if (description) rows.push(createRow(`${item.display} ${item.key}`, description, items.length === 1));
     }
     return rows;
   }
 }
 
-function row(key: string, { name, value = "", children }: DescriptionRow, expanded: boolean): TreeItem {
+function createRow(key: string, { name, value = "", children }: DescriptionRow, isExpanded: boolean): TreeItem {
   return {
     key,
     name,
     kind: "group",
     value,
     description: "",
-    expanded,
-    ...(children ? { children: () => children.map((child) => row(`${key}/${child.name}`, child, false)) } : {}),
+    isExpanded,
+    ...(children ? { children: () => children.map((child) => createRow(`${key}/${child.name}`, child, false)) } : {}),
   };
 }

@@ -11,15 +11,15 @@ export class TransformationPanel implements Panel {
   readonly element: HTMLElement;
 
   constructor() {
-    const choice = h("input", { class: "check" });
-    choice.type = "radio";
-    choice.name = "transformer";
-    choice.checked = true;
+    const radio = h("input", { class: "check" });
+    radio.type = "radio";
+    radio.name = "transformer";
+    radio.checked = true;
     this.element = h(
       "div",
       { class: "panel transformation-panel" },
       h("p", { class: "hint" }, strings.transformation.hint),
-      h("label", { class: "labeled-row" }, choice, h("span", {}, strings.transformation.tf), h("span", { class: "row-badge" }, TF)),
+      h("label", { class: "labeled-row" }, radio, h("span", {}, strings.transformation.tf), h("span", { class: "row-badge" }, TF)),
     );
   }
 }

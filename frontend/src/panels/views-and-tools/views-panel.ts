@@ -19,39 +19,39 @@ export class ViewsPanel implements Panel {
   readonly icon = "camera";
   readonly element: HTMLElement;
   private readonly view: ViewState;
-  private readonly type = h("select", { class: "choice", aria: { label: strings.views.type } });
-  private readonly name = h("input", { class: "field", aria: { label: strings.views.newName } });
-  private readonly remove: HTMLButtonElement;
-  private readonly rename: HTMLButtonElement;
+  private readonly typeSelect = h("select", { class: "choice", aria: { label: strings.views.type } });
+  private readonly nameField = h("input", { class: "field", aria: { label: strings.views.newName } });
+  private readonly removeButton: HTMLButtonElement;
+  private readonly renameButton: HTMLButtonElement;
   /** The saved view whose row, or a row below it, is selected. */
-  private chosen: string | null = null;
+  private chosenId: string | null = null;
 
   constructor({ view, frames }: Session) {
     this.view = view;
     const texts = strings.views;
     const tree = new TreeView(
       strings.panels.views,
-      () => this.items(),
+      () => this.createItems(),
       () => [FIXED_FRAME, ...frames.names],
     );
-    const zero = button(texts.zeroHint, () => view.zero(), "tool", icon("zero"), h("span", { class: "tool-name" }, texts.zero));
-    zero.setAttribute("aria-label", texts.zero);
-    this.remove = button(texts.removeHint, () => this.removeChosen(), "tool", texts.remove);
-    this.rename = button(texts.renameHint, () => this.startRename(), "tool", texts.rename);
-    this.type.addEventListener("change", () => view.setClass(this.type.value));
-    this.name.addEventListener("keydown", (event) => this.onNameKey(event));
-    this.name.addEventListener("blur", () => {
-      this.name.hidden = true;
+    const zeroButton = button(texts.zeroHint, () => view.zero(), "tool", icon("zero"), h("span", { class: "tool-name" }, texts.zero));
+    zeroButton.setAttribute("aria-label", texts.zero);
+    this.removeButton = button(texts.removeHint, () => this.removeChosen(), "tool", texts.remove);
+    this.renameButton = button(texts.renameHint, () => this.startRename(), "tool", texts.rename);
+    this.typeSelect.addEventListener("change", () => view.setClass(this.typeSelect.value));
+    this.nameField.addEventListener("keydown", (event) => this.onNameKey(event));
+    this.nameField.addEventListener("blur", () => {
+      this.nameField.hidden = true;
     });
-    this.name.hidden = true;
+    this.nameField.hidden = true;
     this.element = h(
       "div",
       { class: "panel views-panel" },
       h(
         "div",
         { class: "toolbar" },
-        h("label", { class: "view-type" }, h("span", { class: "toolbar-label" }, texts.type), this.type),
-        zero,
+        h("label", { class: "view-type" }, h("span", { class: "toolbar-label" }, texts.type), this.typeSelect),
+        zeroButton,
         button(texts.resetHint, () => view.reset(), "tool bare", icon("reset")),
       ),
       tree.element,
@@ -59,15 +59,15 @@ export class ViewsPanel implements Panel {
         "div",
         { class: "toolbar bottom" },
         button(texts.saveHint, () => view.save(shortName(view.current.cls)), "tool", texts.save),
-        this.remove,
-        this.rename,
-        this.name,
+        this.removeButton,
+        this.renameButton,
+        this.nameField,
       ),
     );
     tree.element.addEventListener("keydown", (event) => this.onKeyDown(event), true);
-    tree.selected.on((item) => {
+    tree.itemSelected.on((item) => {
       const [owner] = item.key.split("|");
-      this.chosen = owner === CURRENT ? null : (owner ?? null);
+      this.chosenId = owner === CURRENT ? null : (owner ?? null);
       this.update();
     });
     view.changed.on(() => {
@@ -75,7 +75,7 @@ export class ViewsPanel implements Panel {
       tree.refresh();
     });
     view.listsChanged.on(() => {
-      if (!view.savedViews.some((each) => each.id === this.chosen)) this.chosen = null;
+      if (!view.savedViews.some((savedView) => savedView.id === this.chosenId)) this.chosenId = null;
       this.update();
       tree.refresh();
     });
@@ -84,14 +84,14 @@ export class ViewsPanel implements Panel {
 
   private update(): void {
     const { classes, current } = this.view;
-    if (this.type.options.length !== classes.length) {
-      this.type.replaceChildren(...classes.map(({ cls }) => new Option(shortName(cls), cls)));
+    if (this.typeSelect.options.length !== classes.length) {
+      this.typeSelect.replaceChildren(...classes.map(({ cls }) => new Option(shortName(cls), cls)));
     }
-    this.type.value = current.cls;
-    this.remove.disabled = this.rename.disabled = this.chosen === null;
+    this.typeSelect.value = current.cls;
+    this.removeButton.disabled = this.renameButton.disabled = this.chosenId === null;
   }
 
-  private items(): TreeItem[] {
+  private createItems(): TreeItem[] {
     const { view } = this;
     const { current } = view;
     const set = (path: string, value: PropertyValue): void => view.set(path, value);
@@ -102,54 +102,54 @@ export class ViewsPanel implements Panel {
         kind: "group",
         value: shortName(current.cls),
         description: "",
-        strong: true,
-        expanded: true,
-        children: () => rows(CURRENT, view.properties, current.values, set),
+        isStrong: true,
+        isExpanded: true,
+        children: () => createRows(CURRENT, view.properties, current.values, set),
       },
-      ...view.savedViews.map(({ id, view: saved }): TreeItem => ({
+      ...view.savedViews.map(({ id, view: savedView }): TreeItem => ({
         key: id,
-        name: saved.name,
+        name: savedView.name,
         kind: "group",
-        value: shortName(saved.cls),
+        value: shortName(savedView.cls),
         description: strings.views.useHint,
         activate: () => view.use(id),
         children: () =>
-          rows(id, view.propertiesOf(saved.cls), saved.values, (path, value) => view.setSaved(id, path, value)),
+          createRows(id, view.propertiesOf(savedView.cls), savedView.values, (path, value) => view.setSaved(id, path, value)),
       })),
     ];
   }
 
   private onKeyDown(event: KeyboardEvent): void {
-    if (!(event.target as HTMLElement).matches("[role=treeitem]") || this.chosen === null) return;
+    if (!(event.target as HTMLElement).matches("[role=treeitem]") || this.chosenId === null) return;
     if (event.key === "Delete") this.removeChosen();
-    else if (event.key === "F2" && (event.target as HTMLElement).dataset["key"] === this.chosen) this.startRename();
+    else if (event.key === "F2" && (event.target as HTMLElement).dataset["key"] === this.chosenId) this.startRename();
     else return;
     event.preventDefault();
     event.stopPropagation();
   }
 
   private removeChosen(): void {
-    if (this.chosen !== null) this.view.remove(this.chosen);
+    if (this.chosenId !== null) this.view.remove(this.chosenId);
   }
 
   private startRename(): void {
-    const saved = this.view.savedViews.find((each) => each.id === this.chosen);
-    if (!saved) return;
-    this.name.hidden = false;
-    this.name.value = saved.view.name;
-    this.name.focus();
-    this.name.select();
+    const chosenView = this.view.savedViews.find((savedView) => savedView.id === this.chosenId);
+    if (!chosenView) return;
+    this.nameField.hidden = false;
+    this.nameField.value = chosenView.view.name;
+    this.nameField.focus();
+    this.nameField.select();
   }
 
   private onNameKey(event: KeyboardEvent): void {
-    if (event.key === "Enter" && this.chosen !== null) this.view.rename(this.chosen, this.name.value);
-    if (event.key === "Enter" || event.key === "Escape") this.name.hidden = true;
+    if (event.key === "Enter" && this.chosenId !== null) this.view.rename(this.chosenId, this.nameField.value);
+    if (event.key === "Enter" || event.key === "Escape") this.nameField.hidden = true;
     event.stopPropagation();
   }
 }
 
 /** Returns the rows of a view; their keys begin with the key of the view. */
-function rows(
+function createRows(
   owner: string,
   properties: readonly Property[],
   values: ViewValues,
@@ -162,17 +162,17 @@ function rows(
       key: `${owner}|${id}`,
       name,
       kind,
-      value: isGroup ? summary(children, values) : (values[id] ?? property.value),
+      value: isGroup ? formatSummary(children, values) : (values[id] ?? property.value),
       description,
       minimum,
       maximum,
-      ...(children.length > 0 ? { children: () => rows(owner, children, values, set) } : {}),
+      ...(children.length > 0 ? { children: () => createRows(owner, children, values, set) } : {}),
       ...(isGroup ? {} : { set: (value: PropertyValue) => set(id, value) }),
     };
   });
 }
 
 /** Returns `1; 2; 3` for a point. */
-function summary(children: readonly Property[], values: ViewValues): string {
+function formatSummary(children: readonly Property[], values: ViewValues): string {
   return formatPoint(children.map(({ id, value }) => Number(values[id] ?? value)));
 }

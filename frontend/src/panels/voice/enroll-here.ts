@@ -3,13 +3,13 @@ import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
 import { strings } from "../../strings";
 
-/** Whether the robot proposes to enroll words at the user's place, and the user has not started yet. */
+/** Returns whether the robot proposes to enroll words at the user's location, and the user has not started yet. */
 export function proposesEnrolling(voice: VoiceState, words: WordsState): boolean {
   return voice.serverState?.proposes_enrolling === true && words.takesHere === null;
 }
 
-/** Returns a button that starts enrollment at the user's place. */
-export function enrollHereButton(words: WordsState): HTMLButtonElement {
+/** Returns a button that starts enrollment at the user's location. */
+export function createEnrollHereButton(words: WordsState): HTMLButtonElement {
   const { enrollHere, enrollHereHint } = strings.voice.words;
   return button(enrollHereHint, () => words.enrollRequested.emit(), "tool framed primary", enrollHere);
 }

@@ -17,10 +17,10 @@ export class LevelMeter {
 
   /** Shows a peak from 0 to 1; null while there is no microphone. */
   show(peak: number | null): void {
-    const part = meterShare(peak ?? 0);
-    this.bar.style.width = `${Math.round(100 * part)}%`;
+    const fraction = meterShare(peak ?? 0);
+    this.bar.style.width = `${Math.round(100 * fraction)}%`;
     this.bar.classList.toggle("clipped", (peak ?? 0) >= CLIPPING_PEAK);
-    this.element.setAttribute("aria-valuenow", String(Math.round(100 * part)));
-    this.element.setAttribute("aria-valuetext", peak === null ? strings.voice.levelOff : `${Math.round(100 * part)} %`);
+    this.element.setAttribute("aria-valuenow", String(Math.round(100 * fraction)));
+    this.element.setAttribute("aria-valuetext", peak === null ? strings.voice.levelOff : `${Math.round(100 * fraction)} %`);
   }
 }

@@ -7,10 +7,10 @@ import { strings } from "../../strings";
 export const TALK_KEY = "v";
 
 /** Returns a button that opens the microphone while it is held by pointer, Space or Enter. */
-export function talkButton(voice: VoiceState, className: string, ...words: readonly string[]): HTMLButtonElement {
+export function createTalkButton(voice: VoiceState, className: string, ...texts: readonly string[]): HTMLButtonElement {
   const { talk, talkHint } = strings.voice;
-  const named = words.length > 0 ? {} : { label: talk };
-  const element = h("button", { class: className, title: talkHint, aria: named }, icon("microphone"), ...words);
+  const aria = texts.length > 0 ? {} : { label: talk };
+  const element = h("button", { class: className, title: talkHint, aria }, icon("microphone"), ...texts);
   element.type = "button";
   element.setAttribute("aria-keyshortcuts", TALK_KEY);
   element.addEventListener("pointerdown", (event) => {
@@ -18,8 +18,8 @@ export function talkButton(voice: VoiceState, className: string, ...words: reado
     element.setPointerCapture(event.pointerId);
     voice.press();
   });
-  for (const end of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) {
-    element.addEventListener(end, () => voice.release());
+  for (const eventType of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) {
+    element.addEventListener(eventType, () => voice.release());
   }
   element.addEventListener("keydown", (event) => {
     if (event.key !== " " && event.key !== "Enter") return;
@@ -32,9 +32,9 @@ export function talkButton(voice: VoiceState, className: string, ...words: reado
   // A long press must not open the context menu.
   element.addEventListener("contextmenu", (event) => event.preventDefault());
   const show = (): void => {
-    const talking = voice.isHeld || voice.isPanelOpen;
-    element.setAttribute("aria-pressed", String(talking));
-    element.classList.toggle("talking", talking);
+    const isTalking = voice.isHeld || voice.isPanelOpen;
+    element.setAttribute("aria-pressed", String(isTalking));
+    element.classList.toggle("talking", isTalking);
     element.classList.toggle("wrong", voice.microphone.problem !== null);
   };
   voice.changed.on(show);
@@ -42,12 +42,16 @@ export function talkButton(voice: VoiceState, className: string, ...words: reado
   return element;
 }
 
-/** Binds the talk key wherever no text is typed, and closes the microphone when the user leaves the page. */
-export function bindTalkKey(voice: VoiceState, takesLetters: string): void {
+/**
+ * Binds the talk key, and closes the microphone when the user leaves the page.
+ *
+ * @param textSelector - matches the elements in which the key enters text.
+ */
+export function bindTalkKey(voice: VoiceState, textSelector: string): void {
   document.addEventListener("keydown", (event) => {
     if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || event.shiftKey) return;
     if (event.key.toLowerCase() !== TALK_KEY) return;
-    if (event.target instanceof Element && event.target.closest(takesLetters)) return;
+    if (event.target instanceof Element && event.target.closest(textSelector)) return;
     event.preventDefault();
     if (!event.repeat) voice.press();
   });

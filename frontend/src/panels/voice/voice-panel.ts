@@ -4,13 +4,13 @@ import type { ConversationPart } from "../../protocol";
 import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
 import { strings } from "../../strings";
-import { choice, textField, tickBox } from "../../widgets/controls";
+import { createSelect, createTextField, createTickBox } from "../../widgets/controls";
 import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
-import { enrollHereButton, proposesEnrolling } from "./enroll-here";
+import { createEnrollHereButton, proposesEnrolling } from "./enroll-here";
 import { LevelMeter } from "./level-meter";
-import { talkButton } from "./talk-button";
-import { activity, obstacle } from "./voice-words";
+import { createTalkButton } from "./talk-button";
+import { describeActivity, describeObstacle } from "./voice-words";
 import { WordsBox } from "./words-box";
 
 const ICONS = { partial: "microphone", text: "microphone", command: "check", response: "speech" } as const satisfies Record<ConversationPart, string>;
@@ -23,49 +23,49 @@ export class VoicePanel implements Panel {
   private readonly meter = new LevelMeter(strings.voice.level);
   private readonly state = h("div", { class: "voice-state", role: "status" });
   private readonly history = h("div", { class: "voice-history", role: "log", tabIndex: 0, aria: { label: strings.voice.history } });
-  private readonly openMicrophoneBox: ReturnType<typeof tickBox>;
-  private readonly proposal: HTMLElement;
+  private readonly openMicrophoneBox: ReturnType<typeof createTickBox>;
+  private readonly enrollProposal: HTMLElement;
   private readonly wordsBox: WordsBox;
   private readonly textNote = h("p", { class: "note" }, strings.voice.noTextListener);
-  private readonly speakBox: ReturnType<typeof tickBox>;
-  private readonly voices: HTMLSelectElement;
-  private readonly noVoices = h("p", { class: "note" }, strings.voice.noVoices);
+  private readonly speakBox: ReturnType<typeof createTickBox>;
+  private readonly voiceSelect: HTMLSelectElement;
+  private readonly noVoicesNote = h("p", { class: "note" }, strings.voice.noVoices);
 
   constructor(
     private readonly voice: VoiceState,
-    private readonly enrolled: WordsState,
+    private readonly words: WordsState,
   ) {
     const texts = strings.voice;
     const { speaker } = voice;
-    this.openMicrophoneBox = tickBox(texts.open, texts.openHint, (ticked) => voice.setOpen(ticked));
-    this.speakBox = tickBox(texts.speak, texts.speakHint, (on) => speaker.configure({ on }));
-    this.voices = choice(texts.voice, [], (chosen) => speaker.configure({ voice: chosen }));
-    const wordsBox = (this.wordsBox = new WordsBox(enrolled, voice));
-    this.proposal = h("div", { class: "voice-proposal", role: "status" }, h("span", {}, texts.words.proposal), enrollHereButton(enrolled));
-    const clear = button(texts.clearHint, () => voice.clear(), "tool bare", icon("clear"));
+    this.openMicrophoneBox = createTickBox(texts.open, texts.openHint, (isTicked) => voice.setOpen(isTicked));
+    this.speakBox = createTickBox(texts.speak, texts.speakHint, (isTicked) => speaker.configure({ on: isTicked }));
+    this.voiceSelect = createSelect(texts.voice, [], (voiceUri) => speaker.configure({ voice: voiceUri }));
+    const wordsBox = (this.wordsBox = new WordsBox(words, voice));
+    this.enrollProposal = h("div", { class: "voice-proposal", role: "status" }, h("span", {}, texts.words.proposal), createEnrollHereButton(words));
+    const clearButton = button(texts.clearHint, () => voice.clear(), "tool bare", icon("clear"));
     this.element = h(
       "div",
       { class: "panel monitor" },
       h(
         "div",
         { class: "scroll voice" },
-        h("div", { class: "voice-main" }, talkButton(voice, "tool framed voice-talk", texts.talkWithKey), this.meter.element),
-        h("div", { class: "voice-row" }, this.openMicrophoneBox, h("span", { class: "spacer" }), clear),
+        h("div", { class: "voice-main" }, createTalkButton(voice, "tool framed voice-talk", texts.talkWithKey), this.meter.element),
+        h("div", { class: "voice-row" }, this.openMicrophoneBox, h("span", { class: "spacer" }), clearButton),
         this.state,
-        this.proposal,
+        this.enrollProposal,
         this.history,
-        this.commandForm(),
-        h("div", { class: "voice-row" }, this.speakBox, this.voices),
-        this.noVoices,
+        this.createCommandForm(),
+        h("div", { class: "voice-row" }, this.speakBox, this.voiceSelect),
+        this.noVoicesNote,
         wordsBox.element,
       ),
     );
     voice.changed.on(() => this.show());
-    enrolled.changed.on(() => this.show());
+    words.changed.on(() => this.show());
     voice.conversed.on(() => this.showHistory());
-    onVisibilityChange(this.element, (seen) => {
-      voice.watch(this, seen);
-      wordsBox.watch(seen);
+    onVisibilityChange(this.element, (isVisible) => {
+      voice.watch(this, isVisible);
+      wordsBox.watch(isVisible);
     });
     this.show();
     this.showHistory();
@@ -76,7 +76,7 @@ export class VoicePanel implements Panel {
     this.wordsBox.enrollHere();
   }
 
-  private commandForm(): HTMLElement {
+  private createCommandForm(): HTMLElement {
     const texts = strings.voice;
     const send = (): void => {
       const text = field.value.trim();
@@ -84,26 +84,26 @@ export class VoicePanel implements Panel {
       this.voice.sendCommand(text);
       field.value = "";
     };
-    const field = textField(texts.command, () => undefined);
+    const field = createTextField(texts.command, () => undefined);
     field.placeholder = texts.commandShort;
     field.maxLength = 200;
     field.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && !event.isComposing) send();
     });
-    const sending = button(texts.sendHint, send, "tool framed", texts.send);
-    return h("div", { class: "voice-command" }, h("div", { class: "voice-row" }, field, sending), this.textNote);
+    const sendButton = button(texts.sendHint, send, "tool framed", texts.send);
+    return h("div", { class: "voice-command" }, h("div", { class: "voice-row" }, field, sendButton), this.textNote);
   }
 
   private show(): void {
     const { voice } = this;
     const { speaker, serverState, microphone } = voice;
-    const problem = obstacle(voice);
-    const text = problem ?? activity(voice);
+    const problem = describeObstacle(voice);
+    const text = problem ?? describeActivity(voice);
     if (this.state.textContent !== text) this.state.textContent = text;
     this.state.classList.toggle("wrong", problem !== null);
     this.meter.show(microphone.isOpen ? microphone.peak : null);
     this.openMicrophoneBox.box.checked = voice.isPanelOpen;
-    this.proposal.hidden = !proposesEnrolling(voice, this.enrolled);
+    this.enrollProposal.hidden = !proposesEnrolling(voice, this.words);
     this.textNote.hidden = serverState?.text_listeners !== 0;
     this.speakBox.box.checked = speaker.settings.on;
     this.showVoices();
@@ -112,26 +112,26 @@ export class VoicePanel implements Panel {
   private showVoices(): void {
     const { speaker } = this.voice;
     const { voices, settings } = speaker;
-    if (this.voices.options.length !== voices.length + 1) {
-      this.voices.replaceChildren(
+    if (this.voiceSelect.options.length !== voices.length + 1) {
+      this.voiceSelect.replaceChildren(
         new Option(strings.voice.anyVoice, ""),
         ...voices.map(({ name, lang, voiceURI }) => new Option(`${name} (${lang})`, voiceURI)),
       );
     }
-    this.voices.value = voices.some(({ voiceURI }) => voiceURI === settings.voice) ? settings.voice : "";
-    this.voices.hidden = voices.length === 0;
-    this.noVoices.hidden = !settings.on || voices.length > 0;
+    this.voiceSelect.value = voices.some(({ voiceURI }) => voiceURI === settings.voice) ? settings.voice : "";
+    this.voiceSelect.hidden = voices.length === 0;
+    this.noVoicesNote.hidden = !settings.on || voices.length > 0;
   }
 
   private showHistory(): void {
     const { history, partial } = this.voice;
     const texts = strings.voice;
-    const row = (part: ConversationPart, text: string): HTMLElement =>
+    const createRow = (part: ConversationPart, text: string): HTMLElement =>
       h("div", { class: `voice-said ${part}` }, h("span", { title: texts.parts[part] }, icon(ICONS[part])), h("span", { class: "voice-part" }, texts.parts[part]), h("span", {}, text));
-    const rows = history.map(({ part, text }) => row(part, text));
-    if (partial !== "") rows.push(row("partial", partial));
-    const atEnd = this.history.scrollTop + this.history.clientHeight >= this.history.scrollHeight - 4;
+    const rows = history.map(({ part, text }) => createRow(part, text));
+    if (partial !== "") rows.push(createRow("partial", partial));
+    const isAtEnd = this.history.scrollTop + this.history.clientHeight >= this.history.scrollHeight - 4;
     this.history.replaceChildren(...(rows.length > 0 ? rows : [h("p", { class: "note" }, texts.nothing)]));
-    if (atEnd) this.history.scrollTop = this.history.scrollHeight;
+    if (isAtEnd) this.history.scrollTop = this.history.scrollHeight;
   }
 }

@@ -2,7 +2,7 @@ import type { VoiceState } from "../../state/voice/voice";
 import { strings } from "../../strings";
 
 /** Returns the obstacle to talking and its remedy; null if there is none. */
-export function obstacle(voice: VoiceState): string | null {
+export function describeObstacle(voice: VoiceState): string | null {
   const texts = strings.voice;
   const { microphone, serverState, isHeld, isPanelOpen } = voice;
   if (microphone.problem === "insecure") return texts.insecure(location.hostname, location.port || "80");
@@ -17,7 +17,7 @@ export function obstacle(voice: VoiceState): string | null {
 }
 
 /** Returns the state of the microphone in words. */
-export function activity(voice: VoiceState): string {
+export function describeActivity(voice: VoiceState): string {
   const texts = strings.voice;
   if (voice.microphone.isOpening) return texts.opening;
   if (voice.isHeld) return texts.listening;
