@@ -178,6 +178,10 @@ def test_world_changes_are_reported(repository, compare, old, new, expected, is_
     assert bool(breaking(result)) is is_breaking
 
 
+REMOVED_CONTROLLER = (
+    "arm_controller removed: joints [upper, lower], frame_id base_link, odom_topic odom, use_stamped true, "
+    "plugins [a, b, c, d, e]"
+)
 PARAMETERS = """controller_manager:
   ros__parameters:
     update_rate: 100
@@ -208,8 +212,7 @@ arm_controller:
         ("    arm_controller:\n      type: a/B\n", "",
          "controller_manager.ros__parameters.arm_controller.type a/B removed", True),
         (PARAMETERS[PARAMETERS.index("arm_controller:\n  ros"):], "",
-         "arm_controller removed: joints [upper, lower], frame_id base_link, odom_topic odom, use_stamped true, plugins "
-         "[a, b, c, d, e]", True),
+         REMOVED_CONTROLLER, True),
         ("    odom_topic: odom\n", "", "arm_controller.ros__parameters.odom_topic odom removed", False),
         ("    update_rate: 100\n", "", "controller_manager.ros__parameters.update_rate 100 removed", False),
     ],
