@@ -302,7 +302,7 @@ def _added_text(rule: KindRule, version: Version, path: str) -> Phrase:
 def _lone_contents(
     version: Version, kind: SubjectKind, path: str, drawings: Drawings
 ) -> tuple[list[Change], list[ViewImages]]:
-    """Return the line about the robot of a description that only one version has, and images of what it shows."""
+    """Return the line about the robot of a description that only one version has, and images of this file."""
     if kind in (SubjectKind.WORLD, SubjectKind.MESH):
         is_mesh = kind is SubjectKind.MESH
         return [], lone_scene_images(version, path, is_mesh=is_mesh) if drawings.images else []

@@ -12,7 +12,7 @@ import { formatAge, formatClock, computeDensities, formatExtent, formatMoment, f
 /** The share of its memory limit from which the history counts as full. */
 const FULL_SHARE = 0.9;
 
-/** Returns the tooltip of the history; if its memory is full, the tooltip says how to extend it. */
+/** Returns the tooltip of the history, with the way to extend it if its memory is full. */
 function formatExtentTip(extent: HistoryExtent): string {
   const text = strings.timeline.kept(formatExtent(extent), (extent.most / 1e6).toFixed(0));
   return extent.size < FULL_SHARE * extent.most ? text : `${text}\n${strings.timeline.more}`;

@@ -426,7 +426,7 @@ class LaunchCheck:
     def _errors(self) -> list[str]:
         """Return the lines of the launch's output that report errors.
 
-        The last line of a process that has died stands for its traceback.
+        Of the traceback of a process that has died, only the last line is returned.
         """
         errors: list[str] = []
         last_lines: dict[str, str] = {}
