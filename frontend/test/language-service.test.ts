@@ -3,6 +3,8 @@ import type { Connection } from "../src/connection/connection";
 import type { Documents } from "../src/panels/source-editor/documents";
 import { LanguageService } from "../src/panels/source-editor/language-service";
 
+vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
+
 beforeEach(() => {
   vi.useFakeTimers();
 });
