@@ -37,6 +37,11 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
     )
 
 
+def shortened(text: str, limit: int) -> str:
+    """Return a text, or the beginning of one that is longer than a number of characters."""
+    return text if len(text) <= limit else f"{text[:limit]}..."
+
+
 def excerpts(old: str, new: str) -> tuple[str, str]:
     """Return two values, or the parts in which they differ if they are long."""
     if max(len(old), len(new)) <= _LONG_VALUE:

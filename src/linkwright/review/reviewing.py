@@ -19,7 +19,7 @@ from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind, ViewImages, nesting_problem
 from linkwright.review.drawings.images import lone_images
-from linkwright.review.drawings.scene_images import lone_scene_images
+from linkwright.review.drawings.scene_images import lone_world_images
 from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.mesh_groups import grouped_meshes
@@ -303,9 +303,8 @@ def _lone_contents(
     version: Version, kind: SubjectKind, path: str, drawings: Drawings
 ) -> tuple[list[Change], list[ViewImages]]:
     """Return the line about the robot of a description that only one version has, and images of this file."""
-    if kind in (SubjectKind.WORLD, SubjectKind.MESH):
-        is_mesh = kind is SubjectKind.MESH
-        return [], lone_scene_images(version, path, is_mesh=is_mesh) if drawings.images else []
+    if kind is SubjectKind.WORLD:
+        return [], lone_world_images(version, path) if drawings.images else []
     found = read_lone_robot(version, path) if kind is SubjectKind.DESCRIPTION else None
     if found is None:
         return [], []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -52,15 +51,9 @@ def mesh_images(pair: FilePair) -> list[ViewImages]:
     return _images(old, new, outline=False)
 
 
-def lone_scene_images(version: Version, path: str, *, is_mesh: bool) -> list[ViewImages]:
-    """Return images from four sides of a world, model or mesh that only one version has, or none if it is not drawn."""
-    file = version.file(path)
-    scene: Scene | None = None
-    if is_mesh:
-        with suppress(LinkwrightError):
-            scene = _mesh_scene(file)
-    else:
-        scene = _world_scene(version, file, SurfaceLibrary())
+def lone_world_images(version: Version, path: str) -> list[ViewImages]:
+    """Return images from four sides of a world or model that only one version has, or none if it cannot be drawn."""
+    scene = _world_scene(version, version.file(path), SurfaceLibrary())
     if scene is None or len(scene.mesh.faces) > _MAX_FACES:
         return []
     return images_of_scene(scene, is_old=version.is_old)

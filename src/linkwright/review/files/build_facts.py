@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
-from linkwright.review.list_changes import change_text
+from linkwright.review.list_changes import change_text, shortened
 from linkwright.review.versions import Version
 
 _MAX_RESTS = 3
@@ -254,9 +254,9 @@ def _compare_rest(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         if old_text and new_text:
             pair.add(change_text(name, old_text, new_text), None)
         elif new_text:
-            pair.add(phrase("{parameter} added: {items}", parameter=name, items=new_text[:_MAX_TEXT]), None)
+            pair.add(phrase("{parameter} added: {items}", parameter=name, items=shortened(new_text, _MAX_TEXT)), None)
         else:
-            pair.add(phrase("{parameter} removed: {items}", parameter=name, items=old_text[:_MAX_TEXT]), None)
+            pair.add(phrase("{parameter} removed: {items}", parameter=name, items=shortened(old_text, _MAX_TEXT)), None)
 
 
 def _lone_items(items: Sequence[tuple[str, str]], others: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:

@@ -15,6 +15,8 @@ from linkwright.review.versions import Version
 
 _MAX_BYTES = 100 << 20
 """Larger meshes are compared by their sizes in bytes only."""
+_MAX_CONTENT_BYTES = 10 << 20
+"""Larger meshes of one version are named without their contents: a commit can add hundreds."""
 _TOLERANCE = 1e-6
 
 
@@ -47,9 +49,12 @@ def compare_meshes(pair: FilePair) -> None:
         pair.add(phrase("contents changed, with the same triangles and size"), None)
 
 
-def mesh_contents(version: Version, path: str) -> Phrase:
-    """Return the number of triangles and the size of a mesh, in the units of the file."""
-    mesh = _read(version.file(path))
+def mesh_contents(version: Version, path: str) -> Phrase | None:
+    """Return the number of triangles and the size of a mesh in the units of the file, or None for a large file."""
+    file = version.file(path)
+    if file.stat().st_size > _MAX_CONTENT_BYTES:
+        return None
+    mesh = _read(file)
     low, high = mesh.bounds
     size = " x ".join(f"{b - a:.3g}" for a, b in zip(low, high, strict=True))
     return counted(

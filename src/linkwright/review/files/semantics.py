@@ -74,7 +74,7 @@ def disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
     Expressions of xacro in the names of links, such as prefixes, count as empty.
     """
     pairs: set[frozenset[str]] = set()
-    for file in (path for suffix in (".srdf", ".srdf.xacro") for path in folder.rglob(f"*{suffix}")):
+    for file in (path for path in folder.rglob("*.srdf*") if path.name.endswith((".srdf", ".srdf.xacro"))):
         with suppress(LinkwrightError, OSError):
             pairs |= {
                 frozenset(_EXPRESSION.sub("", element.attributes.get(name, "")) for name in ("link1", "link2"))

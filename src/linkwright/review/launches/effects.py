@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from difflib import SequenceMatcher
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
@@ -12,6 +11,7 @@ from linkwright.review.breaking import name_reason
 from linkwright.review.files.parameter_names import offers_frame, type_reason
 from linkwright.review.files.yaml_values import YamlType, YamlValue, value_of_text
 from linkwright.review.launches.conditions import condition_holds
+from linkwright.review.launches.matching import name_likeness
 from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
@@ -40,7 +40,6 @@ _NAME_ARGUMENT = re.compile(
     r"(^|_)(namespace|ns|robot_name|tf_prefix|frame_prefix|prefix|frame|frame_id|topic|controller|controller_name)$"
 )
 """The arguments whose values are, by their names, names that other programs use."""
-_SEPARATORS = re.compile(r"[\W_]+")
 _MIN_SIMILARITY_OF_NAMES = 0.75
 _TRUTH = ("true", "false")
 _CODE = re.compile(r"\w\(")
@@ -279,8 +278,7 @@ def _is_name_of_program(entry: Entry, name: str) -> bool:
     The program is an executable or the class of a component, such as ``map_server`` and ``nav2::MapServer``.
     """
     program = entry.name.rpartition("/")[2].rpartition("::")[2].removesuffix(".py")
-    word, other = (_SEPARATORS.sub("", text.lower()).removesuffix("node") for text in (name, program))
-    return SequenceMatcher(None, word, other, autojunk=False).ratio() >= _MIN_SIMILARITY_OF_NAMES
+    return name_likeness(name, program) >= _MIN_SIMILARITY_OF_NAMES
 
 
 def _resolved_name(text: str | None, outline: LaunchOutline) -> str:

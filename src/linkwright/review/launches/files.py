@@ -18,7 +18,7 @@ from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renames import renamed_names, with_new_names
 from linkwright.review.launches.settings import SettingChanges
 from linkwright.review.launches.titles import added_entry, joined_titles, title
-from linkwright.review.list_changes import excerpts
+from linkwright.review.list_changes import excerpts, shortened
 
 _MAX_SOURCE = 120
 """The number of characters of a statement that are shown."""
@@ -176,9 +176,9 @@ def _without_failures(pair: FilePair, gone: Sequence[CodePart], come: Sequence[C
     for part in come:
         condition = part.failing_condition
         if condition and condition not in known:
-            source = part.source if len(part.source) <= _MAX_SOURCE else f"{part.source[:_MAX_SOURCE]}..."
             reason = phrase("the launch file fails if `{condition}`", condition=condition)
-            pair.add(phrase("added: {code}", code=source), pair.location(part.span), reason)
+            text = phrase("added: {code}", code=shortened(part.source, _MAX_SOURCE))
+            pair.add(text, pair.location(part.span), reason)
             others = [other for other in others if other is not part and other.source != f"if {condition}: ..."]
     return others
 
@@ -186,7 +186,7 @@ def _without_failures(pair: FilePair, gone: Sequence[CodePart], come: Sequence[C
 def _code_text(gone: Sequence[CodePart], come: Sequence[CodePart]) -> Phrase:
     """Return the sentence about changed statements, with the first one."""
     parts = come or gone
-    code = parts[0].source if len(parts[0].source) <= _MAX_SOURCE else f"{parts[0].source[:_MAX_SOURCE]}..."
+    code = shortened(parts[0].source, _MAX_SOURCE)
     if gone and come:
         return phrase("other code changed, such as {code}", code=code)
     text = phrase("other code added: {code}", code=code) if come else phrase("other code removed: {code}", code=code)

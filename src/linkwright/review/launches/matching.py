@@ -65,14 +65,14 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
         return 3.0 + similarity
     if old_program == new_program:
         return 2.0 + similarity if similarity >= MIN_SIMILARITY or not (old.settings and new.settings) else 0.0
-    likeness = _likeness(old_program.rpartition("::")[2], new_program.rpartition("::")[2])
+    likeness = name_likeness(old_program.rpartition("::")[2], new_program.rpartition("::")[2])
     others = (old_package, new_package), (name or "", new.settings.get("name", ""))
-    is_renamed = all(a == b or _likeness(a, b) >= _MIN_SIMILARITY_OF_PROGRAMS for a, b in others)
+    is_renamed = all(a == b or name_likeness(a, b) >= _MIN_SIMILARITY_OF_PROGRAMS for a, b in others)
     is_like = likeness >= _MIN_SIMILARITY_OF_PROGRAMS and (similarity >= MIN_SIMILARITY or likeness == 1.0)
     return likeness + similarity if is_like and is_renamed else 0.0
 
 
-def _likeness(old: str, new: str) -> float:
+def name_likeness(old: str, new: str) -> float:
     """Return how much of two names is equal, from 0 to 1, without separators and the word ``node``."""
     old_word, new_word = (_SEPARATORS.sub("", text.lower()) for text in (old, new))
     return SequenceMatcher(None, old_word, new_word, autojunk=False).ratio()

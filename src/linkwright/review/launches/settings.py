@@ -12,7 +12,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import setting_reason, value_reason
 from linkwright.review.launches.outlines import CONDITION, PARAMETER, READING, REMAPPING, Entry, LaunchOutline
 from linkwright.review.launches.titles import joined_titles, title
-from linkwright.review.list_changes import change_text
+from linkwright.review.list_changes import change_text, shortened
 
 _MIN_GROUP = 3
 """The number of added or removed parameters or remappings of a node from which they are one change."""
@@ -142,8 +142,7 @@ def _group_text(group: Sequence[_Setting]) -> Phrase:
 
 
 def _item(setting: _Setting) -> str:
-    value = setting.new or setting.old or "''"
-    value = value if len(value) <= _MAX_VALUE else f"{value[:_MAX_VALUE]}..."
+    value = shortened(setting.new or setting.old or "''", _MAX_VALUE)
     if setting.name.startswith(REMAPPING):
         return f"{setting.name.removeprefix(REMAPPING)} -> {value}"
     return f"{setting.name.removeprefix(PARAMETER)} {value}"

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
 from linkwright.review.launches.outlines import CONDITION, READING, Entry
-from linkwright.review.list_changes import list_items
+from linkwright.review.list_changes import list_items, shortened
 
 _MAX_TITLES = 4
 _MAX_SETTINGS = 5
@@ -28,7 +28,7 @@ _SPAWNER = re.compile(r"controller_manager/(spawner|spawner\.py|unspawner|unspaw
 
 def title(entry: Entry) -> Phrase:
     """Return the kind and name of an action."""
-    name = entry.name if len(entry.name) <= _MAX_NAME else f"{entry.name[:_MAX_NAME]}..."
+    name = shortened(entry.name, _MAX_NAME)
     if entry.kind == "argument":
         return phrase("argument '{name}'", name=name)
     if entry.kind == "variable":
@@ -101,9 +101,9 @@ def added_entry(entry: Entry) -> Phrase:
     """Return that an action was added, with its value if it has only one, or with its settings."""
     value = entry.settings.get("to") or entry.settings.get("value") or entry.settings.get("appended value")
     if entry.kind in ("remapping", "parameter", "environment", "variable") and value:
-        return phrase("{entry} added: {new}", entry=title(entry), new=value[:_MAX_NAME])
+        return phrase("{entry} added: {new}", entry=title(entry), new=shortened(value, _MAX_NAME))
     if entry.kind == "argument" and "default" in entry.settings:
-        default = entry.settings["default"][:_MAX_NAME] or "''"
+        default = shortened(entry.settings["default"], _MAX_NAME) or "''"
         return phrase("{entry} added: default {new}", entry=title(entry), new=default)
     if entry.kind not in ("node", "include", "process", "action") or not entry.settings:
         return phrase("{entry} added", entry=title(entry))
@@ -113,5 +113,4 @@ def added_entry(entry: Entry) -> Phrase:
 
 
 def _setting_text(name: str, value: str) -> str:
-    text = value if name == CONDITION else f"{name} {value}"
-    return text if len(text) <= _MAX_SETTING else f"{text[:_MAX_SETTING]}..."
+    return shortened(value if name == CONDITION else f"{name} {value}", _MAX_SETTING)
