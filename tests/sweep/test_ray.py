@@ -4,6 +4,7 @@ import os
 import socket
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import pytest
 
@@ -71,3 +72,13 @@ def test_missing_ray_is_reported(tmp_path, monkeypatch):
     with pytest.raises(LinkwrightError) as raised:
         run_on_ray(write(tmp_path), [], "auto", ignore)
     assert raised.value.diagnostics[0].code == "SWEEP113"
+
+
+def test_ray_that_does_not_start_is_an_error(tmp_path, monkeypatch):
+    def init(**_):
+        raise Exception("The current node timed out during startup.")  # noqa: TRY002 - as Ray does
+
+    monkeypatch.setitem(sys.modules, "ray", SimpleNamespace(init=init))
+    with pytest.raises(LinkwrightError, match="Ray does not start on this computer: The current node") as raised:
+        run_on_ray(write(tmp_path), [], "local", ignore)
+    assert raised.value.diagnostics[0].code == "SWEEP114"

@@ -19,6 +19,9 @@ from linkwright.sweep.workers import MAX_ATTEMPTS
 _TASKS_PER_PROCESSOR = 2
 """The number of tasks that are submitted ahead for each processor of the cluster."""
 
+_LOCAL = "local"
+"""The address for which Ray starts a cluster on this computer."""
+
 _TIMEOUT_SECONDS = 10.0
 """The timeout of a connection to the cluster, in seconds."""
 
@@ -96,7 +99,8 @@ def connect_to_ray(address: str, folder: Path | None = None) -> Iterator[RayClus
         folder: a folder whose files are copied to the working directory of Ray's worker processes.
 
     Raises:
-        LinkwrightError: SWEEP113, Ray is not installed; SWEEP114, there is no cluster at the address.
+        LinkwrightError: SWEEP113, Ray is not installed; SWEEP114, there is no cluster at the address, or Ray does not
+            start on this computer.
     """
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # disable usage statistics, which Ray sends without asking
     try:
@@ -111,10 +115,14 @@ def connect_to_ray(address: str, folder: Path | None = None) -> Iterator[RayClus
             log_to_driver=False,
             logging_level=logging.ERROR,
         )
-    except (ConnectionError, ValueError, RuntimeError, OSError) as error:
+    except Exception as error:  # noqa: BLE001 - Ray raises plain exceptions if its processes do not start
         reason = foreign(" ".join(str(error).split()))
-        message = phrase("there is no Ray cluster at '{address}': {reason}", address=address, reason=reason)
-        hint = phrase("start a cluster with `ray start --head`, and use the address 'auto' on that machine")
+        if address == _LOCAL:
+            message = phrase("Ray does not start on this computer: {reason}", reason=reason)
+            hint = phrase("try again when the computer is less busy, or omit `--ray`")
+        else:
+            message = phrase("there is no Ray cluster at '{address}': {reason}", address=address, reason=reason)
+            hint = phrase("start a cluster with `ray start --head`, and use the address 'auto' on that machine")
         raise LinkwrightError(Diagnostic("SWEEP114", message, hint=hint)) from None
     try:
         yield RayCluster(ray)
