@@ -223,8 +223,11 @@ def alike_text(section: Section) -> Phrase | None:
 
 def summary(review: Review) -> Phrase:
     """Return the number of changes and findings in one line."""
-    breaking = len(breaking_changes(review))
-    total = sum(len(section.changes) for section in sections_of(review))
+    breaking = total = 0
+    for section in sections_of(review):
+        count = 1 + len(section.alike)
+        total += count * len(section.changes)
+        breaking += count * sum(change.effect is Effect.BREAKING for change in section.changes)
     return phrase(
         "{breaking}, {changes}, {findings}, {fixed}",
         breaking=counted("{count} breaking change", "{count} breaking changes", breaking),
