@@ -66,8 +66,16 @@ def _contents(section: Section) -> Hashable:
     subject = section.subject
     if section.repeated or subject.problems or subject.images or subject.paths or subject.scene:
         return subject.path
+    if _has_contents(section):
+        return subject.path
     figures = ((str(figure.name), figure.old, figure.new) for figure in subject.figures)
     return subject.kind, *(_text_key(change) for change in section.changes), *figures
+
+
+def _has_contents(section: Section) -> bool:
+    """Return whether a section summarizes a file that only one version has; other files may differ in the rest."""
+    is_lone = None in (section.subject.old_path, section.subject.new_path)
+    return is_lone and (len(section.changes) > 1 or any("items" in each.sentence.arguments for each in section.changes))
 
 
 def _text_key(change: Change) -> Hashable:

@@ -18,7 +18,7 @@ from linkwright.kinematics import KinematicTree
 from linkwright.review.changes import Figure
 from linkwright.review.quantities import figure_of
 from linkwright.review.frames import matrix
-from linkwright.review.robots.reach import Chain, reaches
+from linkwright.review.robots.reach import Chain, have_equal_distances, reaches
 from linkwright.urdf import Collision, Mesh, Robot, Visual
 from linkwright.xmltree import Element
 
@@ -42,6 +42,8 @@ def figures_of(old: RobotMeasures, new: RobotMeasures) -> Iterator[Figure]:
     if common:
         samples = old.sampled_positions(_REACH_SAMPLES), new.sampled_positions(_REACH_SAMPLES)
         for link in common:
+            if have_equal_distances(old_chains[link], new_chains[link], samples[0]):
+                continue
             reach = reaches(old_chains[link], new_chains[link], *samples)
             yield from figure_of(phrase("reach of '{link}'", link=link), "m", *reach)
 
