@@ -89,6 +89,18 @@ def included_robots(folder: Path) -> list[Path]:
     return [path for path in files if path not in entries and _describes_robot(path)]
 
 
+def is_plain_robot(path: Path) -> bool:
+    """Return whether a URDF file describes a robot with links without xacro, so that programs can read it as it is."""
+    if path.suffix != _URDF or not path.is_file():
+        return False
+    try:
+        root = read_document(str(path)).root
+    except LinkwrightError:
+        return False
+    tags = {element.tag for element in root.walk()}
+    return root.tag == "robot" and "name" in root.attributes and "link" in tags and not any(":" in tag for tag in tags)
+
+
 def find_xml_files(paths: Iterable[Path]) -> list[Path]:
     """Return the XML files of robot packages among files and folders, without duplicates.
 

@@ -26,7 +26,7 @@ def without_folder(value: _Value, folder: Path) -> _Value:
         create, arguments = cast("tuple[Callable[..., _Value], tuple[object, ...]]", value.__reduce__())
         return create(*(without_folder(argument, folder) for argument in arguments))
     if isinstance(value, str):
-        text = value.replace(f"{folder}/", "").replace(str(folder), ".")
+        text = value.replace(f"file://{folder}/", "").replace(f"{folder}/", "").replace(str(folder), ".")
         return cast(_Value, text.replace(f"{STAND_IN_FOLDER}/", "package://"))
     if isinstance(value, tuple):
         return cast(_Value, tuple(without_folder(item, folder) for item in value))

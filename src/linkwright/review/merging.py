@@ -13,6 +13,9 @@ _PART = re.compile(r"(?P<part>(?:joint|gpio|sensor) \S+) (?P<rest>.+)")
 """A property of hardware of ros2_control below one of its joints, GPIOs or sensors."""
 _PARAMETER = re.compile(r"(?P<parent>(?:.* )?)(?P<parameter>param \S+)")
 """A parameter of hardware of ros2_control, or of one of its joints, as a whole."""
+_TRANSMISSION = "transmission "
+_PART_OF_TRANSMISSION = re.compile(r"(joint|actuator) \S+")
+"""A joint or motor of a transmission, whose name is another one in each transmission."""
 _TOKEN = re.compile(r"[^\W_]+|[\W_]")
 """A word or number of a name, or a character between two of them."""
 _NO_NAME = re.compile(r"None|[\d\s.,;:+\-e<>()]*", re.ASCII)
@@ -50,6 +53,8 @@ def _content(change: Change) -> Hashable:
     if old_name is not None:
         return effect, template, subject, name_edit(old_name, change.name)
     property_name = property_name.replace(own_name, _OWN_NAME) if len(own_name) > 1 else property_name
+    if change.name.startswith(_TRANSMISSION):
+        property_name = _PART_OF_TRANSMISSION.sub(rf"\1 {_OWN_NAME}", property_name)
     contents = str(change.sentence.arguments.get("contents", "")).replace(own_name, _OWN_NAME)
     return effect, template, subject, property_name, name_edit(old, new), contents
 

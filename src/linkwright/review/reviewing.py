@@ -14,7 +14,7 @@ from typing import Any
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted, did_you_mean, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.lint.affected import TextFiles
-from linkwright.lint.targets import Targets, find_targets, included_robots
+from linkwright.lint.targets import Targets, find_targets, included_robots, is_plain_robot
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind, ViewImages, nesting_problem
@@ -91,7 +91,9 @@ class _Reviewer:
         self._new_paths = {
             file.old_path: file.new_path for file in self._changed_files if file.old_path and file.new_path
         }
-        self._targets = {version.is_old: _targets(version) for version in (versions.old, versions.new)}
+        self._targets = {
+            version.is_old: _targets(version) | self._plain_robots(version) for version in (versions.old, versions.new)
+        }
 
     def run(self, workers: int) -> Review:
         pairs = list(self._pairs())
@@ -143,6 +145,11 @@ class _Reviewer:
 
     def _is_in_scope(self, path: str) -> bool:
         return not self._folders or any(PurePosixPath(path).is_relative_to(folder) for folder in self._folders)
+
+    def _plain_robots(self, version: Version) -> set[str]:
+        """Return the changed URDF files that programs can read as they are, although a xacro file includes them."""
+        paths = (file.old_path if version.is_old else file.new_path for file in self._changed_files)
+        return {path for path in paths if path and is_plain_robot(version.file(path))}
 
     # --- which files ------------------------------------------------------------------------------------------------
 

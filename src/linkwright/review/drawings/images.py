@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.descriptions.comparison import Comparison
 from linkwright.descriptions.pairs import Model, Pair
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.mesh_content import content_key
 from linkwright.geometry.shapes import Placement
 from linkwright.images.png import png
 from linkwright.picture import OUTLINE_COLOR, VIEWS, Scene, SurfaceLibrary, camera_for, render, robot_scene
 from linkwright.picture.link_frames import exact_placement
 from linkwright.review.changes import ViewImages
 from linkwright.review.frames import SharedFrames
-from linkwright.urdf import Robot
+from linkwright.urdf import Mesh, Robot
 
 Array = NDArray[np.float64]
 
@@ -31,7 +33,7 @@ def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison, fr
 
     All joints are at position 0, or at the middle of limits that exclude 0. Both images of a view have the same camera.
     """
-    changed = {*_other_surfaces(comparison), *_moved(old, new, comparison, frames)}
+    changed = {*_other_surfaces(models, old, new, comparison), *_moved(old, new, comparison, frames)}
     old_links = _drawn(old, {*set(old.links) - set(comparison.links), *(name for name, _ in changed)})
     new_links = _drawn(new, {*set(new.links) - set(comparison.links.values()), *(name for _, name in changed)})
     if not old_links and not new_links:
@@ -81,13 +83,32 @@ def _drawn(robot: Robot, links: Iterable[str]) -> set[str]:
     return {name for name in links if name in robot.links and robot.links[name].visuals}
 
 
-def _other_surfaces(comparison: Comparison) -> Iterator[tuple[str, str]]:
+def _other_surfaces(models: Pair, old: Robot, new: Robot, comparison: Comparison) -> Iterator[tuple[str, str]]:
     """Yield the old and new names of links with other shapes, colors or textures."""
     old_names = {new_name: old_name for old_name, new_name in comparison.links.items()}
     for difference in comparison.differences:
         is_visual = difference.subject == "link" and difference.property.startswith("visual")
-        if is_visual and not difference.property.endswith(_PLACES) and difference.name in old_names:
-            yield old_names[difference.name], difference.name
+        if not is_visual or difference.property.endswith(_PLACES) or difference.name not in old_names:
+            continue
+        names = old_names[difference.name], difference.name
+        if not difference.property.endswith("geometry") or _shapes(models.old, old, names[0]) != _shapes(
+            models.new, new, names[1]
+        ):
+            yield names
+
+
+def _shapes(model: Model, robot: Robot, link: str) -> list[Hashable]:
+    """Return keys for the shapes of a link's visuals, which are equal for equal meshes under different paths."""
+    geometries = (visual.geometry for visual in robot.links[link].visuals)
+    return [_mesh_key(model, shape) if isinstance(shape, Mesh) else repr(shape) for shape in geometries]
+
+
+def _mesh_key(model: Model, mesh: Mesh) -> Hashable:
+    try:
+        key = content_key(model.resolve(mesh.filename))
+    except LinkwrightError:
+        key = None
+    return (key or mesh.filename), mesh.scale
 
 
 def _moved(old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames) -> Iterator[tuple[str, str]]:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable, Iterable, Iterator, Sequence, Sized
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
-from linkwright.descriptions.comparison import Comparison, Difference, sentence
+from linkwright.descriptions.comparison import Comparison, Difference, DifferenceLocation, sentence
 from linkwright.diagnostics import Phrase, phrase, term
 from linkwright.geometry.single import Pose, pose_quaternion
 from linkwright.review.breaking import breaking_reason, frame_reason
+from linkwright.review.robots.added_links import AddedLinks
 from linkwright.review.robots.cases import Case, cases, switched_cases
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.robots.collisions import collision_changes, may_change_collisions
@@ -25,6 +27,10 @@ from linkwright.review.parts.expanded import expanded_places
 from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
 from linkwright.review.drawings.scenes import robot_scene
 from linkwright.urdf import Robot
+from linkwright.xmltree.reader import read_bytes
+
+_EXPRESSION = b"$(find "
+_DETAILS_OF_INERTIAL = ("origin rpy 0 0 0", "inertia ixy", "inertia ixz", "inertia iyz")
 
 
 def compare_descriptions(pair: FilePair) -> None:
@@ -112,14 +118,21 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case:
     if has_other_root:
         yield _root_change(old, new, frames)
     added = added_topics(comparison.differences)
+    added_links = AddedLinks(comparison.differences, new)
     for difference in with_joined_values(comparison.differences):
+        if added_links.is_in_line_of_link(difference):
+            continue
         if partial is not None and not partial.is_certain(difference):
             continue
         if has_other_root and (difference.subject, difference.kind, difference.name) == ("link", "removed", old.root):
             continue
-        reason = breaking_reason(difference, old, new) or missing_topics_reason(difference, added)
+        reason = (
+            breaking_reason(difference, old, new)
+            or missing_topics_reason(difference, added)
+            or _expression_reason(difference)
+        )
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
-        text = sentence_of_difference(difference)
+        text = added_links.sentence(difference) or sentence_of_difference(difference)
         if difference.subject == "link" and difference.kind == "renamed":
             is_placed = partial is None or not partial.has_stand_ins
             text = _with_motion(text, frames.distance(difference.old or "") if is_placed else None)
@@ -136,6 +149,27 @@ def _root_change(old: Robot, new: Robot, frames: SharedFrames) -> Change:
         reason = phrase("programs that use '{old}' as the base frame of the robot get other transforms", old=old.root)
         return Change(text, Effect.BREAKING, reason)
     return Change(text, Effect.BREAKING, frame_reason(old.root))
+
+
+def _expression_reason(difference: Difference) -> Phrase | None:
+    """Return why it is breaking that a URDF file names a file by an expression, which only xacro evaluates."""
+    places = difference.old_place, difference.new_place
+    if difference.kind != "changed" or not difference.old or not difference.new or None in places:
+        return None
+    if "mesh" not in difference.new and "texture" not in difference.property:
+        return None
+    if [_is_expression_in_urdf(place) for place in places if place is not None] != [False, True]:
+        return None
+    return phrase("programs that read the file without xacro do not find the file that it names")
+
+
+def _is_expression_in_urdf(place: DifferenceLocation) -> bool:
+    """Return whether the value at a place in a file ``.urdf`` is written with ``$(find PACKAGE)``."""
+    path = Path(place.span.file)
+    if path.suffix != ".urdf":
+        return False
+    lines = read_bytes(path).splitlines()
+    return place.span.line <= len(lines) and _EXPRESSION in lines[place.span.line - 1]
 
 
 def _with_motion(text: Phrase, distance: float | None) -> Phrase:
@@ -205,8 +239,16 @@ def _presence(difference: Difference) -> Phrase:
         subject=subject,
         name=name,
         property=difference.property,
-        new=" ".join(filter(None, (difference.new, difference.unit))),
+        new=" ".join(filter(None, (_without_details(difference), difference.unit))),
     )
+
+
+def _without_details(difference: Difference) -> str:
+    """Return the values of an added part; of an inertial, those without products of inertia and axes of the link."""
+    parts = (difference.new or "").split(", ")
+    if difference.property == "inertial":
+        parts = [part for part in parts if not part.startswith(_DETAILS_OF_INERTIAL)]
+    return ", ".join(parts)
 
 
 def _angle_between(old: Sequence[float], new: Sequence[float]) -> float:

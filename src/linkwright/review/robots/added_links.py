@@ -1,0 +1,78 @@
+"""The lines about added links, with the joints that attach them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from linkwright.descriptions.comparison import Difference
+from linkwright.diagnostics import Phrase, joined, phrase, term
+from linkwright.urdf import Box, Cylinder, Geometry, Link, Mesh, Robot, Sphere
+
+_MAX_LINKS = 4
+"""The number of added links up to which each has a line of its own."""
+
+
+class AddedLinks:
+    """The links and joints that a robot has gained.
+
+    Args:
+        differences: the differences of the robots.
+        new: the new robot.
+    """
+
+    def __init__(self, differences: Sequence[Difference], new: Robot) -> None:
+        added = {(each.subject, each.name) for each in differences if each.kind == "added"}
+        links = [name for subject, name in added if subject == "link"]
+        self._links = {} if len(links) > _MAX_LINKS else {name: new.links[name] for name in links if name in new.links}
+        self._joints = {
+            joint.child: joint
+            for joint in new.joints.values()
+            if joint.child in self._links and ("joint", joint.name) in added
+        }
+
+    def is_in_line_of_link(self, difference: Difference) -> bool:
+        """Return whether the line about a link says that a joint was added."""
+        is_joint = (difference.subject, difference.kind) == ("joint", "added")
+        return is_joint and any(joint.name == difference.name for joint in self._joints.values())
+
+    def sentence(self, difference: Difference) -> Phrase | None:
+        """Return the line about an added link with its contents, or None for other differences."""
+        link = self._links.get(difference.name)
+        if link is None or (difference.subject, difference.kind) != ("link", "added"):
+            return None
+        parts = [*self._place(link.name), *_contents(link)]
+        text = phrase("{subject} '{name}' added", subject=term("link"), name=link.name)
+        return phrase("{change}: {contents}", change=text, contents=joined(parts)) if parts else text
+
+    def _place(self, name: str) -> Iterator[Phrase]:
+        joint = self._joints.get(name)
+        if joint is not None:
+            yield phrase(
+                "{type} joint '{joint}' at '{parent}', xyz {xyz} m",
+                type=joint.type,
+                joint=joint.name,
+                parent=joint.parent,
+                xyz=" ".join(f"{number:.6g}" for number in joint.origin.xyz),
+            )
+
+
+def _contents(link: Link) -> Iterator[Phrase]:
+    """Yield the shapes and the mass of a link."""
+    for shape in dict.fromkeys(_shape_text(visual.geometry) for visual in link.visuals):
+        yield phrase("visual {shape}", shape=shape)
+    for shape in dict.fromkeys(_shape_text(collision.geometry) for collision in link.collisions):
+        yield phrase("collision {shape}", shape=shape)
+    if link.inertial is not None and link.inertial.has_mass:
+        yield phrase("mass {mass:.4g} kg", mass=link.inertial.properties.mass)
+
+
+def _shape_text(geometry: Geometry) -> str:
+    if isinstance(geometry, Mesh):
+        return f"mesh {geometry.filename}"
+    if isinstance(geometry, Box):
+        sizes: tuple[float, ...] = geometry.size
+    elif isinstance(geometry, Sphere):
+        sizes = (geometry.radius,)
+    else:
+        sizes = geometry.radius, geometry.length
+    return " ".join([type(geometry).__name__.lower(), *(f"{size:.6g}" for size in sizes)])

@@ -1,0 +1,120 @@
+"""What a review says of plain URDF: expressions for xacro, added links, and meshes under other paths."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.review import open_versions, review
+from tests.review.conftest import breaking, sentences, subject
+from tests.review.test_scene_images import stl
+
+PATH = "w/urdf/arm.urdf"
+PACKAGE = {"w/package.xml": "<package format='3'><name>w</name><version>1.0.0</version></package>"}
+ARM = """<robot name="arm">
+<link name="base">
+<visual><geometry><mesh filename="package://w/meshes/base.stl"/></geometry></visual>
+</link>
+<transmission name="a_trans"><type>t</type>
+<joint name="a"><hardwareInterface>Effort</hardwareInterface></joint>
+</transmission>
+<transmission name="b_trans"><type>t</type>
+<joint name="b"><hardwareInterface>Effort</hardwareInterface></joint>
+</transmission>
+</robot>
+"""
+WRAPPER = """<robot name="cell" xmlns:xacro="http://ros.org/wiki/xacro">
+<xacro:include filename="$(find w)/urdf/arm.urdf"/><link name="floor"/>
+<joint name="f" type="fixed"><parent link="floor"/><child link="base"/></joint></robot>
+"""
+FILES = {**PACKAGE, PATH: ARM, "w/meshes/base.stl": stl(1.0)}
+REASON = "programs that read the file without xacro do not find the file that it names"
+
+
+def reviewed(repository, replacement, *, files=FILES, with_images=False):
+    old, new = replacement
+    assert old in ARM
+    repository.commit(files)
+    repository.write({PATH: ARM.replace(old, new)})
+    versions = open_versions(repository.root, "HEAD")
+    try:
+        return review(versions, with_images=with_images)
+    finally:
+        versions.close()
+
+
+@pytest.mark.parametrize("files", [FILES, {**FILES, "w/urdf/cell.urdf.xacro": WRAPPER}])
+def test_expression_in_plain_urdf_is_breaking(repository, files):
+    result = reviewed(repository, ("package://w", "$(find w)"), files=files)
+    assert [str(change.reason) for change in subject(result, PATH).changes] == [REASON]
+
+
+def test_expression_in_xacro_is_not_breaking(repository, compare):
+    text = WRAPPER.replace('name="floor"/>', 'name="floor">').replace(
+        "<joint", ('<visual><geometry><mesh filename="package://w/meshes/base.stl"/></geometry></visual></link><joint')
+    )
+    path = "w/urdf/cell.urdf.xacro"
+    repository.commit({**FILES, path: text})
+    repository.write({path: text.replace("package://w", "file://$(find w)")})
+    result = compare(repository)
+    assert breaking(result) == []
+    assert sentences(subject(result, path)) == [
+        "link 'floor': visual geometry mesh package://w/meshes/base.stl -> mesh w/meshes/base.stl"
+    ]
+
+
+def test_robot_that_xacro_includes_is_compared_on_its_own(repository):
+    link = '<link name="tip"/><joint name="t" type="fixed"><parent link="base"/><child link="tip"/></joint>'
+    files = {**FILES, "w/urdf/cell.urdf.xacro": WRAPPER}
+    result = reviewed(repository, ("</robot>", f"{link}</robot>"), files=files)
+    assert [each.path for each in result.subjects] == [PATH, "w/urdf/cell.urdf.xacro"]
+
+
+LINK = (
+    '<link name="{0}"><visual><geometry><box size="0.1 0.2 0.3"/></geometry></visual>'
+    '<collision><geometry><cylinder radius="0.1" length="1"/></geometry></collision>'
+    '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    '<joint name="{0}_joint" type="fixed"><parent link="base"/><child link="{0}"/><origin xyz="0 0 0.5"/></joint>'
+)
+
+
+def test_added_link_is_one_line_with_its_place(repository):
+    result = reviewed(repository, ("</robot>", f"{LINK.format('tip')}</robot>"))
+    (text,) = sentences(subject(result, PATH))
+    assert text == (
+        "link 'tip' added: fixed joint 'tip_joint' at 'base', xyz 0 0 0.5 m, "
+        "visual box 0.1 0.2 0.3, collision cylinder 0.1 1, mass 2 kg"
+    )
+
+
+def test_many_added_links_are_named_only(repository):
+    links = "".join(map(LINK.format, ("one", "two", "three", "four", "five")))
+    (links_change, joints_change) = subject(reviewed(repository, ("</robot>", f"{links}</robot>")), PATH).changes
+    assert (str(links_change.sentence), str(joints_change.sentence)) == (
+        "link 'one' added",
+        "joint 'one_joint' added",
+    )
+    assert len(links_change.other_names) == 4
+
+
+def test_added_inertial_is_shown_without_products(repository):
+    inertial = '<inertial><mass value="2"/><inertia ixx="1" iyy="2" izz="3" ixy="0.1" ixz="0" iyz="0"/></inertial>'
+    result = reviewed(repository, ("</link>", f"{inertial}</link>"))
+    (text,) = sentences(subject(result, PATH))
+    assert text.startswith("link 'base': inertial added: mass 2 kg, ")
+    assert text.endswith("inertia ixx 1 kg m2, inertia iyy 2 kg m2, inertia izz 3 kg m2")
+    assert "ixy" not in text
+
+
+def test_same_value_of_all_transmissions_is_one_line(repository):
+    (change,) = subject(reviewed(repository, (">Effort<", ">hardware/Effort<")), PATH).changes
+    assert str(change.sentence) == (
+        "extension 'transmission a_trans': joint a hardwareInterface Effort -> hardware/Effort"
+    )
+    assert change.other_names == ("transmission b_trans",)
+
+
+@pytest.mark.parametrize(("height", "count"), [(1.0, 0), (2.0, 4)])
+def test_equal_mesh_under_another_path_has_no_images(repository, height, count):
+    files = {**FILES, "w/meshes/other.stl": stl(height)}
+    result = reviewed(repository, ("base.stl", "other.stl"), files=files, with_images=True)
+    assert len(subject(result, PATH).images) == count
