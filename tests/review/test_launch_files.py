@@ -424,7 +424,10 @@ def test_added_launch_file_is_described_by_its_actions(repository, compare):
     repository.commit({"arm/launch/arm.launch.py": PYTHON})
     repository.write({"arm/launch/part.launch.py": PYTHON})
     (sentence,) = sentences(subject(compare(repository), "arm/launch/part.launch.py"))
-    assert sentence.startswith("launch file added: node 'lidar/driver', node 'lidar/filter', node 'arm/teleop'")
+    assert sentence.startswith(
+        "launch file added: node 'lidar/driver' (if $(var front), namespace front), node 'lidar/"
+    )
+    assert "node 'arm/teleop'" in sentence
 
 
 FAILING = """import os, sys

@@ -70,3 +70,35 @@ def test_changes_of_several_files_are_counted_in_each(repository: Repository, co
     result = compare(repository)
     assert len(sentences(subject(result, "arm/launch/a.launch"))) == 2
     assert str(summary(result)).startswith("3 breaking changes, 6 changes, ")
+
+
+ADDED = """<launch>
+  <arg name="robot"/>
+  <arg name="rate" default="10"/>
+  <arg name="name" default=""/>
+  <include file="$(find elsewhere)/launch/demo.launch"><arg name="pipeline" value="chomp"/></include>
+  <node pkg="arm" type="camera" name="camera"><remap from="image" to="/image"/><param name="fps" value="30"/></node>
+  <rosparam file="$(find arm)/config/a.yaml" if="$(arg rate)"/>
+</launch>
+"""
+
+
+def test_added_launch_file_is_shown_with_the_settings_of_its_actions(repository, compare):
+    repository.commit({"arm/launch/other.launch": "<launch/>"})
+    repository.write({"arm/launch/arm.launch": ADDED})
+    (text,) = sentences(subject(compare(repository), "arm/launch/arm.launch"))
+    assert text == (
+        "launch file added: node 'arm/camera' (name camera, remapping image /image, parameter fps 30), "
+        "include of '$(find elsewhere)/launch/demo.launch' (pipeline chomp), "
+        "parameters of '$(find arm)/config/a.yaml' (if $(arg rate)), "
+        "argument 'robot' (required), argument 'rate' (default 10), argument 'name' (default '')"
+    )
+
+
+def test_condition_of_an_added_parameter_file_is_shown(repository, compare):
+    line = next(line for line in ADDED.splitlines() if "rosparam" in line)
+    repository.commit({"arm/launch/arm.launch": ADDED.replace(line, "")})
+    repository.write({"arm/launch/arm.launch": ADDED})
+    assert sentences(subject(compare(repository), "arm/launch/arm.launch")) == [
+        "parameters of '$(find arm)/config/a.yaml' added: if $(arg rate)"
+    ]

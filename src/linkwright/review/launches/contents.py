@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from linkwright.diagnostics import Phrase, joined_first
+from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.review.launches.outlines import Entry
 from linkwright.review.launches.reading import read_outline
-from linkwright.review.launches.titles import title
+from linkwright.review.launches.titles import settings_text, title
 from linkwright.review.versions import Version
 
-_KINDS = ("node", "process", "include", "argument")
+_KINDS = ("node", "process", "include", "parameters", "parameter", "argument")
 _MAX_TITLES = 10
 
 
 def launch_contents(version: Version, path: str) -> Phrase | None:
-    """Return the nodes, processes, includes and arguments of a launch file, or None if there are none.
+    """Return the nodes, processes, includes, parameters and arguments of a launch file, or None if there are none.
 
     Args:
         version: the version that has the file.
@@ -23,5 +24,13 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
     """
     entries = read_outline(version.file(path), version.root).entries
     shown = sorted((entry for entry in entries if entry.kind in _KINDS), key=lambda entry: _KINDS.index(entry.kind))
-    titles = list(dict.fromkeys(map(title, shown)))
+    titles = list(dict.fromkeys(map(_with_settings, shown)))
     return joined_first(titles, _MAX_TITLES) if titles else None
+
+
+def _with_settings(entry: Entry) -> Phrase:
+    """Return the title of an action with its settings, such as the default of an argument."""
+    if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
+        return phrase("{entry} (required)", entry=title(entry))
+    items = settings_text(entry)
+    return title(entry) if items is None else phrase("{entry} ({items})", entry=title(entry), items=items)

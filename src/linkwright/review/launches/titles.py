@@ -13,6 +13,8 @@ _MAX_TITLES = 4
 _MAX_SETTINGS = 5
 """The number of settings that the line about an added action shows."""
 _MAX_SETTING = 80
+EMPTY = "''"
+"""An empty value as users write it."""
 _MAX_NAME = 160
 TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
 _CHILD = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")
@@ -103,14 +105,21 @@ def added_entry(entry: Entry) -> Phrase:
     if entry.kind in ("remapping", "parameter", "environment", "variable") and value:
         return phrase("{entry} added: {new}", entry=title(entry), new=shortened(value, _MAX_NAME))
     if entry.kind == "argument" and "default" in entry.settings:
-        default = shortened(entry.settings["default"], _MAX_NAME) or "''"
+        default = shortened(entry.settings["default"], _MAX_NAME) or EMPTY
         return phrase("{entry} added: default {new}", entry=title(entry), new=default)
-    if entry.kind not in ("node", "include", "process", "action") or not entry.settings:
+    kinds = ("node", "include", "process", "action", "parameters")
+    if entry.kind not in kinds or settings_text(entry) is None:
         return phrase("{entry} added", entry=title(entry))
-    names = sorted(entry.settings, key=lambda name: name != CONDITION)
-    items = joined_first([_setting_text(name, entry.settings[name]) for name in names], _MAX_SETTINGS)
-    return phrase("{entry} added: {items}", entry=title(entry), items=items)
+    return phrase("{entry} added: {items}", entry=title(entry), items=settings_text(entry))
+
+
+def settings_text(entry: Entry) -> Phrase | None:
+    """Return the settings of an action, its condition first, or None if it has none."""
+    names = sorted((name for name in entry.settings if name != "description"), key=lambda name: name != CONDITION)
+    if not names:
+        return None
+    return joined_first([_setting_text(name, entry.settings[name]) for name in names], _MAX_SETTINGS)
 
 
 def _setting_text(name: str, value: str) -> str:
-    return shortened(value if name == CONDITION else f"{name} {value}", _MAX_SETTING)
+    return shortened(value if name == CONDITION else f"{name} {value or EMPTY}", _MAX_SETTING)
