@@ -5,8 +5,11 @@ from __future__ import annotations
 import pytest
 
 from linkwright.geometry import meshes
+from linkwright.inertia import mesh_library
+from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.lint import affected
 from linkwright.lint.affected import TextFiles
+from linkwright.packages import PackageFinder
 from linkwright.review import open_versions, review
 from linkwright.review.robots import figures
 from linkwright.sdf.resources import ResourceFinder
@@ -117,3 +120,11 @@ def test_reach_is_searched_for_if_a_joint_changed(repository, monkeypatch, joint
     repository.write({"w/urdf/arm.urdf": text.replace(joint, joint.replace("1", "0.5"))})
     reviewed(repository)
     assert len(searches) == (joint == "lower='-1'")
+
+
+def test_mesh_with_two_paths_fills_the_cache_once(repository):
+    repository.write({"w/package.xml": PACKAGE, "w/a.stl": stl(6.25), "w/b.stl": stl(6.25)})
+    library = MeshLibrary(PackageFinder(start=[repository.root]), repository.root)
+    first, second = (library.read(repository.root / f"w/{name}.stl") for name in "ab")
+    assert first is second
+    assert list(mesh_library._CACHE.values.values()).count(first) == 1

@@ -6,7 +6,6 @@ import os
 import stat
 import sys
 from pathlib import Path
-from weakref import WeakValueDictionary
 
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.geometry.mesh_content import ContentKey, content_key
@@ -21,6 +20,7 @@ from linkwright.xmltree import Element
 if TYPE_CHECKING:
     from linkwright.geometry.meshes import TriangleMesh
 
+_FileKey = tuple[str, int, int]
 _CACHE_SIZE = 256 << 20
 """The maximum size in bytes of the meshes that are cached across descriptions."""
 _MAX_SMALL_FILE, _MAX_SMALL_FILES = 100_000, 500_000
@@ -131,10 +131,13 @@ def _mesh_bytes(_: object, mesh: TriangleMesh) -> int:
     return 2 * (mesh.vertices.nbytes + mesh.faces.nbytes)
 
 
-_CACHE: BoundedCache[tuple[str, int, int], TriangleMesh] = BoundedCache(_CACHE_SIZE, _mesh_bytes)
-"""The meshes of files, by the path, the time of the last change in ns, and the size in bytes."""
-_BY_CONTENT: WeakValueDictionary[ContentKey, TriangleMesh] = WeakValueDictionary()
-"""The cached meshes by the content of their files, which both versions of a repository have under other paths."""
+_CACHE: BoundedCache[_FileKey | ContentKey, TriangleMesh] = BoundedCache(_CACHE_SIZE, _mesh_bytes)
+"""The meshes of files by their content, which both versions of a repository have under other paths.
+
+Files that are too large for a key of their content have the key of the file.
+"""
+_CONTENT_KEYS: dict[_FileKey, _FileKey | ContentKey] = {}
+"""The keys in `_CACHE` of files, by the path, the time of the last change in ns, and the size in bytes."""
 
 
 def _read_cached(path: Path, real_path: str) -> TriangleMesh:
@@ -150,15 +153,14 @@ def _read_cached(path: Path, real_path: str) -> TriangleMesh:
         file_status = os.stat(real_path)  # noqa: PTH116 - a path that is already text
     except OSError:
         return read_mesh(path)  # This raises an error with the reason.
-    key = real_path, file_status.st_mtime_ns, file_status.st_size
+    file_key = real_path, file_status.st_mtime_ns, file_status.st_size
+    key = _CONTENT_KEYS.get(file_key)
+    if key is None:
+        key = _CONTENT_KEYS[file_key] = content_key(path) or file_key
     mesh = _CACHE.values.get(key)
     if mesh is None:
-        content = content_key(path)
-        mesh = None if content is None else _BY_CONTENT.get(content)
-        mesh = mesh or read_mesh(path)
+        mesh = read_mesh(path)
         _CACHE.store(key, mesh)
-        if content is not None:
-            _BY_CONTENT[content] = mesh
     return mesh
 
 
