@@ -67,7 +67,7 @@ def added_text(path: str, element: Element) -> Phrase:
 def _only_descendant(element: Element, path: str) -> tuple[Element, str]:
     """Return an element, or, if it has no name, the one below it that has a value or several children, and its path."""
     children = list(element.elements())
-    while len(children) == 1 and not (element.attributes or element.text().strip()):
+    while len(children) == 1 and not (element.tag == _NAMED_BY_CHILD or element.attributes or element.text().strip()):
         element = children[0]
         path = " ".join(filter(None, (path, element.tag, element.attributes.get("name"))))
         children = list(element.elements())
@@ -82,7 +82,7 @@ def _values_text(element: Element) -> Phrase | None:
 
 def _values(element: Element, path: str) -> Iterator[str]:
     for child in element.elements():
-        if element.tag == _NAMED_BY_CHILD and child.tag == "name":
+        if element.tag == _NAMED_BY_CHILD and child is (element.first("name") or element.first("uri")):
             continue
         child_path = " ".join(filter(None, (path, child.tag, child.attributes.get("name"))))
         content = own_content(child)
