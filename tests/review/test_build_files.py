@@ -179,13 +179,17 @@ EXPORTS = PACKAGE_XML.replace(
     [
         ("arm_base plugin", "arm_core plugin", ["export added: arm_core plugin=${prefix}/plugins.xml",
                                                 "export removed: arm_base plugin=${prefix}/plugins.xml"], True),
-        ("prefix}/plugins", "prefix}/all", ["export added: arm_base plugin=${prefix}/all.xml",
-                                            "export removed: arm_base plugin=${prefix}/plugins.xml"], False),
+        ("prefix}/plugins", "prefix}/all",
+         ["export arm_base: plugin ${prefix}/plugins.xml -> ${prefix}/all.xml"], False),
+        ('_path="${prefix}/models"', '_path="${prefix}/models" plugin_path="${prefix}/lib"',
+         ["export gazebo_ros: plugin_path ${prefix}/lib added"], False),
+        (' gazebo_model_path="${prefix}/models"', "",
+         ["export gazebo_ros: gazebo_model_path ${prefix}/models removed"], True),
         ("ament_cmake", "ament_python", ["build type: ament_cmake -> ament_python"], False),
         ('    <gazebo_ros gazebo_model_path="${prefix}/models"/>\n', "",
          ["export removed: gazebo_ros gazebo_model_path=${prefix}/models"], True),
         ("<exec_depend>", '<exec_depend condition="$ROS_VERSION == 2">',
-         ["exec_depend xacro: condition - -> $ROS_VERSION == 2"], False),
+         ["exec_depend xacro: always -> if $ROS_VERSION == 2"], False),
         ("ann@example.org", "ann@example.com", ["email of maintainer: ann@example.org -> ann@example.com"], False),
         ("An arm.", "Two arms.", ["description changed"], False),
         ("1.0.0", "1.0.1", ["version: 1.0.0 -> 1.0.1"], False),
@@ -198,3 +202,46 @@ def test_changes_of_manifests_are_reported(repository, compare, old, new, expect
     result = compare(repository)
     assert sentences(subject(result, "a/package.xml")) == expected
     assert bool(breaking(result)) is is_breaking
+
+
+DEPENDENCIES = EXPORTS.replace(
+    "  <exec_depend>xacro</exec_depend>\n",
+    """  <build_depend>gears</build_depend>
+  <exec_depend>gears</exec_depend>
+  <build_depend>levers</build_depend>
+  <exec_depend>levers</exec_depend>
+  <exec_depend condition="$SIMULATOR == 'old'">bridge</exec_depend>
+  <exec_depend condition="$SIMULATOR == 'new'">bridge</exec_depend>
+  <exec_depend>xacro</exec_depend>
+""",
+)
+
+
+def changes_of_dependencies(repository, compare, *replacements):
+    repository.commit({"a/package.xml": DEPENDENCIES})
+    text = DEPENDENCIES
+    for old, new in replacements:
+        assert old in text
+        text = text.replace(old, new)
+    repository.write({"a/package.xml": text})
+    result = compare(repository)
+    return sentences(subject(result, "a/package.xml")), breaking(result)
+
+
+def test_dependencies_with_the_same_tags_are_one_line(repository, compare):
+    found, _ = changes_of_dependencies(repository, compare, (">gears<", ">wheels<"), (">levers<", ">cranks<"))
+    assert found == [
+        "build_depend + exec_depend added: wheels, cranks",
+        "build_depend + exec_depend removed: gears, levers",
+    ]
+
+
+def test_all_conditions_of_a_dependency_are_compared(repository, compare):
+    lines = [line for line in DEPENDENCIES.splitlines(keepends=True) if "bridge" in line]
+    new = "  <exec_depend>bridge</exec_depend>\n"
+    found, breaking_ones = changes_of_dependencies(repository, compare, (lines[0], new), (lines[1], ""))
+    assert found == [
+        "exec_depend bridge: if $SIMULATOR == 'old'; if $SIMULATOR == 'new' -> always",
+        "environment variable 'SIMULATOR' does not decide any more what is built",
+    ]
+    assert breaking_ones == found[1:]

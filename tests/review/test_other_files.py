@@ -330,8 +330,8 @@ def test_manifest_changes_are_reported(package, compare):
     review_subject = subject(compare(package), "arm_description/package.xml")
     assert sentences(review_subject) == [
         "version: 1.0.0 -> 1.1.0",
-        "exec_depend urdf added",
-        "exec_depend xacro removed",
+        "exec_depend added: urdf",
+        "exec_depend removed: xacro",
     ]
 
 

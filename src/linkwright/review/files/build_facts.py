@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import PurePosixPath
@@ -69,6 +69,32 @@ class Fact:
     value: str = ""
     span: Span | None = None
     is_value_used: bool = False
+
+
+class EnvironmentVariables:
+    """The environment variables that decide what is built, by name, with their locations.
+
+    Args:
+        variables: the names and locations. Those that ROS sets itself are left out.
+    """
+
+    def __init__(self, variables: Iterable[tuple[str, Span | None]]) -> None:
+        self._spans: dict[str, Span | None] = {}
+        for name, span in variables:
+            if not name.startswith("ROS_"):
+                self._spans.setdefault(name, span)
+
+    def compare(self, pair: FilePair, new: EnvironmentVariables) -> None:
+        """Add the variables that only the old version or only the new version reads."""
+        for name, span in new._spans.items():
+            if name not in self._spans:
+                text = phrase("environment variable '{name}' decides what is built", name=name)
+                pair.add(text, pair.location(span))
+        for name, span in self._spans.items():
+            if name not in new._spans:
+                text = phrase("environment variable '{name}' does not decide any more what is built", name=name)
+                reason = phrase("a value that a user sets for '{name}' has no effect", name=name)
+                pair.add(text, pair.location(span, is_old=True), reason)
 
 
 @dataclass
