@@ -337,7 +337,7 @@ def test_manifest_changes_are_reported(package, compare):
 
 def test_renamed_package_is_breaking(package, compare):
     package.write({"arm_description/package.xml": PACKAGE_XML.replace("arm_description", "robot_description")})
-    assert "name: arm_description -> robot_description" in breaking(compare(package))
+    assert "package 'arm_description' renamed to 'robot_description'" in breaking(compare(package))
 
 
 def _stl(height: float) -> bytes:

@@ -33,6 +33,7 @@ from linkwright.review.notes import is_unreadable_as_before, missing_notes, unre
 from linkwright.review.other_files import file_states
 from linkwright.review.parts import compare_parts
 from linkwright.review.references import lost_references
+from linkwright.review.renamed_packages import with_moved_files, without_consequences
 from linkwright.review.robots.lone_robots import read_lone_robot, robot_text
 from linkwright.review.versions import Version, Versions
 
@@ -68,6 +69,7 @@ def review(
     Raises:
         LinkwrightError: REV103, there is no such package.
     """
+    versions = with_moved_files(versions)
     drawings = Drawings(images=with_images or with_scenes, scenes=with_scenes)
     result = _Reviewer(versions, _package_folders(versions, packages), drawings).run(workers)
     behavior = [compare_behavior(versions, path, seeds) for path in scenarios]
@@ -105,17 +107,12 @@ class _Reviewer:
             old_findings, new_findings = (result() for result in findings)
             all_subjects = self._with_other_subjects([result() for result in subjects])
         all_subjects = compare_parts(self._versions, self._changed_files, all_subjects, self._is_complete)
+        reported = _reported_paths(all_subjects)
+        all_subjects, notes = without_consequences(self._versions, all_subjects)
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
         untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
-        compared = {path for _, *paths in pairs for path in paths if path}
-        compared |= {subject.path for subject in all_subjects if not subject.is_empty}
-        parts = {
-            change.location.file
-            for subject in all_subjects
-            for change in subject.changes
-            if change.location is not None
-        } | {subject.path for subject in all_subjects if not subject.is_empty}
-        other_files = [file for file in self._changed_files if not {file.old_path, file.new_path} & (compared | parts)]
+        reported |= {path for _, *paths in pairs for path in paths if path}
+        other_files = [file for file in self._changed_files if not {file.old_path, file.new_path} & reported]
         return Review(
             self._versions.old.name,
             self._versions.new.name,
@@ -123,7 +120,7 @@ class _Reviewer:
             [file.path for file in other_files],
             file_states(self._versions, other_files),
             *compare_findings(self._versions, old_findings, new_findings, self._new_paths),
-            list(dict.fromkeys([*self._notes(), *missing_notes(all_subjects), *unreadable_notes(untouched)])),
+            list(dict.fromkeys([*notes, *self._notes(), *missing_notes(all_subjects), *unreadable_notes(untouched)])),
         )
 
     def _with_other_subjects(self, subjects: Sequence[Subject]) -> list[Subject]:
@@ -311,6 +308,13 @@ def _lone_contents(
     model, robot = found
     images = lone_images(model, robot, is_old=version.is_old) if drawings.images else []
     return [Change(robot_text(robot))], images
+
+
+def _reported_paths(subjects: Sequence[Subject]) -> set[str]:
+    """Return the paths of subjects with changes, and of the files in which these are."""
+    changes = (change for subject in subjects for change in subject.changes)
+    files = {change.location.file for change in changes if change.location is not None}
+    return files | {subject.path for subject in subjects if not subject.is_empty}
 
 
 @contextmanager

@@ -10,6 +10,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
 from linkwright.review.list_changes import change_text, shortened
+from linkwright.review.renamed_packages import PackageNames, renamed_packages
 from linkwright.review.versions import Version
 
 _MAX_RESTS = 3
@@ -157,6 +158,7 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
                 pair.add(text, pair.location(fact.span), reason)
         added = [fact for name, fact in new_facts.items() if name not in old_facts]
         removed = [fact for name, fact in old_facts.items() if name not in new_facts]
+        _add_renamed(pair, kind, removed, added)
         if added:
             pair.add(_sentence(kind, added, is_added=True), pair.location(added[0].span))
         if removed:
@@ -164,6 +166,19 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             pair.add(_sentence(kind, removed, is_added=False), location, kind.reason)
     _compare_files(pair, old, new)
     _compare_rest(pair, old, new)
+
+
+def _add_renamed(pair: FilePair, kind: FactKind, removed: list[Fact], added: list[Fact]) -> None:
+    """Add the facts whose names follow from that of a renamed package, and take them from both lists."""
+    names = PackageNames(renamed_packages(pair.versions))
+    for old in list(removed):
+        new = next((fact for fact in added if fact.name == names.derived(old.name)), None)
+        new = new or next((fact for fact in added if names.has_same_edit(old.name, fact.name)), None)
+        if new is not None:
+            removed.remove(old)
+            added.remove(new)
+            text = phrase("{kind}: '{old}' renamed to '{new}'", kind=kind.title, old=old.name, new=new.name)
+            pair.add(text, pair.location(new.span), kind.reason)
 
 
 def _sentence(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:

@@ -10,6 +10,7 @@ from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_facts import EnvironmentVariables
+from linkwright.review.renamed_packages import PackageNames, renamed_packages
 from linkwright.xmltree import Element
 
 _VERSIONS = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte": ">=", "version_gt": ">"}
@@ -28,7 +29,9 @@ _Elements = Mapping[_Key, list[Element]]
 
 def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
     """Add the changed dependencies: those with the same tags in one line, and changed conditions."""
-    old_elements, new_elements = _elements(old), _elements(new)
+    names = PackageNames(renamed_packages(pair.versions))
+    new_elements = _elements(new)
+    old_elements = {_Key(tag, names.of_package(name)): found for (tag, name), found in _elements(old).items()}
     packages = dict.fromkeys(key.package for key in (*new_elements, *old_elements))
     retagged: dict[tuple[str, str], list[_Key]] = {}
     added: dict[str, list[_Key]] = {}

@@ -8,6 +8,7 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.dependencies import compare_dependencies
+from linkwright.review.renamed_packages import PackageNames, renamed_packages
 from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element
 
@@ -40,6 +41,8 @@ def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:
         old_text, new_text = (_texts(manifest, tag) for manifest in manifests)
         if old_text != new_text:
             text = phrase("{tag}: {old} -> {new}", tag=tag, old=old_text or "-", new=new_text or "-")
+            if tag == "name":
+                text = phrase("package '{old}' renamed to '{new}'", old=old_text, new=new_text)
             reason = phrase("packages and launch files that name the package do not find it")
             element = new.root.first(tag) or new.root
             pair.add(text, pair.location(element.span()), reason if tag == "name" else None)
@@ -67,10 +70,11 @@ def _addresses(manifest: Manifest, tag: str) -> str:
 def _compare_exports(pair: FilePair, old: Manifest, new: Manifest) -> None:
     """Add the changes of the information for other packages, such as where plugin descriptions are."""
     old_exports, new_exports = ({_export_text(element): element for element in _exports(each)} for each in (old, new))
+    names = PackageNames(renamed_packages(pair.versions))
     gone = [element for text, element in old_exports.items() if text not in new_exports]
     come = [element for text, element in new_exports.items() if text not in old_exports]
     for element in list(gone):
-        other = next((other for other in come if other.tag == element.tag), None)
+        other = next((other for other in come if other.tag == names.of_package(element.tag)), None)
         if other is not None:
             gone.remove(element)
             come.remove(other)
