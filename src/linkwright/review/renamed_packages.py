@@ -70,7 +70,8 @@ def with_moved_files(versions: Versions) -> Versions:
     added = {file.new_path: file for file in versions.changed_files if file.old_path is None}
     moved: dict[str, ChangedFile] = {}
     for file in versions.changed_files:
-        paths = [package.new_path(file.old_path) for package in packages if file.old_path and not file.new_path]
+        old_path = None if file.new_path else file.old_path
+        paths = [package.new_path(old_path) for package in packages if old_path is not None]
         other = next((added[path] for path in paths if path in added), None)
         if other is not None:
             moved[file.path] = moved[other.path] = ChangedFile(file.old_path, other.new_path, file.is_submodule)

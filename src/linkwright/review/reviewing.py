@@ -111,7 +111,7 @@ class _Reviewer:
         all_subjects, notes = without_consequences(self._versions, all_subjects)
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
         untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
-        reported |= {path for _, *paths in pairs for path in paths if path}
+        reported |= {path for rule, *paths in pairs if rule.kind is not SubjectKind.BUILD for path in paths if path}
         other_files = [file for file in self._changed_files if not {file.old_path, file.new_path} & reported]
         return Review(
             self._versions.old.name,
@@ -255,9 +255,12 @@ def _compare(
     effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
     if old_path is None or new_path is None:
         if new_path is None:
-            version, change = versions.old, Change(rule.removed, effect, rule.removal_reason)
+            text = _text_with_contents(rule, rule.removed, versions.old, path) if rule.shows_removed else rule.removed
+            version, change = versions.old, Change(text, effect, rule.removal_reason)
         else:
-            version, change = versions.new, Change(_added_text(rule, versions.new, path))
+            version, change = versions.new, Change(_text_with_contents(rule, rule.added, versions.new, path))
+        if rule.needs_contents and "items" not in change.sentence.arguments:
+            return Subject(kind, path, old_path, new_path)
         changes, images = _lone_contents(version, kind, path, drawings)
         return Subject(kind, path, old_path, new_path, [change, *changes], images=images)
     pair = FilePair(versions, old_path, new_path, drawings)
@@ -287,13 +290,13 @@ def _compare(
     )
 
 
-def _added_text(rule: KindRule, version: Version, path: str) -> Phrase:
-    """Return the line about an added file, with its contents where they are known."""
+def _text_with_contents(rule: KindRule, text: Phrase, version: Version, path: str) -> Phrase:
+    """Return the line about an added or removed file, with its contents where they are known."""
     try:
         contents = None if rule.contents is None else rule.contents(version, path)
     except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError, MemoryError):
         contents = None
-    return rule.added if contents is None else phrase("{change}: {items}", change=rule.added, items=contents)
+    return text if contents is None else phrase("{change}: {items}", change=text, items=contents)
 
 
 def _lone_contents(

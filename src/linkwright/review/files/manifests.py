@@ -9,6 +9,7 @@ from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.dependencies import compare_dependencies
 from linkwright.review.renamed_packages import PackageNames, renamed_packages
+from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element
 
@@ -33,6 +34,15 @@ def compare_manifests(pair: FilePair) -> None:
         pair.add(text, pair.location(new.root.span()))
     compare_dependencies(pair, old, new)
     _compare_exports(pair, old, new)
+
+
+def manifest_contents(version: Version, path: str) -> Phrase:
+    """Return the version and the build type of a package."""
+    manifest = _read(version.file(path))
+    export = manifest.root.first("export")
+    is_metapackage = export is not None and export.first("metapackage") is not None
+    build_type = phrase("metapackage") if is_metapackage else manifest.build_type or "catkin"
+    return phrase("version {version}, {type}", version=manifest.text("version") or "-", type=build_type)
 
 
 def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:

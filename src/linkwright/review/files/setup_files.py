@@ -22,10 +22,15 @@ _SHOWN = frozenset({"name", "version", "python_requires", "license"})
 
 def compare_setup_files(pair: FilePair) -> None:
     """Compare two versions of a ``setup.py`` without running it."""
-    compare_build_files(pair, _read)
+    compare_build_files(pair, read_setup_facts)
 
 
-def _read(version: Version, path: str) -> BuildFacts:
+def read_setup_facts(version: Version, path: str) -> BuildFacts:
+    """Return the facts of a ``setup.py``.
+
+    Raises:
+        UnreadableFileError: the file is not valid Python.
+    """
     file = version.file(path)
     source = SourceText(str(file), file.read_text(encoding="utf-8", errors="replace"))
     setup = read_setup(source)
