@@ -123,7 +123,7 @@ def test_folder_that_is_new_and_installed_now_is_reported(repository, compare):
 
 
 CONTENTS = (
-    "installed executables 'home.py', 'driver', 'tuner'; installed libraries 'arm_core'; "
+    "installed executables 'driver', 'tuner', 'home.py'; installed libraries 'arm_core'; "
     "exported plugin descriptions 'plugins.xml'; built interfaces 'msg/State.msg', 'msg/Load.msg'; "
     "files in 'share/arm/launch/', 'share/arm/config/', 'share/arm/'"
 )

@@ -131,9 +131,9 @@ class _Consequences:
         arguments = _innermost(change.sentence).arguments
         if change.sentence.template == _RENAMED:
             return False
-        old_path = arguments.get("path")
-        if old_path is not None and old_path == subject.old_path:
-            return any(package.new_path(subject.old_path) == subject.new_path for package in self.packages)
+        old_path = subject.old_path
+        if old_path is not None and arguments.get("path") == old_path:
+            return any(package.new_path(old_path) == subject.new_path for package in self.packages)
         for before, after in (("old", "new"), ("removed", "added")):
             if before in arguments and after in arguments:
                 old, new = str(arguments[before]), str(arguments[after])

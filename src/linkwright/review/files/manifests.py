@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, joined, joined_first, phrase
+from linkwright.lint.targets import find_targets
+from linkwright.packages.manifest import package_name
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.dependencies import compare_dependencies
@@ -14,6 +16,7 @@ from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element
 
 _TEXTS = ("name", "version", "license", "maintainer", "author", "url", "member_of_group", "group_depend")
+_MAX_NAMES = 8
 _PLUGIN = "plugin"
 """The attribute of an export that names a plugin description."""
 
@@ -37,12 +40,23 @@ def compare_manifests(pair: FilePair) -> None:
 
 
 def manifest_contents(version: Version, path: str) -> Phrase:
-    """Return the version and the build type of a package."""
+    """Return the name, version, build type and dependencies of a package, and another package with its name."""
     manifest = _read(version.file(path))
     export = manifest.root.first("export")
     is_metapackage = export is not None and export.first("metapackage") is not None
     build_type = phrase("metapackage") if is_metapackage else manifest.build_type or "catkin"
-    return phrase("version {version}, {type}", version=manifest.text("version") or "-", type=build_type)
+    names = list(dict.fromkeys(dependency.name for dependency in manifest.dependencies))
+    texts: list[Phrase] = [
+        phrase("'{name}' {version}, {type}", name=manifest.name or "", version=manifest.text("version") or "-",
+               type=build_type)
+    ]  # fmt: skip
+    if names:
+        texts.append(phrase("depends on {names}", names=joined_first(names, _MAX_NAMES)))
+    others = [folder for folder in find_targets([version.root]).packages if package_name(folder) == manifest.name]
+    paths = [other for other in map(version.relative, others) if other != PurePosixPath(path).parent.as_posix()]
+    if paths:
+        texts.append(phrase("{folder} has a package with the same name", folder=f"{paths[0]}/"))
+    return joined(texts, "; ")
 
 
 def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.files.git_repository import ChangedFile
+from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
 from linkwright.review.renamed_packages import PackageNames, renamed_packages
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document
 
 _ROOTS = frozenset({"library", "class_libraries"})
+_UNKNOWN_EXPORT = re.compile(r"pluginlib_export_plugin_description_file\s*\([^)]*\$", re.IGNORECASE)
 _LOST = phrase("programs and configurations that load the class do not find it")
 
 
@@ -47,7 +50,10 @@ def plugin_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     for name, plugin in old.items():
         if name not in new:
             text = phrase("plugin class '{name}' removed", name=name)
-            changes.setdefault(plugin.path, []).append(Change(text, Effect.BREAKING, _LOST, plugin.location))
+            change = Change(text, location=plugin.location)
+            if _is_exported(versions.old, plugin.path):
+                change = replace(change, effect=Effect.BREAKING, reason=_LOST)
+            changes.setdefault(plugin.path, []).append(change)
     paths = {path: file for file in changed_files for path in (file.old_path, file.new_path) if path}
     for path in sorted(changes):
         file = paths[path]
@@ -77,6 +83,17 @@ def _classes_of(file: Path, path: str, *, is_old: bool) -> Iterator[tuple[str, _
         if element.tag == "class" and name:
             location = None if span is None else Location(path, span.line, span.column, is_old)
             yield name, _PluginClass(attributes.get("type", ""), attributes.get("base_class_type", ""), path, location)
+
+
+def _is_exported(version: Version, path: str) -> bool:
+    """Return whether a package may tell programs where a plugin description is, without which they do not find it."""
+    folders = (version.file(parent.as_posix()) for parent in PurePosixPath(path).parents)
+    package = next((folder for folder in folders if (folder / MANIFEST).is_file()), None)
+    if package is None:
+        return True
+    files = (package / name for name in (MANIFEST, "CMakeLists.txt", "setup.py", "setup.cfg"))
+    text = "\n".join(file.read_text("utf-8", errors="replace") for file in files if file.is_file())
+    return PurePosixPath(path).name in text or _UNKNOWN_EXPORT.search(text) is not None
 
 
 def _renamed(old: Mapping[str, _PluginClass], new: Mapping[str, _PluginClass], names: PackageNames) -> dict[str, str]:
