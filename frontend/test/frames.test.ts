@@ -1,13 +1,13 @@
 import { describe, expect, it, vi } from "vitest";
 import { unpackTransforms } from "../src/connection/transforms";
 import { FrameStore } from "../src/state/frames";
-import { packed } from "./messages";
+import { packTransforms } from "./messages";
 
 const HERE = [1, 2, 3, 0, 0, 0, 1] as const;
 const NOWHERE = [NaN, NaN, NaN, NaN, NaN, NaN, NaN] as const;
 
 function transforms(revision: number, poses: readonly (readonly number[])[], ages = poses.map(() => 0)) {
-  const result = unpackTransforms(packed(revision, poses, ages));
+  const result = unpackTransforms(packTransforms(revision, poses, ages));
   if (!result) throw new Error("not a binary frame");
   return result;
 }
@@ -21,7 +21,7 @@ describe("binary frames", () => {
   });
 
   it("of another kind or length are refused", () => {
-    const good = packed(1, [HERE], [0]);
+    const good = packTransforms(1, [HERE], [0]);
     expect(unpackTransforms(good.slice(0, -4))).toBeNull();
     expect(unpackTransforms(new ArrayBuffer(8))).toBeNull();
     new DataView(good).setUint32(0, 99, true);

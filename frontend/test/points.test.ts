@@ -8,7 +8,7 @@ import { isShownInCamera } from "../src/scene/images/shown-in-camera";
 import { DisplayState } from "../src/state/displays";
 import { PropertyNode, PropertyRows } from "../src/state/properties";
 import { Vector3 } from "three";
-import { display, property } from "./messages";
+import { createDisplay, createProperty } from "./messages";
 
 const ALONG_X = [1, 0, 0] as const;
 const ORIGIN = [0, 0, 0] as const;
@@ -115,14 +115,14 @@ test("the camera looks along z of its image, offset from its frame", () => {
 });
 
 test("a display is shown in a camera if its box and those of its groups are ticked", () => {
-  const box = (path: string, name: string, value: boolean, children: ReturnType<typeof property>[] = []) =>
-    property({ id: path, name, kind: "bool", value, children });
+  const box = (path: string, name: string, value: boolean, children: ReturnType<typeof createProperty>[] = []) =>
+    createProperty({ id: path, name, kind: "bool", value, children });
   const rows = (inside: boolean, group: boolean): PropertyRows =>
     new PropertyRows([
       new PropertyNode(box("v", "Visibility", true, [box("g", "Sensors", group, [box("c", "Cloud", inside)])])),
     ]);
-  const group = new DisplayState(display({ id: "1", cls: "rviz_common/Group", name: "Sensors" }));
-  const cloud = new DisplayState(display({ id: "2", name: "Cloud" }));
+  const group = new DisplayState(createDisplay({ id: "1", cls: "rviz_common/Group", name: "Sensors" }));
+  const cloud = new DisplayState(createDisplay({ id: "2", name: "Cloud" }));
   cloud.group = group;
   expect(isShownInCamera(rows(true, true), cloud)).toBe(true);
   expect(isShownInCamera(rows(false, true), cloud)).toBe(false);

@@ -8,7 +8,7 @@ import { RobotDrawing } from "../src/scene/robot/robot-drawing";
 import { FrameStore } from "../src/state/frames";
 import { MeshProgress } from "../src/state/mesh-progress";
 import { PropertyNode, PropertyRows } from "../src/state/properties";
-import { property } from "./messages";
+import { createProperty } from "./messages";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
 
@@ -99,7 +99,7 @@ describe("RobotDrawing", () => {
   it("does not batch shapes that are translucent, lack a transform or are switched off", () => {
     const row = robot(ROW);
     const rows = (name: string, value: number | boolean): PropertyRows => {
-      return new PropertyRows([new PropertyNode(property({ id: name, name, value }))]);
+      return new PropertyRows([new PropertyNode(createProperty({ id: name, name, value }))]);
     };
     expect(draw(row, rows("Alpha", 0.5))["drawnTogether"]).toBe(0);
     expect(draw(row, rows("Visual Enabled", false))["drawnTogether"]).toBe(0);
@@ -113,7 +113,7 @@ describe("RobotDrawing", () => {
     draw(row);
     expect(row.drawing.progress).toEqual({ posed: 4, loading: 0 });
     expect(row.drawing.bounds().max.toArray()).toEqual([1.1, expect.closeTo(3.1), 0.5]);
-    draw(row, new PropertyRows([new PropertyNode(property({ id: "v", name: "Visual Enabled", value: false }))]));
+    draw(row, new PropertyRows([new PropertyNode(createProperty({ id: "v", name: "Visual Enabled", value: false }))]));
     expect(row.drawing.bounds().max.toArray()).toEqual([0, 3, 0]);
   });
 
@@ -124,7 +124,7 @@ describe("RobotDrawing", () => {
     expect(bare.drawing.hasPose).toBe(true);
 
     const hidden = robot(ROW);
-    draw(hidden, new PropertyRows([new PropertyNode(property({ id: "v", name: "Visual Enabled", value: false }))]));
+    draw(hidden, new PropertyRows([new PropertyNode(createProperty({ id: "v", name: "Visual Enabled", value: false }))]));
     expect(hidden.drawing.hasPose).toBe(true);
 
     const { drawing, frames } = robot([link("footprint"), ...ROW]);

@@ -7,7 +7,7 @@ import { compose, computeRelativePose } from "../src/state/pose-numbers";
 import { Session } from "../src/state/session";
 import { formatPoint } from "../src/tree/numbers";
 import type { TreeItem } from "../src/tree/tree-item";
-import { display, property, robot, tree } from "./messages";
+import { createDisplay, createProperty, createRobotScene, createTree } from "./messages";
 
 // The page's texts read the browser's language when they are imported.
 vi.hoisted(() => vi.stubGlobal("localStorage", { getItem: () => "en" }));
@@ -48,15 +48,15 @@ function joint(name: string, parent: string, child: string, part: Partial<JointS
 }
 
 function row(group: string, name: string, details: "link" | "joint"): Property {
-  const extras = [property({ id: `d0/${group}/${name}/Show Axes`, name: "Show Axes", kind: "bool", value: false })];
-  return property({ id: `d0/${group}/${name}`, name, kind: "bool", value: true, details, children: extras });
+  const extras = [createProperty({ id: `d0/${group}/${name}/Show Axes`, name: "Show Axes", kind: "bool", value: false })];
+  return createProperty({ id: `d0/${group}/${name}`, name, kind: "bool", value: true, details, children: extras });
 }
 
 /** A robot of three links in a row: the root base, arm, and hand. */
 function show(style: string, open: readonly string[] = []): void {
   const option = (name: string, value: string | boolean): Property =>
-    property({ id: `d0/Links/${name}`, name, kind: typeof value === "string" ? "enum" : "bool", value });
-  const links = property({
+    createProperty({ id: `d0/Links/${name}`, name, kind: typeof value === "string" ? "enum" : "bool", value });
+  const links = createProperty({
     id: "d0/Links",
     name: "Links",
     kind: "group",
@@ -67,17 +67,17 @@ function show(style: string, open: readonly string[] = []): void {
       ...["arm", "base", "hand"].map((name) => row("Links", name, "link")),
     ],
   });
-  const joints = property({
+  const joints = createProperty({
     id: "d0/Joints",
     name: "Joints",
     kind: "group",
     children: ["elbow", "grip"].map((name) => row("Joints", name, "joint")),
   });
   const scene = {
-    ...robot("d0", "base", "arm", "hand"),
+    ...createRobotScene("d0", "base", "arm", "hand"),
     joints: [joint("elbow", "base", "arm", { position: [1, 0, 0], lower: -1 }), joint("grip", "arm", "hand", { kind: "fixed" })],
   };
-  receive(tree(display({ id: "d0", cls: "rviz_default_plugins/RobotModel", properties: [links, joints] })), scene);
+  receive(createTree(createDisplay({ id: "d0", cls: "rviz_default_plugins/RobotModel", properties: [links, joints] })), scene);
 }
 
 function outline(items: readonly TreeItem[], depth = 0): string[] {
@@ -188,8 +188,8 @@ describe("rows of details", () => {
   });
 
   it("show the pose of a frame, also relative to its parent, and follow it", () => {
-    const box = property({ id: "d1/Frames/tip", name: "tip", kind: "bool", value: true, details: "frame" });
-    receive(tree(display({ id: "d1", properties: [box] })));
+    const box = createProperty({ id: "d1/Frames/tip", name: "tip", kind: "bool", value: true, details: "frame" });
+    receive(createTree(createDisplay({ id: "d1", properties: [box] })));
     const place = (x: number): void =>
       frames({
         base: { parent: null, pose: [1, 0, 0, 0, 0, HALF, HALF] },
@@ -210,15 +210,15 @@ describe("rows of details", () => {
   });
 
   it("are empty for a frame without a pose", () => {
-    const box = property({ id: "d1/Frames/gone", name: "gone", kind: "bool", value: true, details: "frame" });
-    receive(tree(display({ id: "d1", properties: [box] })));
+    const box = createProperty({ id: "d1/Frames/gone", name: "gone", kind: "bool", value: true, details: "frame" });
+    receive(createTree(createDisplay({ id: "d1", properties: [box] })));
     const [tf] = session.displays.displays;
     expect(Object.values(values(createDetailRows(tf!.rows.nodes[0]!, tf!, session)))).toEqual(["", "", "", "", ""]);
   });
 
   it("show a joint's last effort", () => {
-    const box = property({ id: "d2/Joints/elbow", name: "elbow", kind: "bool", value: true, details: "effort" });
-    receive(tree(display({ id: "d2", properties: [box] })));
+    const box = createProperty({ id: "d2/Joints/elbow", name: "elbow", kind: "bool", value: true, details: "effort" });
+    receive(createTree(createDisplay({ id: "d2", properties: [box] })));
     const rings = (effort: number, stamp: number): void =>
       session.connection.data.emit({
         display: "d2",

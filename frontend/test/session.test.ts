@@ -2,7 +2,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { PageMessage, ServerMessage, TerminalItem } from "../src/protocol";
 import { Session } from "../src/state/session";
-import { display, property, robot, tree } from "./messages";
+import { createDisplay, createProperty, createRobotScene, createTree } from "./messages";
 
 let sent: PageMessage[];
 let session: Session;
@@ -27,14 +27,14 @@ afterEach(() => {
 
 describe("properties", () => {
   it("are found by their names and changed by their IDs", () => {
-    const style = property({
+    const style = createProperty({
       id: "d0/Line Style",
       name: "Line Style",
       kind: "enum",
       value: "Lines",
-      children: [property({ id: "d0/Line Style/Line Width", name: "Line Width", value: 0.03 })],
+      children: [createProperty({ id: "d0/Line Style/Line Width", name: "Line Width", value: 0.03 })],
     });
-    receive(tree(display({ id: "d0", properties: [style] })));
+    receive(createTree(createDisplay({ id: "d0", properties: [style] })));
     const { rows } = session.displays.displays[0]!;
     expect(rows.text("", "Line Style")).toBe("Lines");
     receive({ type: "property_changed", id: "d0/Line Style/Line Width", value: 0.1, options: null });
@@ -43,15 +43,15 @@ describe("properties", () => {
   });
 
   it("set by the user are shown at once and sent to the server", () => {
-    receive(tree(display({ id: "d0", properties: [property({ id: "d0/Alpha", name: "Alpha", value: 0.5 })] })));
+    receive(createTree(createDisplay({ id: "d0", properties: [createProperty({ id: "d0/Alpha", name: "Alpha", value: 0.5 })] })));
     session.setProperty("d0/Alpha", 0.9);
     expect(session.displays.displays[0]!.rows.number(0, "Alpha")).toBe(0.9);
     expect(sent).toEqual([{ type: "set_property", id: "d0/Alpha", value: 0.9 }]);
   });
 
   it("do not include Enabled, which is the display's box", () => {
-    const enabled = property({ id: "d0/Enabled", name: "Enabled", kind: "bool", value: true });
-    receive(tree(display({ id: "d0", properties: [enabled] })));
+    const enabled = createProperty({ id: "d0/Enabled", name: "Enabled", kind: "bool", value: true });
+    receive(createTree(createDisplay({ id: "d0", properties: [enabled] })));
     const [grid] = session.displays.displays;
     expect(grid!.rows.nodes).toHaveLength(0);
     receive({ type: "property_changed", id: "d0/Enabled", value: false, options: null });
@@ -59,25 +59,25 @@ describe("properties", () => {
   });
 
   it("survive a new tree in the same display object, so that its drawing continues", () => {
-    receive(tree(display({ id: "d0" }), display({ id: "d1" })));
+    receive(createTree(createDisplay({ id: "d0" }), createDisplay({ id: "d1" })));
     const [first] = session.displays.displays;
-    receive(tree(display({ id: "d0", name: "Floor" })));
+    receive(createTree(createDisplay({ id: "d0", name: "Floor" })));
     expect(session.displays.displays).toEqual([first]);
     expect(first!.name).toBe("Floor");
   });
 });
 
 describe("the selection", () => {
-  const model = display({ id: "d1", cls: "rviz_default_plugins/RobotModel" });
+  const model = createDisplay({ id: "d1", cls: "rviz_default_plugins/RobotModel" });
 
   it("survives a reload of the robot and ends with its link", () => {
-    receive(tree(model), robot("d1", "base_link", "wheel"));
+    receive(createTree(model), createRobotScene("d1", "base_link", "wheel"));
     const link = session.robots.get("d1")!.links[1]!;
     session.selection.select({ display: "d1", link });
-    receive(robot("d1", "base_link", "wheel"));
+    receive(createRobotScene("d1", "base_link", "wheel"));
     expect(session.selection.selectedLink?.link.name).toBe("wheel");
     expect(session.selection.selectedLink?.link).not.toBe(link);
-    receive(robot("d1", "base_link"));
+    receive(createRobotScene("d1", "base_link"));
     expect(session.selection.selectedLink).toBeNull();
   });
 });
@@ -204,7 +204,7 @@ describe("a text editor", () => {
   const base = { display: "d0", kind: "link", name: "base" } as const;
 
   beforeEach(() => {
-    receive(tree(display({ id: "d0" })), robot("d0", "base", "arm"));
+    receive(createTree(createDisplay({ id: "d0" })), createRobotScene("d0", "base", "arm"));
     sent.length = 0;
   });
 

@@ -4,7 +4,7 @@ import type { PageMessage, ServerMessage, Tool } from "../src/protocol";
 import { SelectionState } from "../src/state/selection";
 import { TimeControlState } from "../src/state/time";
 import { ToolsState } from "../src/state/tools";
-import { property, robot } from "./messages";
+import { createProperty, createRobotScene } from "./messages";
 
 let connection: Connection;
 let sent: PageMessage[];
@@ -49,7 +49,7 @@ describe("the tools", () => {
 
   it("show a setting at once and send it to the server", () => {
     const tools = new ToolsState(connection);
-    const click = property({ id: "t/Single click", name: "Single click", kind: "bool", value: true });
+    const click = createProperty({ id: "t/Single click", name: "Single click", kind: "bool", value: true });
     receive({ type: "tools", tools: [tool("t", { properties: [click] })], classes: [] });
     tools.setProperty("t/Single click", false);
     expect(tools.tools[0]!.rows.bool(true, "Single click")).toBe(false);
@@ -87,7 +87,7 @@ describe("the clocks", () => {
 
 describe("the selection", () => {
   it("adds, removes, and reports the first selected link", () => {
-    const scene = robot("d1", "base", "tip");
+    const scene = createRobotScene("d1", "base", "tip");
     const selection = new SelectionState(new Map([["d1", scene]]));
     const changes = vi.fn();
     selection.changed.on(changes);
