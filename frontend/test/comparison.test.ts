@@ -17,7 +17,12 @@ const COMPARED: ComparedDescriptions & { type: "compared_descriptions" } = {
   new: { display: "display-1", label: "new.urdf", marks: { arm: "changed" } },
   joints: {},
   shapes: { arm: "arm" },
-  items: [createItem(), createItem({ property: "origin xyz" }), createItem({ subject: "joint" }), createItem({ name: "camera", kind: "removed", property: "", element: "camera", in_old: true })],
+  items: [
+    createItem(),
+    createItem({ property: "origin xyz" }),
+    createItem({ subject: "joint" }),
+    createItem({ name: "camera", kind: "removed", property: "", element: "camera", in_old: true }),
+  ],
 };
 
 describe("sources of descriptions", () => {

@@ -55,7 +55,11 @@ function createDescription(part: Partial<Description> = {}): Description {
     name: "arm",
     root: "base",
     links: [createLink("base"), createLink("left", "turn", [3, 6]), createLink("right", "lift", [3, 6]), createLink("tip", "fix")],
-    joints: [createJoint("turn", "base", "left"), createJoint("lift", "base", "right", { kind: "prismatic" }), createJoint("fix", "left", "tip", { kind: "fixed" })],
+    joints: [
+      createJoint("turn", "base", "left"),
+      createJoint("lift", "base", "right", { kind: "prismatic" }),
+      createJoint("fix", "left", "tip", { kind: "fixed" }),
+    ],
     files: ["m.xacro"],
     ...part,
   };
@@ -207,11 +211,16 @@ describe("the joint table", () => {
   });
 
   it("sorts by number or name, with empty values last", () => {
-    const joints = [createJoint("j10", "b", "c", { upper: null }), createJoint("j2", "b", "c", { upper: 1 }), createJoint("j1", "b", "c", { upper: 10 })];
-    const sortedNames = (column: "name" | "upper", isDescending = false): string[] => sortJoints(joints, column, isDescending).map((joint) => joint.name);
-    expect(sortedNames("name")).toEqual(["j1", "j2", "j10"]);
-    expect(sortedNames("upper")).toEqual(["j2", "j1", "j10"]);
-    expect(sortedNames("upper", true)).toEqual(["j1", "j2", "j10"]);
+    const joints = [
+      createJoint("j10", "b", "c", { upper: null }),
+      createJoint("j2", "b", "c", { upper: 1 }),
+      createJoint("j1", "b", "c", { upper: 10 }),
+    ];
+    const listSortedNames = (column: "name" | "upper", isDescending = false): string[] =>
+      sortJoints(joints, column, isDescending).map((joint) => joint.name);
+    expect(listSortedNames("name")).toEqual(["j1", "j2", "j10"]);
+    expect(listSortedNames("upper")).toEqual(["j2", "j1", "j10"]);
+    expect(listSortedNames("upper", true)).toEqual(["j1", "j2", "j10"]);
   });
 });
 
@@ -247,7 +256,8 @@ describe("dragging a link", () => {
     let angle = 0;
     for (let i = 1; i <= 60; i++) {
       const pointerAngle = i * 0.2;
-      angle = turnTowards(rayBetween(eye, new Vector3(Math.cos(pointerAngle), Math.sin(pointerAngle), 0)), z, new Vector3(), new Vector3(1, 0, 0), angle);
+      const ray = rayBetween(eye, new Vector3(Math.cos(pointerAngle), Math.sin(pointerAngle), 0));
+      angle = turnTowards(ray, z, new Vector3(), new Vector3(1, 0, 0), angle);
     }
     expect(angle).toBeCloseTo(12, 3);
     const side = new Vector3(0, -5, 0);

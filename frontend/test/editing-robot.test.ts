@@ -19,7 +19,7 @@ function receiveParts(...parts: EditablePart[]): void {
   connection.message.emit({ type: "editable_parts", ...LINK, why_not: "", parts });
 }
 
-function sentTypes(): string[] {
+function listSentTypes(): string[] {
   return sentMessages.map((message) => message.type);
 }
 
@@ -72,7 +72,7 @@ describe("editing", () => {
     receiveParts(createPart());
     editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     editing.move({ xyz: [0, 0, 1.2], rpy: [0, 0, 0] });
-    expect(sentTypes()).toEqual(["ask_editable_parts"]);
+    expect(listSentTypes()).toEqual(["ask_editable_parts"]);
     vi.runAllTimers();
     expect(sentMessages.at(-1)).toMatchObject({ type: "preview_edit", part: "joint", name: "shoulder", xyz: [0, 0, 1.2], rpy: null, together: false });
   });
@@ -88,7 +88,7 @@ describe("editing", () => {
     connection.message.emit({ type: "edit_preview", number: number - 1, files, also: [], refusal: null });
     expect(editing.preview).toBeNull();
     editing.apply();
-    expect(sentTypes()).not.toContain("apply_edit");
+    expect(listSentTypes()).not.toContain("apply_edit");
     connection.message.emit({ type: "edit_preview", number, files, also: [], refusal: null });
     editing.apply();
     expect(sentMessages.at(-1)).toEqual({ type: "apply_edit", number });

@@ -38,7 +38,7 @@ function packRows(...positions: number[][]): Float32Array {
   return new Float32Array(positions.flatMap((position) => [...position, 0, 0, 0, 1]));
 }
 
-function movedPose(robot: MovingRobot, positions: Record<string, number>, name: string): number[] {
+function poseOfLink(robot: MovingRobot, positions: Record<string, number>, name: string): number[] {
   const row = TABLE.names.indexOf(name);
   return [...robot.computeTransforms(positions).poses.subarray(row * 7, row * 7 + 7)].map((value) => Math.round(value * 1e5) / 1e5 + 0);
 }
@@ -51,9 +51,9 @@ describe("the robot of an exported page", () => {
     const quarterTurn = { turn: Math.PI / 2 };
     const slideLength = 0.5 * (Math.PI / 2) + 0.25;
     const expectedPose = [1, slideLength, 0, 0, 0, HALF, HALF].map((value) => Math.round(value * 1e5) / 1e5);
-    expect(movedPose(robot, quarterTurn, "hand")).toEqual(expectedPose);
-    expect(movedPose(robot, quarterTurn, "cup").slice(0, 3)).toEqual([1, expectedPose[1], 0.5]);
-    expect(movedPose(robot, quarterTurn, "base")).toEqual([0, 0, 0, 0, 0, 0, 1]);
+    expect(poseOfLink(robot, quarterTurn, "hand")).toEqual(expectedPose);
+    expect(poseOfLink(robot, quarterTurn, "cup").slice(0, 3)).toEqual([1, expectedPose[1], 0.5]);
+    expect(poseOfLink(robot, quarterTurn, "base")).toEqual([0, 0, 0, 0, 0, 0, 1]);
   });
 
   it("moves another robot whose joints follow its own, and leaves independent joints of it alone", () => {
@@ -68,7 +68,10 @@ describe("the robot of an exported page", () => {
     const poseAtZero = { ...AT_ZERO, poses: packRows([1, 0, 0], [1, 0, 0], [0, 0, 0], [1, 0, 0.5], [0, 0, 0], [1, 0, 0], [1, 2, 0]) };
     const robots = new MovingRobot(table, poseAtZero, ROBOT, controls, [{ robot: oldRobot, joints: { spin: "turn" } }]);
     const { poses } = robots.computeTransforms({ turn: Math.PI / 2 });
-    const poseOf = (name: string): number[] => [...poses.subarray(names.indexOf(name) * 7, names.indexOf(name) * 7 + 7)].map((value) => Math.round(value * 1e5) / 1e5 + 0);
+    const poseOf = (name: string): number[] => {
+      const start = names.indexOf(name) * 7;
+      return [...poses.subarray(start, start + 7)].map((value) => Math.round(value * 1e5) / 1e5 + 0);
+    };
     const half = Math.round(HALF * 1e5) / 1e5;
     expect(poseOf("old/arm")).toEqual([1, 0, 0, 0, 0, half, half]);
     expect(poseOf("old/hand")).toEqual([-1, 0, 0, 0, 0, half, half]);

@@ -7,7 +7,10 @@ function createItem(name: string, ...children: TreeItem[]): TreeItem {
   return children.length > 0 ? { ...base, children: () => children } : base;
 }
 
-const ITEMS = [createItem("Grid", createItem("Alpha"), createItem("Offset", createItem("X"))), createItem("Laser", createItem("Topic", createItem("Depth")))];
+const ITEMS = [
+  createItem("Grid", createItem("Alpha"), createItem("Offset", createItem("X"))),
+  createItem("Laser", createItem("Topic", createItem("Depth"))),
+];
 
 function listNames(items: readonly TreeItem[]): unknown {
   return items.map((item) => (item.children ? [item.name, item.isForcedOpen ?? false, listNames(item.children())] : item.name));

@@ -18,7 +18,13 @@ describe("the problems of a display", () => {
   it("are counted if they are errors and the display is enabled", () => {
     const displays = new DisplaysState();
     const warned = ROWS.slice(0, 2);
-    displays.setTree(createTree(createDisplay({ id: "a", enabled: true, status: ROWS }), createDisplay({ id: "b", enabled: true, status: warned }), createDisplay({ id: "c", enabled: false, status: ROWS })));
+    displays.setTree(
+      createTree(
+        createDisplay({ id: "a", enabled: true, status: ROWS }),
+        createDisplay({ id: "b", enabled: true, status: warned }),
+        createDisplay({ id: "c", enabled: false, status: ROWS }),
+      ),
+    );
     expect(displays.failingCount).toBe(1);
     displays.setStatus("global", "error", ROWS);
     displays.setStatus("b", "error", ROWS);
