@@ -2,7 +2,7 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { ComparedDescriptions, ComparedItem } from "../src/protocol";
 import { shortenPlace } from "../src/panels/place";
-import { ComparisonState, groupDifferences, MARK_COLORS, usedMarks } from "../src/state/comparison";
+import { ComparisonState, groupDifferences, MARK_COLORS, listUsedMarks } from "../src/state/comparison";
 
 function createItem(part: Partial<ComparedItem> = {}): ComparedItem {
   return {
@@ -62,7 +62,7 @@ describe("two descriptions in one scene", () => {
     expect(comparison.overrideOf("display-7", "arm")).toBeNull();
     const onChanged = vi.fn();
     comparison.changed.on(onChanged);
-    comparison.marks = false;
+    comparison.areMarksShown = false;
     expect(onChanged).toHaveBeenCalledTimes(1);
     expect(comparison.overrideOf("display-1", "arm")).toBeNull();
     expect(comparison.overrideOf("display-2", "camera")).toEqual(comparison.overrideOf("display-2", "arm"));
@@ -85,7 +85,7 @@ describe("two descriptions in one scene", () => {
   it("groups the differences of one element, and lists only kinds that occur in the legend", () => {
     const groups = groupDifferences(COMPARED.items);
     expect(groups.map(({ items, kind }) => [items.length, kind])).toEqual([[2, "changed"], [1, "changed"], [1, "removed"]]);
-    expect(usedMarks([COMPARED.new, COMPARED.old])).toEqual(["changed", "removed", "old"]);
+    expect(listUsedMarks([COMPARED.new, COMPARED.old])).toEqual(["changed", "removed", "old"]);
   });
 });
 

@@ -8,7 +8,7 @@ import { DescriptionModel } from "../src/state/description-model";
 import { layOut } from "../src/state/diagram-layout";
 import { InspectState } from "../src/state/inspect";
 import { formatJointCells, sortJoints } from "../src/state/joint-table";
-import { visibleRows, LinkTreeState } from "../src/state/link-tree";
+import { listVisibleRows, LinkTreeState } from "../src/state/link-tree";
 import { formatGeneral } from "../src/state/number-text";
 import { Session } from "../src/state/session";
 import { openBrowserStorage } from "../src/storage";
@@ -158,7 +158,7 @@ describe("the model", () => {
 
   it("is listed according to folded links and the search text", () => {
     const state = new LinkTreeState();
-    const listNames = (search = ""): string[] => visibleRows(model, state, search).map((row) => row.link.name);
+    const listNames = (search = ""): string[] => listVisibleRows(model, state, search).map((row) => row.link.name);
     expect(listNames()).toEqual(["base", "right", "left", "tip"]);
     state.toggle("left");
     expect(listNames()).toEqual(["base", "right", "left"]);

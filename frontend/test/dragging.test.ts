@@ -1,6 +1,6 @@
 import { Quaternion, Ray, Vector3 } from "three";
 import { describe, expect, test } from "vitest";
-import { distanceAlongAxis, Drag, rotationBetween, type DragEvent } from "../src/scene/interactive/dragging";
+import { computeDistanceAlongAxis, Drag, computeRotationBetween, type DragEvent } from "../src/scene/interactive/dragging";
 
 const START = { position: new Vector3(1, 2, 3), orientation: new Quaternion() };
 const NO_ROTATION = new Quaternion();
@@ -87,10 +87,10 @@ test("buttons and menus do not move", () => {
 
 test("the nearest point of an axis to a line", () => {
   const ray = new Ray(new Vector3(3, -5, 1), new Vector3(0, 1, 0));
-  expect(distanceAlongAxis(ray, new Vector3(1, 0, 0), new Vector3(1, 0, 0))).toBeCloseTo(2);
+  expect(computeDistanceAlongAxis(ray, new Vector3(1, 0, 0), new Vector3(1, 0, 0))).toBeCloseTo(2);
 });
 
 test("the rotation between two directions keeps the sign of the axis", () => {
-  const rotation = rotationBetween(new Vector3(1, 0, 5), new Vector3(0, -1, 2), new Vector3(0, 0, 1));
+  const rotation = computeRotationBetween(new Vector3(1, 0, 5), new Vector3(0, -1, 2), new Vector3(0, 0, 1));
   expect(new Vector3(1, 0, 0).applyQuaternion(rotation).y).toBeCloseTo(-1);
 });

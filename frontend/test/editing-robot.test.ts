@@ -3,7 +3,7 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { EditablePart, PageMessage } from "../src/protocol";
 import { EditingState } from "../src/state/editing/editing";
-import { nearestRpy, quaternionOf } from "../src/state/editing/rotation";
+import { findNearestRpy, quaternionOf } from "../src/state/editing/rotation";
 import { openBrowserStorage } from "../src/storage";
 
 let sentMessages: PageMessage[];
@@ -39,19 +39,19 @@ describe("rotations", () => {
   });
 
   it.each([[[0.3, -1.1, 2.2]], [[3.1, 0.2, -3.1]], [[0.3, 2.5, 1]], [[0, 0, 0]]])("of %j keep their angles", (rpy) => {
-    nearestRpy(quaternionOf(rpy), rpy).forEach((angle, i) => expect(angle).toBeCloseTo(rpy[i] ?? NaN, 9));
+    findNearestRpy(quaternionOf(rpy), rpy).forEach((angle, i) => expect(angle).toBeCloseTo(rpy[i] ?? NaN, 9));
   });
 
   it.each([Math.PI / 2, -Math.PI / 2])("keep roll at gimbal lock, %d", (pitch) => {
     const rotation = quaternionOf([0.5, pitch, 0.2]);
-    const rpy = nearestRpy(rotation, [0.4, 0, 0]);
+    const rpy = findNearestRpy(rotation, [0.4, 0, 0]);
     expect(rpy[0]).toBe(0.4);
     const quaternion = quaternionOf(rpy);
     expect(Math.abs(quaternion.reduce((sum, value, i) => sum + value * (rotation[i] ?? 0), 0))).toBeCloseTo(1, 9);
   });
 
   it("continue over full turns", () => {
-    expect(nearestRpy(quaternionOf([0, 0, 3.2]), [0, 0, 3.1])[2]).toBeCloseTo(3.2, 9);
+    expect(findNearestRpy(quaternionOf([0, 0, 3.2]), [0, 0, 3.1])[2]).toBeCloseTo(3.2, 9);
   });
 });
 

@@ -2,7 +2,7 @@ import { BoxGeometry, ColorManagement, Mesh, Vector3, type Color, type DataTextu
 import { describe, expect, it } from "vitest";
 import { Backdrop } from "../src/scene/backdrop";
 import { ContactShadow } from "../src/scene/contact-shadow";
-import { fadedColors } from "../src/scene/displays/grid-lines";
+import { createFadedColors } from "../src/scene/displays/grid-lines";
 import { samplePoints, samplesOf } from "../src/scene/robot/surface-samples";
 
 function boxAt(x: number, z: number): Mesh {
@@ -76,7 +76,7 @@ describe("the shadow on the ground", () => {
 });
 
 it("lines of a grid fade out towards its edge", () => {
-  const shades = fadedColors(new Float32Array([0, 0, 0, 1, 0, 0, 2, 0, 0, 4, 0, 0]));
+  const shades = createFadedColors(new Float32Array([0, 0, 0, 1, 0, 0, 2, 0, 0, 4, 0, 0]));
   expect([shades[3], shades[7], shades[11], shades[15]]).toEqual([1, 1 - 1 / 16, 0.75, 0]);
 });
 

@@ -41,11 +41,11 @@ class Hall implements InitialViewWorld {
 
   hasFallen = false;
 
-  boundsByKind(): { robots: Box3; world: Box3 } {
+  computeBoundsByKind(): { robots: Box3; world: Box3 } {
     return { robots: this.hasRobots && !this.hasFallen ? ROBOT : new Box3(), world: HALL };
   }
 
-  cameraOfFile(): Matrix4 | null {
+  readCameraOfFile(): Matrix4 | null {
     return this.camera;
   }
 

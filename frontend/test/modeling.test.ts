@@ -4,7 +4,7 @@ import { formatHex, createEntityItems } from "../src/panels/modeling/entity-item
 import type { ModelingState, PageMessage, WorldEntity } from "../src/protocol";
 import { AngleUnits } from "../src/state/angle-unit";
 import { Modeling } from "../src/state/modeling/modeling";
-import { placementAt, resizeChange, scaledSize, stretchFactors, placeWall } from "../src/state/modeling/shapes";
+import { placementAt, resizeChange, scaleSize, computeStretchFactors, placeWall } from "../src/state/modeling/shapes";
 import { Snapping, snap } from "../src/state/modeling/snapping";
 import { openBrowserStorage } from "../src/storage";
 import type { TreeItem } from "../src/tree/tree-item";
@@ -44,12 +44,12 @@ describe("snapping", () => {
     const storage = openBrowserStorage();
     const snapping = new Snapping(storage);
     [snapping.meters, snapping.degrees] = [0.5, 90];
-    expect(snapping.currentSteps(false)).toEqual({ length: 0.5, angle: Math.PI / 2 });
-    expect(snapping.currentSteps(true)).toEqual({ length: 0, angle: 0 });
+    expect(snapping.chooseSteps(false)).toEqual({ length: 0.5, angle: Math.PI / 2 });
+    expect(snapping.chooseSteps(true)).toEqual({ length: 0, angle: 0 });
     snapping.isEnabled = false;
     const restoredSnapping = new Snapping(storage);
     expect([restoredSnapping.isEnabled, restoredSnapping.meters, restoredSnapping.degrees]).toEqual([false, 0.5, 90]);
-    expect(restoredSnapping.currentSteps(true).length).toBe(0.5);
+    expect(restoredSnapping.chooseSteps(true).length).toBe(0.5);
   });
 });
 
@@ -68,12 +68,12 @@ describe("shapes", () => {
   });
 
   it("scale along their axes, round ones by the axis scaled most, never to zero", () => {
-    expect(scaledSize("box", [1, 2, 3], [2, 1, 0.5], 0.1)).toEqual([2, 2, 1.5]);
-    expect(scaledSize("cylinder", [0.5, 1], [1, 0.5, 1], 0)).toEqual([0.25, 1]);
-    expect(scaledSize("sphere", [0.5], [1, 1, 3], 0)).toEqual([1.5]);
-    expect(scaledSize("box", [1, 1, 1], [0, 1, 1], 0.25)).toEqual([0.25, 1, 1]);
-    expect(scaledSize("box", [0.33, 1, 1], [1, 2, 1], 0.1)).toEqual([0.33, 2, 1]);
-    expect(stretchFactors("cylinder", [0.5, 1], [1, 3])).toEqual([2, 2, 3]);
+    expect(scaleSize("box", [1, 2, 3], [2, 1, 0.5], 0.1)).toEqual([2, 2, 1.5]);
+    expect(scaleSize("cylinder", [0.5, 1], [1, 0.5, 1], 0)).toEqual([0.25, 1]);
+    expect(scaleSize("sphere", [0.5], [1, 1, 3], 0)).toEqual([1.5]);
+    expect(scaleSize("box", [1, 1, 1], [0, 1, 1], 0.25)).toEqual([0.25, 1, 1]);
+    expect(scaleSize("box", [0.33, 1, 1], [1, 2, 1], 0.1)).toEqual([0.33, 2, 1]);
+    expect(computeStretchFactors("cylinder", [0.5, 1], [1, 3])).toEqual([2, 2, 3]);
   });
 
   it("keep their lowest point in place while they are upright", () => {

@@ -104,7 +104,7 @@ const GRAPH: NodeGraph = {
     { name: "/tf", types: ["t"], publishers: ["/base"], subscribers: ["/talker"] },
   ],
 };
-const OPTIONS: GraphOptions = { mode: "active", debug: false, tf: true, grouped: false, openGroups: new Set() };
+const OPTIONS: GraphOptions = { mode: "active", showsDebug: false, showsTf: true, groupsNamespaces: false, openGroups: new Set() };
 
 function listLabels(options: Partial<GraphOptions>): string[] {
   return buildGraph(GRAPH, { ...OPTIONS, ...options }).vertices.map(({ kind, label }) => `${kind} ${label}`);
@@ -127,8 +127,8 @@ describe("the drawn graph", () => {
 
   it("applies the filters", () => {
     expect(listLabels({ mode: "all" })).toContain("topic /echo");
-    expect(listLabels({ debug: true })).toContain("topic /rosout");
-    expect(listLabels({ tf: false })).not.toContain("topic /tf");
+    expect(listLabels({ showsDebug: true })).toContain("topic /rosout");
+    expect(listLabels({ showsTf: false })).not.toContain("topic /tf");
   });
 
   it("connects nodes directly if topics are not shown", () => {
@@ -138,10 +138,10 @@ describe("the drawn graph", () => {
   });
 
   it("merges the nodes of a namespace, including the topics between them", () => {
-    const { vertices, edges } = buildGraph(GRAPH, { ...OPTIONS, grouped: true });
+    const { vertices, edges } = buildGraph(GRAPH, { ...OPTIONS, groupsNamespaces: true });
     expect(vertices).toContainEqual({ id: "group:/left", kind: "group", label: "/left/", count: 2 });
     expect(vertices.map(({ label }) => label)).not.toContain("/left/grip");
     expect(edges).toContainEqual({ source: "group:/left", target: "topic:/left/state", topics: [] });
-    expect(listLabels({ grouped: true, openGroups: new Set(["/left"]) })).toContain("node /left/hand");
+    expect(listLabels({ groupsNamespaces: true, openGroups: new Set(["/left"]) })).toContain("node /left/hand");
   });
 });

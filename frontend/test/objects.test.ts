@@ -12,13 +12,13 @@ import {
   type ShaderMaterial,
 } from "three";
 import { describe, expect, it } from "vitest";
-import { rainbow } from "../src/scene/displays/effort";
-import { alongX, ArrowBatch } from "../src/scene/objects/arrow-batch";
+import { rainbowColorOf } from "../src/scene/displays/effort";
+import { poseAlongX, ArrowBatch } from "../src/scene/objects/arrow-batch";
 import { AxesBatch } from "../src/scene/objects/axes-batch";
 import { CopyBatch } from "../src/scene/objects/copy-batch";
 import { CovarianceBatch, type CovarianceStyle } from "../src/scene/objects/covariance-batch";
 import { computePrincipalAxes } from "../src/scene/objects/eigen";
-import { sphereGeometry, coneGeometry, cubeGeometry, rodGeometry } from "../src/scene/objects/geometries";
+import { createSphere, createCone, createCube, createRod } from "../src/scene/objects/geometries";
 import { createRibbons, segmentsOf, stripsOf } from "../src/scene/objects/ribbons";
 
 interface BoundedBatch {
@@ -39,18 +39,18 @@ describe("geometries", () => {
       geometry.computeBoundingBox();
       return geometry.boundingBox!;
     };
-    expect(boundingBoxOf(rodGeometry(16)).min.toArray().map(Math.fround)).toEqual([0, -0.5, -0.5]);
-    expect(boundingBoxOf(rodGeometry(16)).max.toArray().map(Math.fround)).toEqual([1, 0.5, 0.5]);
-    expect(boundingBoxOf(coneGeometry(16)).max.x).toBeCloseTo(1);
-    expect(boundingBoxOf(sphereGeometry(16)).getSize(new Vector3()).z).toBeCloseTo(1);
-    expect(boundingBoxOf(cubeGeometry()).getSize(new Vector3()).toArray()).toEqual([1, 1, 1]);
+    expect(boundingBoxOf(createRod(16)).min.toArray().map(Math.fround)).toEqual([0, -0.5, -0.5]);
+    expect(boundingBoxOf(createRod(16)).max.toArray().map(Math.fround)).toEqual([1, 0.5, 0.5]);
+    expect(boundingBoxOf(createCone(16)).max.x).toBeCloseTo(1);
+    expect(boundingBoxOf(createSphere(16)).getSize(new Vector3()).z).toBeCloseTo(1);
+    expect(boundingBoxOf(createCube()).getSize(new Vector3()).toArray()).toEqual([1, 1, 1]);
   });
 });
 
 describe("CopyBatch", () => {
   it("draws translucent copies from the farthest to the nearest, and still identifies them", () => {
     const parent = new Group();
-    const batch = new CopyBatch(parent, cubeGeometry());
+    const batch = new CopyBatch(parent, createCube());
     batch.begin(3);
     for (const x of [3, 1, 2]) batch.add(new Matrix4().makeTranslation(x, 0, 0), 0, 0.5);
     batch.end();
@@ -70,7 +70,7 @@ describe("CopyBatch", () => {
 
   it("draws what is visible to each camera, and still identifies all copies", () => {
     const parent = new Group();
-    const batch = new CopyBatch(parent, cubeGeometry());
+    const batch = new CopyBatch(parent, createCube());
     batch.begin(3);
     for (const x of [5, -5, 7]) batch.add(new Matrix4().makeTranslation(x, 0, 0));
     batch.end();
@@ -81,7 +81,7 @@ describe("CopyBatch", () => {
       camera.lookAt(targetX, 0, 0);
       camera.updateMatrixWorld();
       (mesh as unknown as { onBeforeRender(...args: unknown[]): void }).onBeforeRender(null, null, camera);
-      const count = mesh.geometry.drawRange.count / cubeGeometry().index!.count;
+      const count = mesh.geometry.drawRange.count / createCube().index!.count;
       return Array.from({ length: count }, (_, slot) => (slots.value.image.data as Float32Array)[slot * 16 + 3]!);
     };
     expect(drawToward(1)).toEqual([5, 7]);
@@ -98,7 +98,7 @@ describe("CopyBatch", () => {
 
   it("places copies according to their matrices", () => {
     const parent = new Group();
-    const batch = new CopyBatch(parent, cubeGeometry());
+    const batch = new CopyBatch(parent, createCube());
     batch.begin(3);
     batch.add(new Matrix4().makeTranslation(5, 0, 0));
     batch.add(new Matrix4().makeRotationZ(Math.PI / 2).multiply(new Matrix4().makeScale(4, 1, 1)), 0, 0.5, 0x123456);
@@ -124,9 +124,9 @@ describe("ArrowBatch", () => {
   });
 
   it("points in any direction", () => {
-    const pose = alongX(new Vector3(1, 2, 3), new Vector3(0, 0, -7), new Matrix4());
+    const pose = poseAlongX(new Vector3(1, 2, 3), new Vector3(0, 0, -7), new Matrix4());
     expect(new Vector3(1, 0, 0).applyMatrix4(pose).distanceTo(new Vector3(1, 2, 2))).toBeLessThan(1e-6);
-    const backwardPose = alongX(new Vector3(), new Vector3(-1, 0, 0), new Matrix4());
+    const backwardPose = poseAlongX(new Vector3(), new Vector3(-1, 0, 0), new Matrix4());
     expect(new Vector3(1, 0, 0).applyMatrix4(backwardPose).x).toBeCloseTo(-1);
   });
 });
@@ -238,7 +238,7 @@ describe("CovarianceBatch", () => {
 
 describe("colors of efforts", () => {
   it("range from violet to red", () => {
-    expect([0, 0.2, 0.4, 0.6, 0.8, 1].map((value) => rainbow(value).map((part) => Math.round(part)))).toEqual([
+    expect([0, 0.2, 0.4, 0.6, 0.8, 1].map((value) => rainbowColorOf(value).map((part) => Math.round(part)))).toEqual([
       [1, 0, 1],
       [0, 0, 1],
       [0, 1, 1],
@@ -254,7 +254,7 @@ describe("picking", () => {
 
   it("finds the nearest copy, and three.js the bounds of all", () => {
     const parent = new Group();
-    const batch = new CopyBatch(parent, cubeGeometry());
+    const batch = new CopyBatch(parent, createCube());
     batch.begin(3);
     batch.add(new Matrix4());
     batch.add(new Matrix4().makeTranslation(0, 0, 2));

@@ -1,9 +1,9 @@
 import { describe, expect, it } from "vitest";
-import { obviousDisplay } from "../src/state/obvious-display";
+import { findObviousDisplay } from "../src/state/obvious-display";
 
 function findName(topic: string, message: string, ...classes: string[]): string | null {
   const classNames = classes.map((name) => (name === "World" ? "linkwright/World" : `rviz_default_plugins/${name}`));
-  return obviousDisplay({ topic, message, classes: classNames })?.split("/")[1] ?? null;
+  return findObviousDisplay({ topic, message, classes: classNames })?.split("/")[1] ?? null;
 }
 
 describe("the obvious display of a topic", () => {

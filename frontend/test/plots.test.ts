@@ -79,7 +79,7 @@ describe("a series buffer", () => {
     const buffer = new SeriesBuffer();
     buffer.append([100, 101], [5, NaN], [1, 2]);
     expect([...buffer.timesOf("stamp")]).toEqual([5, 101]);
-    expect(buffer.latestTime("received")).toBe(101);
+    expect(buffer.latestTimeOf("received")).toBe(101);
     expect(buffer.indexFrom("received", 100.5)).toBe(1);
   });
 

@@ -2,7 +2,7 @@ import { expect, test } from "vitest";
 import { describePoint } from "../src/scene/displays/cloud-description";
 import { mapPalette } from "../src/scene/displays/map-palette";
 import { findNearestPoint } from "../src/scene/objects/nearest-point";
-import { cameraInImageFrame, computeZoom, createProjection } from "../src/scene/images/camera-projection";
+import { createCameraPose, computeZoom, createProjection } from "../src/scene/images/camera-projection";
 import { rgbaOf } from "../src/scene/images/image-canvas";
 import { isShownInCamera } from "../src/scene/images/shown-in-camera";
 import { DisplayState } from "../src/state/displays";
@@ -110,7 +110,7 @@ test("the camera projects according to its matrix", () => {
 });
 
 test("the camera looks along z of its image, offset from its frame", () => {
-  const pose = cameraInImageFrame(CAMERA);
+  const pose = createCameraPose(CAMERA);
   expect(new Vector3(0, 0, -1).applyMatrix4(pose).toArray()).toEqual([0.1, expect.closeTo(0), expect.closeTo(1)]);
 });
 

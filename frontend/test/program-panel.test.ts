@@ -1,7 +1,7 @@
 import { describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { ProgramPage, ServerMessage } from "../src/protocol";
-import { takeRequested, withSettings } from "../src/requested-settings";
+import { takeRequested, addSettings } from "../src/requested-settings";
 import { TerminalsState } from "../src/state/terminals";
 
 const WORLD: ProgramPage = { id: 1, title: "world", url: "http://127.0.0.1:7449/?token=abc" };
@@ -41,7 +41,7 @@ describe("the pages of programs", () => {
 
 describe("the settings of a program's page", () => {
   it("are those of the page around it, and do not stay in its address", () => {
-    const address = withSettings(WORLD.url, { language: "zh", theme: "dark" });
+    const address = addSettings(WORLD.url, { language: "zh", theme: "dark" });
     expect(address).toBe("http://127.0.0.1:7449/?token=abc&language=zh&theme=dark");
     const location = { href: address };
     const history = { state: null, replaceState: (_: unknown, unused: string, url: URL) => (location.href = url.href + unused) };

@@ -112,9 +112,9 @@ describe("RobotDrawing", () => {
     const row = createRobot(ROW);
     draw(row);
     expect(row.drawing.progress).toEqual({ posed: 4, loading: 0 });
-    expect(row.drawing.bounds().max.toArray()).toEqual([1.1, expect.closeTo(3.1), 0.5]);
+    expect(row.drawing.computeBounds().max.toArray()).toEqual([1.1, expect.closeTo(3.1), 0.5]);
     draw(row, new PropertyRows([new PropertyNode(createProperty({ id: "v", name: "Visual Enabled", value: false }))]));
-    expect(row.drawing.bounds().max.toArray()).toEqual([0, 3, 0]);
+    expect(row.drawing.computeBounds().max.toArray()).toEqual([0, 3, 0]);
   });
 
   it("has a pose with that of a link with visuals, or of any link if none has visuals or none is visible", () => {

@@ -3,7 +3,7 @@ import { Connection } from "../src/connection/connection";
 import { createDetailRows } from "../src/panels/displays/detail-rows";
 import { createDisplayRows, linkOfKey, linkRowPath } from "../src/panels/displays/robot-rows";
 import type { JointScene, Property, ServerMessage } from "../src/protocol";
-import { compose, computeRelativePose } from "../src/state/pose-numbers";
+import { composePoses, computeRelativePose } from "../src/state/pose-numbers";
 import { Session } from "../src/state/session";
 import { formatPoint } from "../src/tree/numbers";
 import type { TreeItem } from "../src/tree/tree-item";
@@ -246,7 +246,7 @@ describe("poses", () => {
   it("are the same after composing and decomposing", () => {
     const a = [1, 2, 3, 0, HALF, 0, HALF] as const;
     const b = [-1, 0.5, 2, HALF, 0, 0, HALF] as const;
-    computeRelativePose(a, compose(a, b)).forEach((part, i) => expect(part).toBeCloseTo(b[i]!));
+    computeRelativePose(a, composePoses(a, b)).forEach((part, i) => expect(part).toBeCloseTo(b[i]!));
   });
 });
 

@@ -3,7 +3,7 @@ import { Connection } from "../src/connection/connection";
 import { describeObstacle } from "../src/panels/voice/voice-words";
 import type { PageMessage } from "../src/protocol";
 import { GapFinder } from "../src/state/voice/gaps";
-import { meterShare } from "../src/state/voice/level";
+import { computeMeterShare } from "../src/state/voice/level";
 import { Microphone, type OpenCapture } from "../src/state/voice/microphone";
 import { toPcm, Resampler } from "../src/state/voice/resampler";
 import { encodeSound, VoiceState } from "../src/state/voice/voice";
@@ -41,10 +41,10 @@ describe("resampling", () => {
 });
 
 it("a level meter is logarithmic", () => {
-  expect(meterShare(1)).toBe(1);
-  expect(meterShare(0.001)).toBeCloseTo(0);
-  expect(meterShare(0)).toBe(0);
-  expect(meterShare(Math.sqrt(0.001))).toBeCloseTo(0.5);
+  expect(computeMeterShare(1)).toBe(1);
+  expect(computeMeterShare(0.001)).toBeCloseTo(0);
+  expect(computeMeterShare(0)).toBe(0);
+  expect(computeMeterShare(Math.sqrt(0.001))).toBeCloseTo(0.5);
 });
 
 describe("gaps", () => {

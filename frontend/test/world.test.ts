@@ -1,8 +1,8 @@
 import { Box3, BoxGeometry, Matrix4, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import { freePlace } from "../src/scene/displays/free-place";
+import { findFreePlace } from "../src/scene/displays/free-place";
 import type { MeshPart } from "../src/scene/meshes/mesh-template";
-import { extrudePolygons, heightmapGeometry, selectSubmesh } from "../src/scene/objects/world-geometries";
+import { extrudePolygons, createHeightmap, selectSubmesh } from "../src/scene/objects/world-geometries";
 
 const SQUARE = [0, 0, 4, 0, 4, 4, 0, 4];
 const HOLE = [1, 1, 3, 1, 3, 3, 1, 3];
@@ -56,7 +56,7 @@ describe("submesh", () => {
 
 describe("ground", () => {
   it("has the heights at their positions, the first row at minimum y", () => {
-    const geometry = heightmapGeometry(new Float32Array([0, 0, 1, 1]), 2, [10, 20, 3, 1, 2, 0.5, 5]);
+    const geometry = createHeightmap(new Float32Array([0, 0, 1, 1]), 2, [10, 20, 3, 1, 2, 0.5, 5]);
     geometry.computeBoundingBox();
     const createBox = geometry.boundingBox ?? new Box3();
     expect([...createBox.min.toArray(), ...createBox.max.toArray()]).toEqual([-4, -8, 0.5, 6, 12, 3.5]);
@@ -71,19 +71,19 @@ describe("the position proposed for a model", () => {
   const origin = new Matrix4();
 
   it("is the origin, or the nearest free meter", () => {
-    expect(freePlace([], origin)).toEqual([0, 0, 0]);
-    expect(freePlace([createBox(5, 0, 1)], origin)).toEqual([0, 0, 0]);
-    expect(freePlace([createBox(0, 0, 0.4)], origin)).toEqual([1, 0, 0]);
-    expect(freePlace([createBox(0, 0, 0.4), createBox(1, 0, 0.2)], origin)).toEqual([0, 1, 0]);
-    expect(freePlace([createBox(0, 0, 3.2)], origin)).toEqual([3, 0, 0]);
+    expect(findFreePlace([], origin)).toEqual([0, 0, 0]);
+    expect(findFreePlace([createBox(5, 0, 1)], origin)).toEqual([0, 0, 0]);
+    expect(findFreePlace([createBox(0, 0, 0.4)], origin)).toEqual([1, 0, 0]);
+    expect(findFreePlace([createBox(0, 0, 0.4), createBox(1, 0, 0.2)], origin)).toEqual([0, 1, 0]);
+    expect(findFreePlace([createBox(0, 0, 3.2)], origin)).toEqual([3, 0, 0]);
   });
 
   it("is in the world's frame, whatever the fixed frame is", () => {
-    expect(freePlace([createBox(10, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([1, 0, 0]);
-    expect(freePlace([createBox(0, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([0, 0, 0]);
+    expect(findFreePlace([createBox(10, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([1, 0, 0]);
+    expect(findFreePlace([createBox(0, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([0, 0, 0]);
   });
 
   it("is beyond all objects if nothing near is free", () => {
-    expect(freePlace([createBox(0, 0, 60)], origin)).toEqual([31, 0, 0]);
+    expect(findFreePlace([createBox(0, 0, 60)], origin)).toEqual([31, 0, 0]);
   });
 });
