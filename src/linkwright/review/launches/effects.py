@@ -59,7 +59,7 @@ _INPUTS = re.compile(
 
 
 def removal_reason(entry: Entry, outline: LaunchOutline, new: LaunchOutline) -> Phrase | None:
-    """Return why it is breaking that an action is removed, or None if it is not.
+    """Return why removing a launch action is a breaking change, or None if it is not.
 
     Args:
         entry: the action.
@@ -89,7 +89,7 @@ def removal_reason(entry: Entry, outline: LaunchOutline, new: LaunchOutline) -> 
 
 
 def addition_reason(entry: Entry) -> Phrase | None:
-    """Return why it is breaking that an action is added, or None if it is not."""
+    """Return why adding a launch action is a breaking change, or None if it is not."""
     if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
         return _required_reason(entry)
     if entry.kind == READING and not entry.settings:

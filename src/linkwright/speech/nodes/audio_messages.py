@@ -121,7 +121,7 @@ def _sample_bytes(audio_format: AudioFormat) -> int:
 
 
 def _values(data: bytes, audio_format: AudioFormat) -> NDArray[np.float64]:
-    """Return samples with the stream's channels and rate, full scale at 1.
+    """Return the samples in the data as numbers from -1 to 1, with interleaved channels.
 
     An incomplete last sample is dropped.
     """
