@@ -1,4 +1,4 @@
-"""Extraction of elements to a macro with parameters for the names that they use."""
+"""Extract elements to a macro with parameters for the names that they use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Resolution of ``package://`` and ``file://`` URIs, and of plain paths, in descriptions."""
+"""Resolve ``package://`` and ``file://`` URIs and plain paths in descriptions."""
 
 from __future__ import annotations
 

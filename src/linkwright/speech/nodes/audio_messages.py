@@ -1,4 +1,4 @@
-"""The conversion of samples to messages of audio_common_msgs, and back from any format.
+"""Convert samples to messages of audio_common_msgs, and back from any format.
 
 audio_capture publishes interleaved samples in one of GStreamer's formats (``S16LE``), which it announces on
 ``audio_info``. Without an AudioInfo, the format is audio_capture's default: 16 kHz, mono, S16LE.
