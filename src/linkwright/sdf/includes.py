@@ -1,4 +1,4 @@
-"""Resolution of ``<include>`` in worlds and models."""
+"""Resolve ``<include>`` in worlds and models."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Resolution of the URIs of models and their files.
+"""Resolve the URIs of models and their files.
 
 The URIs are ``model://``, ``package://`` and ``file://`` URIs, paths, and addresses on Fuel.
 """

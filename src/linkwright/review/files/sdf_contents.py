@@ -13,7 +13,7 @@ _MAX_NAMES = 8
 _MAX_VALUES = 8
 """The number of values that the line about an added element shows."""
 _NAMED_BY_CHILD = "include"
-"""The tag of elements that have their name in a child."""
+"""The tag of elements whose name is a child, or the URI if there is none."""
 
 
 def names_in(element: Element) -> Iterator[Phrase]:
@@ -67,7 +67,7 @@ def added_text(path: str, element: Element) -> Phrase:
 def _only_descendant(element: Element, path: str) -> tuple[Element, str]:
     """Return an element, or, if it has no name, the one below it that has a value or several children, and its path."""
     children = list(element.elements())
-    while len(children) == 1 and not (element.tag == _NAMED_BY_CHILD or element.attributes or element.text().strip()):
+    while len(children) == 1 and not (element.attributes or element.text().strip() or element.tag == _NAMED_BY_CHILD):
         element = children[0]
         path = " ".join(filter(None, (path, element.tag, element.attributes.get("name"))))
         children = list(element.elements())
@@ -81,8 +81,9 @@ def _values_text(element: Element) -> Phrase | None:
 
 
 def _values(element: Element, path: str) -> Iterator[str]:
+    name_tag = "uri" if element.first("name") is None else "name"
     for child in element.elements():
-        if element.tag == _NAMED_BY_CHILD and child is (element.first("name") or element.first("uri")):
+        if element.tag == _NAMED_BY_CHILD and child.tag == name_tag:
             continue
         child_path = " ".join(filter(None, (path, child.tag, child.attributes.get("name"))))
         content = own_content(child)

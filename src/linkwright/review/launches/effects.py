@@ -64,7 +64,7 @@ _INPUTS = re.compile(
 def removal_reason(
     entry: Entry, outline: LaunchOutline, new: LaunchOutline, *, includes_nodes: bool = False
 ) -> Phrase | None:
-    """Return why it is breaking that an action is removed, or None if it is not.
+    """Return why removing a launch action is a breaking change, or None if it is not.
 
     Args:
         entry: the action.
@@ -110,7 +110,7 @@ def _starts_same_node(entry: Entry, other: Entry, old: LaunchOutline, new: Launc
 
 
 def addition_reason(entry: Entry) -> Phrase | None:
-    """Return why it is breaking that an action is added, or None if it is not."""
+    """Return why adding a launch action is a breaking change, or None if it is not."""
     if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
         return _required_reason(entry)
     if entry.kind == READING and not entry.settings:
