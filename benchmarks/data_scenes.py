@@ -57,11 +57,11 @@ class Scene:
     """One display of data at a steady rate, beside a robot whose links all move.
 
     Attributes:
-        display: class of the display.
-        messages: makes what is published in turns.
-        rate: messages a second.
-        links: of the robot; 0 for none.
-        frame_rate: transforms a second, for each link.
+        display: the class of the display.
+        messages: returns the messages that are published in turn.
+        rate: the number of messages per second.
+        links: the number of links of the robot; 0 for no robot.
+        frame_rate: the number of transforms per second of each link.
     """
 
     display: str

@@ -29,7 +29,7 @@ class Measured(Protocol):
 
 @dataclass
 class Row:
-    """One measured thing.
+    """A row of the table of measurements.
 
     Attributes:
         what: the measured quantity.

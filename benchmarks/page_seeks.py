@@ -80,7 +80,7 @@ def _seek(page: PlainPage, file: Path, length: float, part: float) -> float:
 
 
 def _forget(file: Path) -> None:
-    """Have the system read the file anew."""
+    """Drop a file from the page cache, so that it is read from the disk again."""
     with file.open("rb") as opened:
         os.fsync(opened.fileno())
         os.posix_fadvise(opened.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)

@@ -102,7 +102,7 @@ def program(side: str, *words: str) -> subprocess.Popen[str]:
 
 
 def measure(pair: tuple[str, str], reliable: bool, depth: int, rate: float, seconds: float) -> dict[str, Any]:
-    """How many pictures came of how many, and whether the reader hung."""
+    """Return the numbers of images sent and received, the time of each, and whether the reader hung."""
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as ends:
         counter = Path(folder) / "came"
         counter.write_text("0 0")

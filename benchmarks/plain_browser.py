@@ -36,7 +36,7 @@ class PlainBrowser:
 
     @contextmanager
     def opened(self, url: str, ready: str, width: int, height: int, script: str = "") -> Iterator[PlainPage]:
-        """A page with storage of its own, in which a script ran before its own, from when a condition holds on it."""
+        """Yield a page with storage of its own, once a condition holds; a script runs before those of the page."""
         context = self._socket.call("Target.createBrowserContext")["browserContextId"]
         target = self._socket.call("Target.createTarget", url="about:blank", browserContextId=context)["targetId"]
         with closing(PlainPage(Socket(self._pages + target))) as page:

@@ -92,7 +92,7 @@ def missing() -> list[str]:
 
 
 def say(speaker: Speaker, text: str, *, speed: float = 1.0, pitch: float = 1.0) -> Samples:
-    """What the speaker makes of a text, without silence before and after."""
+    """Return a text as the speaker says it, without silence before and after."""
     key = hashlib.sha256(f"{speaker}{text}{speed:.3f}{pitch:.3f}".encode()).hexdigest()[:20]
     path = _KEPT / f"{key}.wav"
     if not path.exists():

@@ -70,7 +70,7 @@ def print_table(found: dict[Path, list[Diagnostic]]) -> None:
 
 
 def print_sample(found: dict[Path, list[Diagnostic]], code: str) -> None:
-    """Print findings of a code, one of each robot before the second of any robot."""
+    """Print a sample of the findings of a code: one of each robot, then the second of each, and so on."""
     mine = [[diagnostic for diagnostic in diagnostics if diagnostic.code == code] for diagnostics in found.values()]
     picked = [each[turn] for turn in range(_SAMPLE) for each in mine if len(each) > turn]
     for each in picked[:_SAMPLE]:
