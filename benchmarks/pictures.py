@@ -68,7 +68,7 @@ def publish(reliable: bool, depth: int, rate: float, seconds: float) -> None:
 
 
 def subscribe(reliable: bool, depth: int, counter: Path) -> None:
-    """Count the pictures that come, and the processor's time, in a file: a reader that hangs cannot be asked."""
+    """Write the number of received images and the processor time to a file: a reader that hangs cannot reply."""
     import rclpy
     from sensor_msgs.msg import Image
 

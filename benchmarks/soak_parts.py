@@ -57,11 +57,11 @@ class Part(Node):
         print(json.dumps({"seen": self.seen, "failures": self.failures[:5], **self.figures()}), flush=True)
 
     def figures(self) -> dict[str, Any]:
-        """What else there is to tell."""
+        """Return further figures to report."""
         return {}
 
     def failed(self, what: str) -> None:
-        """Take note of a failure."""
+        """Record a failure."""
         self.seen["failures"] += 1
         self.failures.append(what)
 
