@@ -33,14 +33,14 @@ def main() -> int:
             print(f"{name:12} {said.partition(chr(10))[0]}")
         return 0
     print(f"Python {platform.python_version()}, {platform.system()} {platform.machine()}")
-    found: dict[str, Sequence[Measured]] = {}
+    results: dict[str, Sequence[Measured]] = {}
     for name in names:
         print(f"\n== {name}")
-        found[name] = importlib.import_module(f"benchmarks.bench_{name}").rows()
-        show(found[name])
+        results[name] = importlib.import_module(f"benchmarks.bench_{name}").rows()
+        show(results[name])
     if "--write" in sys.argv:
         for path in report.write(
-            {name: rows for name, rows in found.items() if name in report.TITLES}, corpus=has_corpus()
+            {name: rows for name, rows in results.items() if name in report.TITLES}, corpus=has_corpus()
         ):
             print(f"Written: {path}")
     return 0

@@ -160,24 +160,24 @@ def rows() -> list[Row]:
             turns[name].append(beats)
             cycles[name].append(alone_us)
         turns["bare"].append(bare())
-    found = []
+    table = []
     for name, about in (("nobody", "nobody listens"), ("somebody", "/joint_states is listened to")):
 
         def row(what: str, field: str, unit: str, target: str = "", name: str = name, about: str = about) -> Row:
             def middle(which: str) -> float:
-                return float(statistics.median(getattr(each, field) for each in turns[which]))
+                return float(statistics.median(getattr(turn, field) for turn in turns[which]))
 
             peers: dict[str, float | None] = {"bare loop": middle("bare")}
             return Row(f"12 joints at 1 kHz, {about}: {what}", middle(name), unit, target, peers)
 
-        found += [
+        table += [
             row("updates", "rate", "/s", "1000"),
             row("load", "load", "% of a core", "15"),
             row("99 of 100 periods over by less than", "late_us", "us"),
             row("longest period over by", "longest_us", "us"),
             Row(f"12 joints, {about}: a cycle without pause", statistics.median(cycles[name]), "us"),
         ]
-    return found
+    return table
 
 
 if __name__ == "__main__":

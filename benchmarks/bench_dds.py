@@ -59,13 +59,13 @@ def medians(kind: str, rate: float) -> dict[str, dict[str, float]]:
     runs: dict[str, list[dict[str, float]]] = {library: [] for library in libraries}
     for _ in range(ROUNDS):
         for library in libraries:
-            found = measured(library, kind, rate)
-            if found is not None:
-                runs[library].append(found)
+            result = measured(library, kind, rate)
+            if result is not None:
+                runs[library].append(result)
     return {
-        library: {name: statistics.median(run[name] for run in found) for name in found[0]}
-        for library, found in runs.items()
-        if found
+        library: {name: statistics.median(run[name] for run in library_runs) for name in library_runs[0]}
+        for library, library_runs in runs.items()
+        if library_runs
     }
 
 
@@ -80,15 +80,15 @@ def table(what: str, kind: str, rate: float, promised: str, share: str = "", *, 
         share: the share of a core that each side may use.
         aged: whether the age of received messages is measured.
     """
-    found = medians(kind, rate)
+    results = medians(kind, rate)
 
     def row(name: str, figure: str, unit: str, target: str) -> Row:
         beside = {
-            title: found.get(library, {}).get(figure)
+            title: results.get(library, {}).get(figure)
             for library, title in LIBRARIES.items()
             if title and not (figure == "latency" and library == "plain")
         }
-        return Row(f"{what}{name}", found["ours"][figure], unit, target, dict(beside))
+        return Row(f"{what}{name}", results["ours"][figure], unit, target, dict(beside))
 
     rows = [row(", received", "rate", "1/s", promised)]
     if aged:

@@ -102,7 +102,7 @@ def latencies_us() -> list[float]:
     executor.add_node(node)
     spinner = threading.Thread(target=executor.spin)
     spinner.start()
-    found = []
+    latencies = []
     message = String(data="hello")
     for number in range(LATENCIES):
         time.sleep(0.0005)
@@ -110,11 +110,11 @@ def latencies_us() -> list[float]:
         publisher.publish(message)
         while len(begun) <= number:
             time.sleep(0)
-        found.append((begun[number] - start) / 1_000)
+        latencies.append((begun[number] - start) / 1_000)
     executor.shutdown()
     spinner.join()
     graph.close_threadsafe()
-    return found
+    return latencies
 
 
 def in_same_thread_us() -> float:
@@ -126,16 +126,16 @@ def in_same_thread_us() -> float:
     node.create_subscription(String, "chatter", lambda _message: begun.append(time.perf_counter_ns()), 10)
     publisher = node.create_publisher(String, "chatter", 10)
     executor.add_node(node)
-    found = []
+    latencies = []
     message = String(data="hello")
     for number in range(LATENCIES):
         start = time.perf_counter_ns()
         publisher.publish(message)
         executor.spin_once(0)
-        found.append((begun[number] - start) / 1_000)
+        latencies.append((begun[number] - start) / 1_000)
     executor.shutdown()
     graph.close_threadsafe()
-    return statistics.median(found)
+    return statistics.median(latencies)
 
 
 def as_users_write_it() -> tuple[float, float]:

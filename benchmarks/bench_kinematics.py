@@ -28,7 +28,7 @@ ROUNDS = 9
 
 def rows() -> list[Row]:
     """Measure, and return the rows of the table."""
-    found = []
+    table = []
     for links, moving, target in ((23, 12, "2 us, aiming at 1"), (88, 45, "10 us, aiming at 5")):
         text = detailed_robot(links, moving)
         tree = KinematicTree(load(text))
@@ -42,11 +42,11 @@ def rows() -> list[Row]:
         others["pinocchio"] = slow["pinocchio"] / FEW * 1e6 if slow else None
         size = f"{links} links, {len(tree.joint_names)} joints"
         mine = times["ours"] / CONFIGURATIONS * 1e6
-        found.append(Row(f"{size}, each of {CONFIGURATIONS} configurations", mine, "us", target, others))
+        table.append(Row(f"{size}, each of {CONFIGURATIONS} configurations", mine, "us", target, others))
         single = side_by_side({"ours": lambda tree=tree, one=many[0]: tree.forward(one)}, ROUNDS, repeat=300)
         others = {"pinocchio": others["pinocchio"]}
-        found.append(Row(f"{size}, a single configuration", single["ours"] * 1e6, "us", "20 us, aiming at 15", others))
-    return found
+        table.append(Row(f"{size}, a single configuration", single["ours"] * 1e6, "us", "20 us, aiming at 15", others))
+    return table
 
 
 class _Plain:

@@ -80,11 +80,11 @@ def toured(scale: float, yaw_per_meter: float, noise: float) -> _Tour:
 
 def rows() -> list[Row]:
     """Measure, and return the rows of the table."""
-    found = []
+    table = []
     for name, quality in QUALITIES.items():
         tour = toured(*quality)
         about = f"odometry {name}"
-        found += [
+        table += [
             Row(f"{about}: pose off at the end", 100 * tour.pose_off, "cm", "", {"odometry": 100 * tour.odometry_off}),
             Row(f"{about}: turned off at the end", float(np.degrees(tour.turned_off)), "deg"),
             Row(f"{about}: walls off, mean", 100 * float(tour.walls_off.mean()), "cm"),
@@ -92,4 +92,4 @@ def rows() -> list[Row]:
             Row(f"{about}: a scan", 1e3 * sum(tour.step_s) / tour.scans, "ms"),
             Row(f"{about}: longest step", 1e3 * max(tour.step_s), "ms", "20"),
         ]
-    return found
+    return table

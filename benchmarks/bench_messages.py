@@ -92,7 +92,7 @@ def rosbags_object(store: Any, message: Any) -> Any:
     def value(kind: FieldType, given: Any) -> Any:
         if kind.primitive is None:
             one = kind.container is Container.ONE
-            return rosbags_object(store, given) if one else [rosbags_object(store, each) for each in given]
+            return rosbags_object(store, given) if one else [rosbags_object(store, item) for item in given]
         return np.array(given, kind.primitive.dtype) if kind.is_numeric_array else given
 
     values = {field.name: value(field.type, getattr(message, field.name)) for field in message._definition.fields}
@@ -132,7 +132,7 @@ def cyclone_object(cls: type[Any], message: Any) -> Any:
             value = cyclone_object(field.type, value)
         elif isinstance(value, list) and value and hasattr(value[0], "TYPE_NAME"):
             (inner,) = (field.type.__metadata__[0].subtype,)
-            value = [cyclone_object(inner, each) for each in value]
+            value = [cyclone_object(inner, item) for item in value]
         elif not isinstance(value, (str, int, float)):
             value = list(value)
         values[field.name] = value
@@ -142,7 +142,7 @@ def cyclone_object(cls: type[Any], message: Any) -> Any:
 def rows() -> list[Row]:
     """Measure, and return the rows of the table."""
     store = get_typestore(Stores.ROS2_HUMBLE)
-    found: list[Row] = []
+    table: list[Row] = []
     state, tf = cyclone_types()
     plain = {JointState: state, TFMessage: tf}
     for what, message in messages().items():
@@ -151,7 +151,7 @@ def rows() -> list[Row]:
         cls = type(message)
         struct = plain.get(cls)
         other = cyclone_object(struct, message) if struct else None
-        found.append(
+        table.append(
             _row(
                 f"{what}: written",
                 lambda m=message: serialize(m),
@@ -159,7 +159,7 @@ def rows() -> list[Row]:
                 cyclonedds=other.serialize if other else None,
             )
         )
-        found.append(
+        table.append(
             _row(
                 f"{what}: read",
                 lambda d=data, c=cls: _all_of(deserialize(d, c)),
@@ -169,11 +169,11 @@ def rows() -> list[Row]:
         )
     batch = TFMessage(batch=transforms(100).batch)
     data = serialize(batch)
-    found.append(_row("TFMessage, 100 transforms: written from arrays", lambda: serialize(batch)))
-    found.append(_row("TFMessage, 100 transforms: read as arrays", lambda: _batch(data)))
-    found += _texts()
-    found.append(_start())
-    return found
+    table.append(_row("TFMessage, 100 transforms: written from arrays", lambda: serialize(batch)))
+    table.append(_row("TFMessage, 100 transforms: read as arrays", lambda: _batch(data)))
+    table += _texts()
+    table.append(_start())
+    return table
 
 
 def _all_of(message: Any) -> Any:
@@ -199,8 +199,8 @@ def _texts() -> list[Row]:
 
 def _plain(value: Any) -> Any:
     if isinstance(value, dict):
-        return {key: _plain(each) for key, each in value.items()}
-    return [_plain(each) for each in value] if isinstance(value, list) else value
+        return {key: _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, list) else value
 
 
 def _start() -> Row:

@@ -83,17 +83,17 @@ def _in_rooms(size: int, promised: str) -> list[Row]:
     layers = [static, ObstacleLayer([buffer], HeightRange()), InflationLayer(_INFLATION)]
     layered = LayeredCostmap(_blank(size), layers, circle(_RADIUS))
     static.set_map(Grid(cells=rooms(size), resolution=_RESOLUTION))
-    found = [Row(f"costmap of {what}, all of it", milliseconds(_anew, layered), "ms")]
+    table = [Row(f"costmap of {what}, all of it", milliseconds(_anew, layered), "ms")]
     costmap = layered.costmap.copy()
-    found.append(Row(f"costmap of {what}, a scan", milliseconds(_seen, layered, buffer), "ms"))
+    table.append(Row(f"costmap of {what}, a scan", milliseconds(_seen, layered, buffer), "ms"))
     end, middle = (size - 25) * _RESOLUTION, (size / 2 + 30) * _RESOLUTION
     taken = milliseconds(_path, costmap, end, turns=3)
-    found.append(Row(f"plan over {what}, corner to corner", taken, "ms", promised))
-    found.append(Row(f"plan over {what}, to the middle", milliseconds(_path, costmap, middle, turns=3), "ms"))
+    table.append(Row(f"plan over {what}, corner to corner", taken, "ms", promised))
+    table.append(Row(f"plan over {what}, to the middle", milliseconds(_path, costmap, middle, turns=3), "ms"))
     path = _path(costmap, end)
     taken = milliseconds(smooth_path, path[:, :2], Smoothing(), costmap)
-    found.append(Row(f"smoothing {len(path)} poses", taken, "ms"))
-    return found
+    table.append(Row(f"smoothing {len(path)} poses", taken, "ms"))
+    return table
 
 
 def _local() -> Row:

@@ -264,11 +264,11 @@ def nothing(browser: Browser, model: Path) -> list[Row]:
 
 def recordings(browser: PlainBrowser) -> list[Row]:
     """Measure a click on the timeline of a large recording, until frames, scan and image are drawn."""
-    made = []
+    table = []
     for storage in STORAGES:
         size, times = seeks(browser, storage)
-        made.append(row(f"seek in {size:.3g} GB ({storage}) to drawn frame and image", times, "ms", "500 ms"))
-    return made
+        table.append(row(f"seek in {size:.3g} GB ({storage}) to drawn frame and image", times, "ms", "500 ms"))
+    return table
 
 
 def rows() -> list[Row]:

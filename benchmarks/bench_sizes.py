@@ -164,14 +164,14 @@ def _figure(case: Case, count: int) -> Figure | None:
         known = {**os.environ, "LC_ALL": "C.UTF-8"}
         known.pop("PYTHONDONTWRITEBYTECODE", None)
         run = [sys.executable, "-c", _PROBE, str(_MOST_SECONDS), *words]
-        done = subprocess.run(run, cwd=folder, env=known, check=True, capture_output=True, text=True)
-        status, seconds, peak = json.loads(done.stdout)
+        result = subprocess.run(run, cwd=folder, env=known, check=True, capture_output=True, text=True)
+        status, seconds, peak = json.loads(result.stdout)
         if status in (-signal.SIGXCPU, -signal.SIGKILL):
             return None
         if status not in (0, 1):
-            raise RuntimeError(f"{words} ended with {status}: {done.stderr[-2000:]}")
+            raise RuntimeError(f"{words} ended with {status}: {result.stderr[-2000:]}")
         kilo = 1000 if sys.platform != "darwin" else 1_000_000
-        return Figure(seconds, peak / kilo, _BOUND in done.stderr)
+        return Figure(seconds, peak / kilo, _BOUND in result.stderr)
 
 
 _PROBE = """

@@ -34,7 +34,7 @@ def forget() -> None:
 
 def rows() -> list[Row]:
     """Measure, and return the rows of the table."""
-    found = []
+    table = []
     for links, moving, target in ((23, 12, ""), (88, 45, "1.6 ms")):
         text = detailed_robot(links, moving)
         readers = _others(text)
@@ -43,9 +43,9 @@ def rows() -> list[Row]:
         times |= side_by_side({"cold": lambda text=text: load(text)}, ROUNDS, before=forget)
         others = {name: times[name] * 1e3 if name in times else None for name in readers}
         size = f"{links} links, {len(text) / 1000:.0f} kB"
-        found.append(Row(f"text to Robot, {size}", times["warm"] * 1e3, "ms", target, others))
-        found.append(Row(f"text to Robot, {size}, cold", times["cold"] * 1e3, "ms"))
-    return found + _checks()
+        table.append(Row(f"text to Robot, {size}", times["warm"] * 1e3, "ms", target, others))
+        table.append(Row(f"text to Robot, {size}, cold", times["cold"] * 1e3, "ms"))
+    return table + _checks()
 
 
 def _checks() -> list[Row]:
@@ -53,7 +53,7 @@ def _checks() -> list[Row]:
     with tempfile.TemporaryDirectory() as folder:
         asked = {f"robot with a small mesh ({kind})": robot_with_mesh(Path(folder), kind) for kind in ("stl", "dae")}
         asked[f"package of {files} files"] = SHIPPED
-        found = []
+        table = []
         for what, path in asked.items():
             target = "18 bare interpreters" if path == SHIPPED else "5.5 bare interpreters"
             calls = {
@@ -63,8 +63,8 @@ def _checks() -> list[Row]:
             }
             times = {name: seconds * 1e3 for name, seconds in commands(calls, STARTS).items()}
             others = {name: times.get(name) for name in calls if name != "ours"}
-            found.append(Row(f"command check, {what}", times["ours"], "ms", target, others))
-    return found
+            table.append(Row(f"command check, {what}", times["ours"], "ms", target, others))
+    return table
 
 
 def _others(text: str) -> dict[str, Callable[[], object] | None]:

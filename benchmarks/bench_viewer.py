@@ -218,8 +218,8 @@ def growth() -> float:
 def standing() -> Row:
     """Measure `growth` in a new process, because this process can reuse memory of earlier measurements."""
     program = "from benchmarks.bench_viewer import growth; print(growth())"
-    done = subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT, capture_output=True, text=True)
-    return Row("growth in an hour of a simulated robot at rest", float(done.stdout), "MB", "2")
+    result = subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT, capture_output=True, text=True)
+    return Row("growth in an hour of a simulated robot at rest", float(result.stdout), "MB", "2")
 
 
 def moving(links: int, target: str, pages: tuple[tuple[int, str], ...]) -> list[Row]:
@@ -228,11 +228,11 @@ def moving(links: int, target: str, pages: tuple[tuple[int, str], ...]) -> list[
     alone = asyncio.run(cost(links, None)).share
     table = [Row(f"publisher alone, {what}", alone, "% of a core")]
     for count, label in pages:
-        found = asyncio.run(cost(links, count))
-        table.append(Row(f"viewer, {what}, {label}", found.share - alone, "% of a core", target if count == 1 else ""))
+        costs = asyncio.run(cost(links, count))
+        table.append(Row(f"viewer, {what}, {label}", costs.share - alone, "% of a core", target if count == 1 else ""))
         if count:
-            oldest = max(statistics.median(page.ages) for page in found.pages)
-            table.append(Row(f"frames to each page, {label}", min(page.rate for page in found.pages), "1/s", "30"))
+            oldest = max(statistics.median(page.ages) for page in costs.pages)
+            table.append(Row(f"frames to each page, {label}", min(page.rate for page in costs.pages), "1/s", "30"))
             table.append(Row(f"age of frames when they come, {label}", oldest, "ms"))
     return table
 

@@ -58,14 +58,14 @@ def _one_image() -> Iterator[Row]:
         yield Row(f"a picture of {encoding} taken from its message", taken, "ms")
     for model in MODELS:
         detector = make_detector(model, DetectorOptions())
-        found = detector.detect(image, Limits())
+        detections = detector.detect(image, Limits())
         yield Row(f"{model}: found in it", _milliseconds(partial(detector.detect, image, Limits())), "ms", "33")
         yield Row(
-            f"{model}: {len(found)} detections as a message",
-            _milliseconds(partial(vision_message, message.header, found)),
+            f"{model}: {len(detections)} detections as a message",
+            _milliseconds(partial(vision_message, message.header, detections)),
             "ms",
         )
-        yield Row(f"{model}: the picture with boxes", _milliseconds(partial(draw_detections, image, found)), "ms")
+        yield Row(f"{model}: the picture with boxes", _milliseconds(partial(draw_detections, image, detections)), "ms")
 
 
 def _scene() -> NDArray[np.uint8]:

@@ -140,36 +140,36 @@ def rows() -> list[Row]:
     speakers = voices.installed()
     with tempfile.TemporaryDirectory() as folder, ProcessPoolExecutor() as pool:
         tallies = list(pool.map(_tallies, speakers, [Path(folder)] * len(speakers)))
-        found: list[Row] = []
+        table: list[Row] = []
         for about in CONDITIONS:
             tally = sum((tally[about] for tally in tallies), _Tally())
-            found += tally.rows(about)
+            table += tally.rows(about)
             if tally.delays:
-                found.append(Row(f"{about}: stop known after its end, median", 1e3 * median(tally.delays), "ms"))
-                found.append(Row(f"{about}: stop known after its end, latest", 1e3 * max(tally.delays), "ms", "300"))
+                table.append(Row(f"{about}: stop known after its end, median", 1e3 * median(tally.delays), "ms"))
+                table.append(Row(f"{about}: stop known after its end, latest", 1e3 * max(tally.delays), "ms", "300"))
         other = sum((tally[_OTHER_VOICE] for tally in tallies), _Tally())
-        found += list(other.rows(_OTHER_VOICE))
+        table += list(other.rows(_OTHER_VOICE))
         if speakers:
             reading = pool.submit(_reading, speakers, Path(folder))
-            for each in pool.map(_sound, _SOUNDS, speakers[:1] * len(_SOUNDS), [Path(folder)] * len(_SOUNDS)):
-                found += each
-            found += reading.result()
-    return found
+            for sound_rows in pool.map(_sound, _SOUNDS, speakers[:1] * len(_SOUNDS), [Path(folder)] * len(_SOUNDS)):
+                table += sound_rows
+            table += reading.result()
+    return table
 
 
 def _tallies(speaker: voices.Speaker, folder: Path) -> dict[str, _Tally]:
     """Return the results of the clips of a speaker in each condition, and of another voice."""
-    made = engine(speaker, folder)
-    found = {}
+    recognizer = engine(speaker, folder)
+    results = {}
     for about, decibels in CONDITIONS.items():
-        found[about] = _Tally()
-        judge(made, speaker, decibels, found[about])
-    found[_OTHER_VOICE] = _Tally()
+        results[about] = _Tally()
+        judge(recognizer, speaker, decibels, results[about])
+    results[_OTHER_VOICE] = _Tally()
     alike = [one for one in voices.installed() if (one.program, one.language) == (speaker.program, speaker.language)]
     other = alike[(alike.index(speaker) + 1) % len(alike)]
     if other != speaker:
-        judge(made, other, None, found[_OTHER_VOICE], others=False)
-    return found
+        judge(recognizer, other, None, results[_OTHER_VOICE], others=False)
+    return results
 
 
 def _sound(kind: str, speaker: voices.Speaker, folder: Path) -> list[Row]:
@@ -185,10 +185,10 @@ def _sound(kind: str, speaker: voices.Speaker, folder: Path) -> list[Row]:
     begun = time.process_time()
     commands = sum(bool(heard.text) for _, heard in listen(_made(speaker, folder), samples))
     took = time.process_time() - begun
-    found = [Row(f"{_LONG / 60:.0f} minutes of {kind}: commands", commands, "", "0")]
+    table = [Row(f"{_LONG / 60:.0f} minutes of {kind}: commands", commands, "", "0")]
     if kind in ("silence", "pink"):
-        found.append(Row("the same: of a core", 100 * took / _LONG, "%", "2"))
-    return found
+        table.append(Row("the same: of a core", 100 * took / _LONG, "%", "2"))
+    return table
 
 
 def _reading(speakers: list[voices.Speaker], folder: Path) -> list[Row]:

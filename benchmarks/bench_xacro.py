@@ -95,8 +95,8 @@ def rows() -> list[Row]:
         robots = models(Path(folder))
         other = theirs()
         largest = _largest(robots, other or ours)
-        found = _in_process(robots, largest, other)
-        return found + _collection(other) + _whole_commands(largest[0], Path(folder))
+        table = _in_process(robots, largest, other)
+        return table + _collection(other) + _whole_commands(largest[0], Path(folder))
 
 
 def _collection(other: Engine | None) -> list[Row]:
@@ -118,10 +118,14 @@ def _collection(other: Engine | None) -> list[Row]:
     what = f"{len(robots)} public descriptions, processor time"
     return [
         _row(
-            f"{what}, first pass", {name: statistics.median(each) for name, each in first.items()}, "a tenth of xacro's"
+            f"{what}, first pass",
+            {name: statistics.median(seconds) for name, seconds in first.items()},
+            "a tenth of xacro's",
         ),
         _row(
-            f"{what}, again", {name: statistics.median(each) for name, each in again.items()}, "a twentieth of xacro's"
+            f"{what}, again",
+            {name: statistics.median(seconds) for name, seconds in again.items()},
+            "a twentieth of xacro's",
         ),
     ]
 
@@ -141,14 +145,14 @@ def _in_process(robots: list[Model], largest: list[Model], other: Engine | None)
     count = f"{len(robots)} models"
     cold = side_by_side(calls(robots), PASSES, before=forget)
     warm = side_by_side(calls(robots), PASSES)
-    found = [
+    table = [
         _row(f"{count}, cold at the start of each pass", cold, "5 times faster, towards 10"),
         _row(f"{count}, files and texts known", warm, ""),
     ]
     for model in largest:
         times = side_by_side(calls([model]), SINGLES, before=forget)
-        found.append(_row(f"{model.name}, cold", times, "5 times faster"))
-    return found
+        table.append(_row(f"{model.name}, cold", times, "5 times faster"))
+    return table
 
 
 def _row(what: str, seconds: dict[str, float], target: str) -> Row:
@@ -172,7 +176,7 @@ def _whole_commands(large: Model, folder: Path) -> list[Row]:
     environment = {"AMENT_PREFIX_PATH": str(prefix), "PYTHONPATH": str(stand_in)}
     peer = peers.command(PEER)
     values = [f"{name}:={value}" for name, value in large.arguments.items()]
-    found = []
+    table = []
     for what, words, target in (
         (f"command, small model ({SMALL.name})", [str(SMALL)], "60 ms over a bare interpreter"),
         (f"command, large model ({large.name})", [large.path, *values], "half of xacro's"),
@@ -186,12 +190,12 @@ def _whole_commands(large: Model, folder: Path) -> list[Row]:
         }
         times = commands(calls, STARTS, **environment)
         others = {name: times[name] * 1e3 if name in times else None for name in (PEER, "bare interpreter")}
-        found.append(Row(what, times["ours"] * 1e3, "ms", target, others))
+        table.append(Row(what, times["ours"] * 1e3, "ms", target, others))
         peaks = {name: peak_memory(words, **environment) if words else None for name, words in calls.items()}
         mine = peaks.pop("ours")
         assert mine is not None
-        found.append(Row(what.replace("command", "memory"), mine, "MB", "at most twice xacro's", peaks))
-    return found
+        table.append(Row(what.replace("command", "memory"), mine, "MB", "at most twice xacro's", peaks))
+    return table
 
 
 def _written(folder: Path, name: str, text: str) -> Path:

@@ -57,11 +57,11 @@ class Scene:
     """One display of data at a steady rate, beside a robot whose links all move.
 
     Attributes:
-        display: class of the display.
-        messages: makes what is published in turns.
-        rate: messages a second.
-        links: of the robot; 0 for none.
-        frame_rate: transforms a second, for each link.
+        display: the class of the display.
+        messages: returns the messages that are published in turn.
+        rate: the number of messages per second.
+        links: the number of links of the robot; 0 for no robot.
+        frame_rate: the number of transforms per second of each link.
     """
 
     display: str
@@ -80,7 +80,7 @@ class Scene:
 def clouds(points: int = 100_000) -> list[Any]:
     """Clouds like a lidar's: points of a wavy floor, each with an intensity."""
     chance = np.random.default_rng(1)
-    made = []
+    messages = []
     for turn in range(KINDS):
         array = np.zeros(points, dtype=[("x", "f4"), ("y", "f4"), ("z", "f4"), ("intensity", "f4")])
         array["x"], array["y"] = chance.uniform(-5, 5, points), chance.uniform(-5, 5, points)
@@ -93,26 +93,26 @@ def clouds(points: int = 100_000) -> list[Any]:
             for at, name in enumerate(("x", "y", "z", "intensity"))
         ]
         message.row_step, message.data = 16 * points, array.tobytes()
-        made.append(message)
-    return made
+        messages.append(message)
+    return messages
 
 
 def markers(count: int = 1000) -> list[Any]:
     """Arrays of cubes that all move."""
     marker, color = get_message("visualization_msgs/msg/Marker"), get_message("std_msgs/msg/ColorRGBA")
-    made = []
+    messages = []
     for turn in range(KINDS):
         array = get_message("visualization_msgs/msg/MarkerArray")()
         for number in range(count):
-            each = marker(ns="bench", id=number, type=marker.CUBE, color=color(r=1.0, g=number / count, b=0.2, a=1.0))
-            each.header.frame_id = FRAME
-            each.pose.position.x, each.pose.position.y = number % 32 * 0.3 - 5, number // 32 * 0.3 - 5
-            each.pose.position.z = float(np.sin(number + turn))
-            each.pose.orientation.w = 1.0
-            each.scale.x = each.scale.y = each.scale.z = 0.1
-            array.markers.append(each)
-        made.append(array)
-    return made
+            cube = marker(ns="bench", id=number, type=marker.CUBE, color=color(r=1.0, g=number / count, b=0.2, a=1.0))
+            cube.header.frame_id = FRAME
+            cube.pose.position.x, cube.pose.position.y = number % 32 * 0.3 - 5, number // 32 * 0.3 - 5
+            cube.pose.position.z = float(np.sin(number + turn))
+            cube.pose.orientation.w = 1.0
+            cube.scale.x = cube.scale.y = cube.scale.z = 0.1
+            array.markers.append(cube)
+        messages.append(array)
+    return messages
 
 
 def images(width: int = 640, height: int = 480) -> list[Any]:
@@ -121,24 +121,24 @@ def images(width: int = 640, height: int = 480) -> list[Any]:
     rough = chance.uniform(0, 255, (height // 8, width // 8, 3))
     wall = np.kron(rough, np.ones((8, 8, 1))) + chance.normal(0, 6, (height, width, 3))
     pixels = np.clip(wall, 0, 255).astype(np.uint8)
-    made = []
+    messages = []
     for turn in range(KINDS):
         message = _stamped("sensor_msgs/msg/Image", width=width, height=height, encoding="rgb8", step=3 * width)
         message.data = np.roll(pixels, 8 * turn, axis=1).tobytes()
-        made.append(message)
-    return made
+        messages.append(message)
+    return messages
 
 
 def scans(beams: int = 720) -> list[Any]:
     """Scans of a room that is not quite round."""
     angles = np.linspace(-np.pi, np.pi, beams, endpoint=False)
-    made = []
+    messages = []
     for turn in range(KINDS):
         message = _stamped("sensor_msgs/msg/LaserScan", angle_min=-np.pi, angle_max=np.pi, range_max=30.0)
         message.angle_increment = 2 * np.pi / beams
         message.ranges = (4 + np.sin(3 * angles + 0.2 * turn)).astype(np.float32).tolist()
-        made.append(message)
-    return made
+        messages.append(message)
+    return messages
 
 
 SCENES = {
@@ -199,8 +199,8 @@ async def show(scene: Scene) -> None:
     running = [asyncio.ensure_future(task) for task in tasks]
     print(f"Viewer: {viewer.url}", flush=True)
     await ended.wait()
-    for each in running:
-        each.cancel()
+    for pending_task in running:
+        pending_task.cancel()
     await asyncio.gather(*running, return_exceptions=True)
     await viewer.close()
     await graph.close()

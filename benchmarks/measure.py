@@ -29,7 +29,7 @@ class Measured(Protocol):
 
 @dataclass
 class Row:
-    """One measured thing.
+    """A row of the table of measurements.
 
     Attributes:
         what: the measured quantity.
@@ -120,5 +120,7 @@ print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 def peak_memory(words: Sequence[str], **environment: str) -> float:
     """Return the peak memory of a command in MB."""
     known = {**os.environ, **environment}
-    done = subprocess.run([sys.executable, "-c", _PEAK, *words], check=True, env=known, capture_output=True, text=True)
-    return int(done.stdout) / (1000 if sys.platform != "darwin" else 1_000_000)
+    result = subprocess.run(
+        [sys.executable, "-c", _PEAK, *words], check=True, env=known, capture_output=True, text=True
+    )
+    return int(result.stdout) / (1000 if sys.platform != "darwin" else 1_000_000)

@@ -83,7 +83,7 @@ COUNT_FRAMES = """
 
 
 def slider_latency(page: Page, moves: int) -> tuple[list[float], list[float]]:
-    """Milliseconds from a slider's input event to the new transform in the page, and to the frame drawn with it."""
+    """Return the times from a slider's input events to the new transform in the page, and to its frame, in ms."""
     known, drawn = [], []
     for number in range(moves):
         page.wait_for_timeout(37 + 13 * (number % 7))

@@ -80,7 +80,7 @@ def _seek(page: PlainPage, file: Path, length: float, part: float) -> float:
 
 
 def _forget(file: Path) -> None:
-    """Have the system read the file anew."""
+    """Drop a file from the page cache, so that it is read from the disk again."""
     with file.open("rb") as opened:
         os.fsync(opened.fileno())
         os.posix_fadvise(opened.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
@@ -102,15 +102,15 @@ def _recorded(storage: str, gigabytes: float) -> Iterator[tuple[Path, float]]:
                 at = number / _RATE
                 batch = TransformBatch(("base",), ("tip",), stamp, np.array([[at, 0, 0, 0, 0, 0, 1.0]]))
                 writer.write("/tf", stamp, serialize(TFMessage(batch=batch)))
-                made = image(width=_WIDTH, height=_HEIGHT, encoding="rgb8", step=3 * _WIDTH)
-                made.header.frame_id = "tip"
-                made.header.stamp.sec, made.header.stamp.nanosec = divmod(stamp, _SECOND)
-                made.data = bytes([16 * (int(at + 0.02) % _STEPS)]) * _IMAGE
-                writer.write("/camera", stamp, serialize(made))
+                picture = image(width=_WIDTH, height=_HEIGHT, encoding="rgb8", step=3 * _WIDTH)
+                picture.header.frame_id = "tip"
+                picture.header.stamp.sec, picture.header.stamp.nanosec = divmod(stamp, _SECOND)
+                picture.data = bytes([16 * (int(at + 0.02) % _STEPS)]) * _IMAGE
+                writer.write("/camera", stamp, serialize(picture))
                 if number % 3 == 0:
                     ranges = np.full(720, 2.0 + at % 5, dtype=np.float32)
                     seen = scan(angle_min=-3.14, angle_max=3.14, angle_increment=0.0087, range_max=30.0, ranges=ranges)
-                    seen.header = made.header
+                    seen.header = picture.header
                     writer.write("/scan", stamp, serialize(seen))
         (file,) = [path for path in (Path(folder) / "drive").iterdir() if path.suffix in (".mcap", ".db3")]
         yield file, (count - 1) / _RATE

@@ -51,8 +51,8 @@ def site_packages() -> Path:
 def version(module: str) -> str | None:
     """The version of a peer, or None when it is not installed."""
     name = PEERS[module].partition("==")[0]
-    found = list(metadata.distributions(name=name, path=[str(site_packages())]))
-    return found[0].version if found else None
+    distributions = list(metadata.distributions(name=name, path=[str(site_packages())]))
+    return distributions[0].version if distributions else None
 
 
 def load(module: str, part: str | None = None) -> types.ModuleType | None:

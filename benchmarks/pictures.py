@@ -68,7 +68,7 @@ def publish(reliable: bool, depth: int, rate: float, seconds: float) -> None:
 
 
 def subscribe(reliable: bool, depth: int, counter: Path) -> None:
-    """Count the pictures that come, and the processor's time, in a file: a reader that hangs cannot be asked."""
+    """Write the number of received images and the processor time to a file: a reader that hangs cannot reply."""
     import rclpy
     from sensor_msgs.msg import Image
 
@@ -102,7 +102,7 @@ def program(side: str, *words: str) -> subprocess.Popen[str]:
 
 
 def measure(pair: tuple[str, str], reliable: bool, depth: int, rate: float, seconds: float) -> dict[str, Any]:
-    """How many pictures came of how many, and whether the reader hung."""
+    """Return the numbers of images sent and received, the time of each, and whether the reader hung."""
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as ends:
         counter = Path(folder) / "came"
         counter.write_text("0 0")

@@ -36,7 +36,7 @@ class PlainBrowser:
 
     @contextmanager
     def opened(self, url: str, ready: str, width: int, height: int, script: str = "") -> Iterator[PlainPage]:
-        """A page with storage of its own, in which a script ran before its own, from when a condition holds on it."""
+        """Yield a page with storage of its own, once a condition holds; a script runs before those of the page."""
         context = self._socket.call("Target.createBrowserContext")["browserContextId"]
         target = self._socket.call("Target.createTarget", url="about:blank", browserContextId=context)["targetId"]
         with closing(PlainPage(Socket(self._pages + target))) as page:
@@ -70,11 +70,11 @@ class PlainPage:
     def until(self, condition: str) -> Any:
         """Wait until an expression is true, or something that counts as true; returns that."""
         end = time.monotonic() + SECONDS
-        while not (found := self.evaluate(f"() => {condition}")):
+        while not (value := self.evaluate(f"() => {condition}")):
             if time.monotonic() > end:
                 raise SystemExit(f"not within {SECONDS:g} s: {condition}")
             time.sleep(0.05)
-        return found
+        return value
 
     def evaluate(self, function: str) -> Any:
         """What a JavaScript function without arguments returns."""
@@ -142,10 +142,10 @@ def running(program: str, flags: tuple[str, ...]) -> Iterator[PlainBrowser]:
         process = subprocess.Popen(words, stderr=subprocess.PIPE, env=environment, text=True)
         try:
             assert process.stderr is not None
-            found = next(filter(None, (re.search(r"listening on (ws://\S+)", line) for line in process.stderr)), None)
-            if found is None:
+            match = next(filter(None, (re.search(r"listening on (ws://\S+)", line) for line in process.stderr)), None)
+            if match is None:
                 raise SystemExit("the browser ended without saying where it listens")
-            with closing(PlainBrowser(found[1])) as browser:
+            with closing(PlainBrowser(match[1])) as browser:
                 yield browser
         finally:
             process.terminate()

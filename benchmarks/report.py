@@ -85,12 +85,12 @@ _INPUTS = {
 }
 
 
-def write(found: Mapping[str, Sequence[Measured]], *, corpus: bool) -> list[Path]:
+def write(results: Mapping[str, Sequence[Measured]], *, corpus: bool) -> list[Path]:
     """Write the pages.
 
     Args:
-        found: the rows of each measurement, by name; the page keeps what it has of the others.
-        corpus: whether real robots were at hand.
+        results: the rows of each measurement, by name; the page keeps its rows of other measurements.
+        corpus: whether the corpus of real robots was available.
 
     Returns:
         The files written.
@@ -100,9 +100,9 @@ def write(found: Mapping[str, Sequence[Measured]], *, corpus: bool) -> list[Path
         target = ROOT / path
         head, *sections = target.read_text(encoding="utf-8").split("\n## ")
         old = {section.partition("\n")[0]: section for section in sections}
-        if found.keys() == TITLES.keys():
+        if results.keys() == TITLES.keys():
             head = f"{text.format(machine=_machine(), inputs=_INPUTS[corpus][place])}\n{_versions()}"
-        for name, rows in found.items():
+        for name, rows in results.items():
             heads, about = (_HEADS_OF_SIZES, _ABOUT_SIZES[place]) if name == "sizes" else (_HEADS, "")
             old[TITLES[name][place]] = f"{TITLES[name][place]}\n\n{about}{_section(rows, heads[place])}"
         ordered = [old.pop(titles[place]) for titles in TITLES.values() if titles[place] in old]

@@ -44,12 +44,12 @@ def models(folder: Path) -> list[Model]:
         manifest = json.loads((CORPUS / "manifest.json").read_text(encoding="utf-8"))
         packages = {name: str(CORPUS / place) for name, place in manifest["packages"].items()}
         return [Model(str(CORPUS / "robots" / model["entry"]), model["args"], packages) for model in manifest["models"]]
-    found = [path for path in sorted(SHIPPED.rglob("*.xacro")) if path.parent.name == "urdf"]
+    paths = [path for path in sorted(SHIPPED.rglob("*.xacro")) if path.parent.name == "urdf"]
     for legs in (4, 16, 64):
         path = folder / f"crawler_{legs}.urdf.xacro"
         path.write_text(crawler(legs), encoding="utf-8")
-        found.append(path)
-    return [Model(str(path), {}, {SHIPPED.name: str(SHIPPED)}) for path in found]
+        paths.append(path)
+    return [Model(str(path), {}, {SHIPPED.name: str(SHIPPED)}) for path in paths]
 
 
 def collected(folder: Path) -> list[Model]:

@@ -94,7 +94,7 @@ class Watched:
     delays: list[float] = field(default_factory=list)
 
     def sample(self, since: float) -> None:
-        """Look at it."""
+        """Add a sample of its memory, threads and file descriptors."""
         with suppress(psutil.Error):
             seen = psutil.Process(self.process.pid)
             known = seen.memory_info()
@@ -103,7 +103,7 @@ class Watched:
             self.samples.append((time.monotonic() - since, memory, seen.num_threads(), seen.num_fds()))
 
     def listen(self) -> None:
-        """Read what it prints, to the end."""
+        """Read its output until it ends, and store the figures in it."""
         assert self.process.stdout is not None
         for line in self.process.stdout:
             with suppress(ValueError):
@@ -112,16 +112,16 @@ class Watched:
                     self.delays.append(self.told["p99_ms"])
 
     def seen(self, what: str) -> int:
-        """A count that it has told."""
+        """Return a count that it last reported."""
         return int(self.told.get("seen", {}).get(what, 0))
 
 
 class Soak:
-    """The run.
+    """A run of the soak.
 
     Args:
-        seconds: how long.
-        warm_up: after how many seconds things should have their size.
+        seconds: the duration of the run.
+        warm_up: the seconds after which memory, threads and file descriptors must not grow.
         domain: the DDS domain.
     """
 
@@ -136,7 +136,7 @@ class Soak:
         self._begin = time.monotonic()
 
     def run(self) -> int:
-        """Run it, print the table; the exit status."""
+        """Run the processes, print the table, and return the exit status."""
         with tempfile.TemporaryDirectory() as folder, self._processes(Path(folder)):
             self._begin = time.monotonic()
             helpers = [threading.Thread(target=work, daemon=True) for work in (self._kill, self._command)]
@@ -144,8 +144,8 @@ class Soak:
                 helper.start()
             while (passed := time.monotonic() - self._begin) < self._seconds:
                 time.sleep(SAMPLE_SECONDS)
-                for each in self._watched:
-                    each.sample(self._begin)
+                for watched in self._watched:
+                    watched.sample(self._begin)
                 self._look(passed)
             for helper in helpers:
                 helper.join(60.0)
@@ -154,8 +154,8 @@ class Soak:
         return 1 if self.faults else 0
 
     def samples(self) -> dict[str, list[tuple[float, float, int, int]]]:
-        """What was seen of each process: seconds, MB, threads, file descriptors."""
-        return {each.name: each.samples for each in self._watched}
+        """Return the samples of each process: seconds, MB, threads, file descriptors."""
+        return {watched.name: watched.samples for watched in self._watched}
 
     @contextmanager
     def _processes(self, folder: Path) -> Iterator[None]:
@@ -168,7 +168,7 @@ class Soak:
         try:
             yield
         finally:
-            # The talker first, and some time for what is on its way: the listener must then have all of it.
+            # End the talker first, and wait for messages on their way: the listener must receive all of them.
             for each in sorted(self._watched, key=lambda each: each.name != "talker"):
                 self._end(each)
                 if each.name == "talker":
@@ -209,11 +209,11 @@ class Soak:
         return time.monotonic() - self._begin > self._seconds - BACK_WITHIN
 
     def _kill(self) -> None:
-        """Kill the launch's process now and then, and wait until its successor is heard."""
+        """Kill the process of the launch repeatedly, and wait until messages of its successor arrive."""
         launcher, listener = self._of("launcher"), self._of("listener")
         while not self._is_over():
             time.sleep(KILL_SECONDS)
-            victims = [each for each in _descendants(launcher.process.pid) if "victim" in _words(each)]
+            victims = [process for process in _descendants(launcher.process.pid) if "victim" in _words(process)]
             if len(victims) != 1:
                 self.faults.append(f"{len(victims)} processes are there to be killed instead of one")
                 continue
@@ -228,12 +228,12 @@ class Soak:
                 time.sleep(0.2)
 
     def _command(self) -> None:
-        """Look at the graph from outside."""
+        """Run commands that inspect the graph, in turn."""
         while not self._is_over():
             words = COMMANDS[self._commands % len(COMMANDS)]
             self._commands += 1
             try:
-                done = subprocess.run(
+                result = subprocess.run(
                     [LINKWRIGHT, *words],
                     env=self._environment,
                     capture_output=True,
@@ -241,33 +241,33 @@ class Soak:
                     timeout=20,
                     check=False,
                 )
-                if done.returncode != 0:
-                    self.faults.append(f"'{' '.join(words)}' ended with {done.returncode}: {done.stderr.strip()}")
+                if result.returncode != 0:
+                    self.faults.append(f"'{' '.join(words)}' ended with {result.returncode}: {result.stderr.strip()}")
             except subprocess.TimeoutExpired:
                 self.faults.append(f"'{' '.join(words)}' did not end within 20 s")
             time.sleep(COMMAND_SECONDS)
 
     def _look(self, passed: float) -> None:
-        for each in self._watched:
-            if each.process.poll() is not None:
-                said = each.errors.read_text()[-2000:]
-                raise SystemExit(f"{said}\n{each.name} ended with {each.process.returncode} after {passed:.0f} s")
+        for watched in self._watched:
+            if watched.process.poll() is not None:
+                said = watched.errors.read_text()[-2000:]
+                raise SystemExit(f"{said}\n{watched.name} ended with {watched.process.returncode} after {passed:.0f} s")
         if sys.stderr.isatty():
             listener = self._of("listener")
             text = f"{passed:6.0f} s, {listener.seen('/soak/rate_1000')} messages, {listener.seen('lost')} lost"
             print(f"\r{text}, {self._kills} kills, {len(self.faults)} faults", end="", file=sys.stderr)
 
     def _of(self, name: str) -> Watched:
-        return next(each for each in self._watched if each.name == name)
+        return next(watched for watched in self._watched if watched.name == name)
 
     def _judge(self) -> None:
         talker, listener = self._of("talker"), self._of("listener")
-        for each in self._watched:
-            for failure in each.told.get("failures", ()):
-                self.faults.append(f"{each.name}: {failure}")
-            growth = _growth(each, self._warm_up)
+        for watched in self._watched:
+            for failure in watched.told.get("failures", ()):
+                self.faults.append(f"{watched.name}: {failure}")
+            growth = _growth(watched, self._warm_up)
             if growth is not None:
-                self._judge_growth(each, growth)
+                self._judge_growth(watched, growth)
         for name, count in talker.told.get("seen", {}).items():
             if listener.seen(name) != count:
                 self.faults.append(f"of {count} messages of {name} the last that came was {listener.seen(name)}")
@@ -277,24 +277,27 @@ class Soak:
             if not self._of(name).seen(what):
                 self.faults.append(f"{name} has no {what}")
 
-    def _judge_growth(self, each: Watched, growth: Growth) -> None:
+    def _judge_growth(self, watched: Watched, growth: Growth) -> None:
         if growth.megabytes > max(GROWTH_MB, GROWTH_SHARE * growth.last_megabytes):
-            self.faults.append(f"{each.name}: memory grew by {growth.megabytes:.1f} MB")
+            self.faults.append(f"{watched.name}: memory grew by {growth.megabytes:.1f} MB")
         if growth.threads > SPREAD:
-            self.faults.append(f"{each.name}: {growth.threads:g} threads more")
+            self.faults.append(f"{watched.name}: {growth.threads:g} threads more")
         if growth.descriptors > SPREAD:
-            self.faults.append(f"{each.name}: {growth.descriptors:g} file descriptors more")
+            self.faults.append(f"{watched.name}: {growth.descriptors:g} file descriptors more")
 
     def _print(self) -> None:
         print(f"{'process':10} {'memory':>9} {'growth':>9} {'slope':>11} {'threads':>9} {'files':>8}  seen")
-        for each in self._watched:
-            growth = _growth(each, self._warm_up)
+        for watched in self._watched:
+            growth = _growth(watched, self._warm_up)
             if growth is None:
-                print(f"{each.name:10} too short a run to tell")
+                print(f"{watched.name:10} too short a run to tell")
                 continue
-            seen = ", ".join(f"{name.rpartition('/')[2]} {count}" for name, count in each.told.get("seen", {}).items())
+            seen = ", ".join(
+                f"{name.rpartition('/')[2]} {count}" for name, count in watched.told.get("seen", {}).items()
+            )
             print(
-                f"{each.name:10} {growth.last_megabytes:6.1f} MB {growth.megabytes:+6.2f} MB {growth.slope:+6.2f} MB/h "
+                f"{watched.name:10} {growth.last_megabytes:6.1f} MB "
+                f"{growth.megabytes:+6.2f} MB {growth.slope:+6.2f} MB/h "
                 f"{growth.last_threads:4.0f}{growth.threads:+5.0f} "
                 f"{growth.last_descriptors:4.0f}{growth.descriptors:+4.0f}  {seen}"
             )
@@ -320,7 +323,7 @@ class Growth:
 
 
 def _growth(watched: Watched, warm_up: float) -> Growth | None:
-    samples = [each for each in watched.samples if each[0] >= warm_up]
+    samples = [sample for sample in watched.samples if sample[0] >= warm_up]
     share = len(samples) // 5
     if share < 2:
         return None

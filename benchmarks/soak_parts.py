@@ -57,11 +57,11 @@ class Part(Node):
         print(json.dumps({"seen": self.seen, "failures": self.failures[:5], **self.figures()}), flush=True)
 
     def figures(self) -> dict[str, Any]:
-        """What else there is to tell."""
+        """Return further figures to report."""
         return {}
 
     def failed(self, what: str) -> None:
-        """Take note of a failure."""
+        """Record a failure."""
         self.seen["failures"] += 1
         self.failures.append(what)
 
@@ -98,7 +98,7 @@ class Talker(Part):
 
 
 class Listener(Part):
-    """Hears all that, and looks transforms up."""
+    """Subscribes to the topics of the publishers, and looks up transforms."""
 
     def __init__(self) -> None:
         super().__init__("soak_listener")
@@ -112,7 +112,7 @@ class Listener(Part):
         self.create_timer(0.1, self._look_up)
 
     def figures(self) -> dict[str, Any]:
-        """Latencies since the last time."""
+        """Return the latencies since the last call, in milliseconds."""
         delays = sorted(self._delays)
         self._delays.clear()
         if not delays:
@@ -148,7 +148,7 @@ class Listener(Part):
 
 
 class Server(Part):
-    """Answers: a service, an action, parameters."""
+    """Provides a service, an action and parameters."""
 
     def __init__(self) -> None:
         super().__init__("soak_server")

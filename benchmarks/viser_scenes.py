@@ -47,13 +47,13 @@ def arm(server: Any) -> None:
 
 def points(server: Any) -> None:
     """The clouds of 100 000 points of `data_scenes`, ten a second, colored by their heights."""
-    made = []
+    messages = []
     for message in clouds():
         array = np.frombuffer(message.data, np.float32).reshape(-1, 4)
         shade = (255 * (array[:, 2] - array[:, 2].min()) / np.ptp(array[:, 2])).astype(np.uint8)
-        made.append((array[:, :3].copy(), np.stack([shade, 255 - shade, np.full_like(shade, 128)], axis=-1)))
-    shown = server.scene.add_point_cloud("/points", *made[0], point_size=0.01)
-    for (places, colors), _ in zip(itertools.cycle(made), _ticks(_POINTS_RATE)):
+        messages.append((array[:, :3].copy(), np.stack([shade, 255 - shade, np.full_like(shade, 128)], axis=-1)))
+    shown = server.scene.add_point_cloud("/points", *messages[0], point_size=0.01)
+    for (places, colors), _ in zip(itertools.cycle(messages), _ticks(_POINTS_RATE)):
         with server.atomic():
             shown.points, shown.colors = places, colors
 

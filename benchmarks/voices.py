@@ -92,7 +92,7 @@ def missing() -> list[str]:
 
 
 def say(speaker: Speaker, text: str, *, speed: float = 1.0, pitch: float = 1.0) -> Samples:
-    """What the speaker makes of a text, without silence before and after."""
+    """Return a text as the speaker says it, without silence before and after."""
     key = hashlib.sha256(f"{speaker}{text}{speed:.3f}{pitch:.3f}".encode()).hexdigest()[:20]
     path = _KEPT / f"{key}.wav"
     if not path.exists():
@@ -112,11 +112,11 @@ def noise(kind: str, count: int, rng: np.random.Generator) -> np.ndarray:
         return rng.normal(size=count)
     if kind == "hum":
         at = np.arange(count) / RATE
-        found = sum(np.sin(2 * np.pi * 50 * k * at + k) / k for k in range(1, 12))
+        hum = sum(np.sin(2 * np.pi * 50 * k * at + k) / k for k in range(1, 12))
     else:
         spectrum = np.fft.rfft(rng.normal(size=count))
-        found = np.fft.irfft(spectrum / np.sqrt(np.maximum(np.arange(len(spectrum)), 20 * count / RATE)), count)
-    return np.asarray(found / np.sqrt(np.mean(np.square(found))))
+        hum = np.fft.irfft(spectrum / np.sqrt(np.maximum(np.arange(len(spectrum)), 20 * count / RATE)), count)
+    return np.asarray(hum / np.sqrt(np.mean(np.square(hum))))
 
 
 def clip(

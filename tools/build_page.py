@@ -120,9 +120,9 @@ def npm(*arguments: str, folder: Path = FRONTEND) -> None:
     """
     environment = dict(os.environ)
     command = npm_command(environment)
-    done = subprocess.run([*command, *arguments], cwd=folder, env=environment, check=False, stdout=sys.stderr)
-    if done.returncode:
-        raise SystemExit(f"npm {' '.join(arguments)} failed with status {done.returncode}")
+    result = subprocess.run([*command, *arguments], cwd=folder, env=environment, check=False, stdout=sys.stderr)
+    if result.returncode:
+        raise SystemExit(f"npm {' '.join(arguments)} failed with status {result.returncode}")
 
 
 def npm_command(environment: dict[str, str]) -> list[str]:
@@ -151,8 +151,8 @@ def _node_version() -> int:
     if node is None:
         return 0
     printed = subprocess.run([node, "--version"], capture_output=True, text=True, check=False).stdout
-    found = re.match(r"v(\d+)", printed)
-    return int(found[1]) if found else 0
+    match = re.match(r"v(\d+)", printed)
+    return int(match[1]) if match else 0
 
 
 def main() -> int:

@@ -93,7 +93,7 @@ class Source:
 
     def _rule(self, node: ast.ClassDef, place: str) -> None:
         """Record the title of a rule, which is a class with a code."""
-        given = {ast.unparse(each.targets[0]) for each in node.body if isinstance(each, ast.Assign)}
+        given = {ast.unparse(statement.targets[0]) for statement in node.body if isinstance(statement, ast.Assign)}
         if "code" in given:
             title = cleandoc(ast.get_docstring(node) or "").partition("\n")[0]
             self.titles.setdefault(title.rstrip("."), place)
@@ -132,10 +132,10 @@ class Source:
             if None not in given and (not wanted <= given or (called == "phrase" and given > wanted)):
                 self.problems.append(f"{place}: the placeholders of '{template}' are not its arguments")
         several = templates[1] if len(templates) > 1 else None
-        found = self.templates.setdefault(templates[0], Template(templates[0], several, bool(given)))
-        if several != found.several:
-            self.problems.append(f"{place}: '{found.template}' occurs with and without a plural")
-        found.places.append(place)
+        known_template = self.templates.setdefault(templates[0], Template(templates[0], several, bool(given)))
+        if several != known_template.several:
+            self.problems.append(f"{place}: '{known_template.template}' occurs with and without a plural")
+        known_template.places.append(place)
 
 
 def placeholders(template: str) -> set[str]:
@@ -190,7 +190,7 @@ def _formats(template: str) -> set[tuple[str, str | None]]:
 def updated(catalog: Catalog, source: Source) -> Catalog:
     """Return the catalog with the texts of the source: templates in the order of rooms, then titles, then the rest."""
     new = Catalog(catalog.locale, "linkwright", _HEADER.format(catalog.locale.english_name), fuzzy=False)
-    for template in sorted(source.templates.values(), key=lambda each: (each.rooms, each.template)):
+    for template in sorted(source.templates.values(), key=lambda item: (item.rooms, item.template)):
         identity = (template.template, template.several) if template.several else template.template
         before = catalog.get(template.template)
         string = before.string if before is not None else ""
@@ -203,7 +203,7 @@ def updated(catalog: Catalog, source: Source) -> Catalog:
         before = catalog.get(title, TITLES)
         new.add(title, before.string if before is not None else "", context=TITLES)
     kept = [message for message in catalog if message.context in LOOKED_UP]
-    for message in sorted(kept, key=lambda each: (each.context, each.id)):
+    for message in sorted(kept, key=lambda item: (item.context, item.id)):
         new.add(message.id, message.string, context=message.context)
     return new
 
@@ -247,7 +247,7 @@ def main(words: list[str]) -> int:
         print(__doc__, file=sys.stderr)
         return 2
     source = Source()
-    found = list(source.problems)
+    all_problems = list(source.problems)
     for path in sorted(FOLDER.glob("*.po")):
         kept = as_text(updated(read(path), source))
         if words == ["update"]:
@@ -255,10 +255,10 @@ def main(words: list[str]) -> int:
         problems = list(problems_of(read(path), source))
         if not problems and path.read_text(encoding="utf-8") != kept:
             problems.append("its entries stand otherwise than `python tools/catalogs.py update` puts them: run it")
-        found += [f"{path.name}: {problem}" for problem in problems]
-    for problem in dict.fromkeys(found):
+        all_problems += [f"{path.name}: {problem}" for problem in problems]
+    for problem in dict.fromkeys(all_problems):
         print(problem, file=sys.stderr)
-    return int(bool(found))
+    return int(bool(all_problems))
 
 
 if __name__ == "__main__":

@@ -66,10 +66,10 @@ def constraints(text: str) -> str:
 
 
 def _value(block: str, key: str) -> str:
-    found = re.search(rf'^{key} = "([^"]+)"', block, re.MULTILINE)
-    if not found:
+    match = re.search(rf'^{key} = "([^"]+)"', block, re.MULTILINE)
+    if not match:
         raise SystemExit(f"uv.lock: a package without {key}")
-    return found[1]
+    return match[1]
 
 
 def update(extra: list[str]) -> None:

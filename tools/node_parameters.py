@@ -115,7 +115,7 @@ Declarations = dict[str, dict[str, dict[str, Any]]]
 
 
 @contextmanager
-def _recording(found: Declarations, given: Mapping[str, Any]) -> Iterator[None]:
+def _recording(declarations: Declarations, given: Mapping[str, Any]) -> Iterator[None]:
     """Record the parameters that nodes declare; given values are not recorded as defaults."""
     start, declare, read = NodeParameters.__init__, ParameterStore.declare, parameter_tables._Reader.read
     owners: dict[int, str] = {}
@@ -148,13 +148,13 @@ def _recording(found: Declarations, given: Mapping[str, Any]) -> Iterator[None]:
             if record.get("default") == _ITEM or (name in given and record.get("default") == given[name]):
                 del record["default"]
             listing = [key for key, value in given.items() if value == [_ITEM]]
-            known = found.setdefault(owner, {}).setdefault(name, record)
+            known = declarations.setdefault(owner, {}).setdefault(name, record)
             if name.startswith(f"{_ITEM}.") and listing:
                 known["keys"] = sorted({*known.get("keys", ()), *listing})
     # parameters of one distribution, which are not declared in the other one
     for (owner, name), entry in tables.items():
         if "*" not in name:
-            found.setdefault(owner, {}).setdefault(name, _record(entry.default, None, entry))
+            declarations.setdefault(owner, {}).setdefault(name, _record(entry.default, None, entry))
 
 
 def _record(default: Any, descriptor: Any, entry: parameter_tables.TableEntry | None) -> dict[str, Any]:
@@ -202,13 +202,13 @@ def _start(executable: tuple[str, str], parameters: Mapping[str, Any], others: P
 
 
 def _nodes() -> Declarations:
-    found: Declarations = {}
+    declarations: Declarations = {}
     for package, executable in EXECUTABLES:
         if not executable.endswith(_LEFT_OUT) and not package.startswith(_PACKAGES_LEFT_OUT):
             for given in _VARIANTS.get(executable) or [_NEEDED.get(executable, {})]:
-                with _recording(found, given):
+                with _recording(declarations, given):
                     _start((package, executable), given, ParameterRules())
-    return {node: _without_plugins(found[node]) for node in sorted(found) if found[node]}
+    return {node: _without_plugins(declarations[node]) for node in sorted(declarations) if declarations[node]}
 
 
 def _without_plugins(parameters: Mapping[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
@@ -230,10 +230,10 @@ def _plugin_tables() -> Iterator[tuple[str, dict[str, Any]]]:
             for name, value in given.items():
                 others.set(f"/{node}/{node}", name, value)
         package = next(package for package, name in EXECUTABLES if name == executable)
-        found: Declarations = {}
-        with _recording(found, given):
+        declarations: Declarations = {}
+        with _recording(declarations, given):
             _start((package, executable), {} if node != executable else given, others)
-        own = found[node]
+        own = declarations[node]
         names_of_plugin = [name for name in own if name.startswith(f"{_PLUGIN}.")]
         parameters = {name.removeprefix(f"{_PLUGIN}.").replace(_ITEM, "*"): own[name] for name in names_of_plugin}
         parameters.pop("plugin", None)
@@ -282,7 +282,7 @@ async def _table() -> str:
         _describe(owner, plugin["parameters"], texts)
     content = {"nodes": nodes, "plugins": plugins}
     text = json.dumps(content, indent=1, ensure_ascii=False).replace(_ITEM, "*").replace(_PART, "*")
-    return _RECORD.sub(lambda found: "{" + " ".join(found[1].split()) + "}", text) + "\n"
+    return _RECORD.sub(lambda match: "{" + " ".join(match[1].split()) + "}", text) + "\n"
 
 
 def main(words: list[str]) -> int:

@@ -66,13 +66,13 @@ def _shown(name: str, kind: str, role: str) -> tuple[str, str, str] | None:
 
 
 @contextmanager
-def _recording(found: dict[tuple[str, str], list[str]], names: list[str]) -> Iterator[None]:
+def _recording(topics: dict[tuple[str, str], list[str]], names: list[str]) -> Iterator[None]:
     def recorder(create: Callable[..., Any], role: str) -> Callable[..., Any]:
         def creating(node: Node, kind: Any, name: str, *arguments: Any, **options: Any) -> Any:
             names.append(node.get_name())
             shown = _shown(name, _type_name(kind), role)
             if shown is not None:
-                found.setdefault((shown[0], shown[2]), list(shown))
+                topics.setdefault((shown[0], shown[2]), list(shown))
             return create(node, kind, name, *arguments, **options)
 
         return creating
@@ -91,16 +91,19 @@ def _order(key: tuple[str, str]) -> tuple[bool, bool, str]:
 def _endpoints() -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the package and executable of each node, with the node's name and endpoints."""
     for package, executable in sorted(EXECUTABLES):
-        found: dict[tuple[str, str], list[str]] = {}
+        topics: dict[tuple[str, str], list[str]] = {}
         names: list[str] = []
         if not executable.endswith(_LEFT_OUT) and not package.startswith(_PACKAGES_LEFT_OUT):
-            with _recording(found, names):
+            with _recording(topics, names):
                 _start((package, executable), _NEEDED.get(executable, {}), ParameterRules())
         for name, kind, role in _MORE.get(f"{package}/{executable}", ()):
-            found.setdefault((name, role), [name, kind, role])
-        if found:
+            topics.setdefault((name, role), [name, kind, role])
+        if topics:
             node = names[0] if names else executable
-            yield f"{package}/{executable}", {"node": node, "topics": [found[key] for key in sorted(found, key=_order)]}
+            yield (
+                f"{package}/{executable}",
+                {"node": node, "topics": [topics[key] for key in sorted(topics, key=_order)]},
+            )
 
 
 async def _table() -> str:

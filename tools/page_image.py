@@ -59,7 +59,7 @@ def main() -> int:
 
 
 def operate(page: Page, texts: list[str]) -> None:
-    """Click what has each text, one after the other."""
+    """Click the element with each text, one after the other."""
     for text in texts:
         page.get_by_text(text, exact=True).first.click(timeout=PATIENCE)
 

@@ -48,11 +48,11 @@ class Refusal:
 
     def matches(self, text: str) -> str | None:
         """Return the first refused words of a text, or None."""
-        for found in self.pattern.finditer(text):
-            sentence = text[_END.sub("\0", text[: found.start()]).rfind("\0") + 1 :]
+        for match in self.pattern.finditer(text):
+            sentence = text[_END.sub("\0", text[: match.start()]).rfind("\0") + 1 :]
             sentence = _END.split(sentence, maxsplit=1)[0]
             if self.unless is None or not self.unless.search(sentence):
-                return found[0]
+                return match[0]
         return None
 
 
@@ -116,9 +116,9 @@ def texts(roots: list[Path]) -> Iterator[tuple[Path, int, str]]:
     """Yield all texts below some folders: file, line, text."""
     for root in roots:
         for path in [root] if root.is_file() else sorted(root.rglob("*")):
-            found = {".py": python_texts, ".ts": page_texts}.get(path.suffix)
-            if found and "zh" not in path.parts and "stubs" not in path.parts:
-                yield from ((path, line, text) for line, text in found(path))
+            reader = {".py": python_texts, ".ts": page_texts}.get(path.suffix)
+            if reader and "zh" not in path.parts and "stubs" not in path.parts:
+                yield from ((path, line, text) for line, text in reader(path))
 
 
 def _is_accepted(exceptions: list[Accepted], path: Path, text: str) -> bool:
@@ -132,9 +132,9 @@ def main(words: list[str]) -> int:
     problems = []
     for path, line, text in texts([Path(word).resolve() for word in words] or [PACKAGE, PAGE]):
         plain = " ".join(text.split())
-        found = [(match.strip(), refusal.plain) for refusal in refused if (match := refusal.matches(plain))]
-        if found and not _is_accepted(accepted, path, plain):
-            problems += [f"{path.relative_to(ROOT)}:{line}: '{match}'; write: {better}" for match, better in found]
+        refusals = [(match.strip(), refusal.plain) for refusal in refused if (match := refusal.matches(plain))]
+        if refusals and not _is_accepted(accepted, path, plain):
+            problems += [f"{path.relative_to(ROOT)}:{line}: '{match}'; write: {better}" for match, better in refusals]
     if not words:
         problems += [f"{row.path}: no text needs the exception '{row.words}'" for row in accepted if not row.used]
     for problem in problems:

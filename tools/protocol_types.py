@@ -74,7 +74,7 @@ def _languages_text() -> str:
     """Return the table of languages by tag, and its type."""
     tags = ", ".join(f'{language}: "{tag}"' for language, tag in TAGS.items())
     return "\n".join((
-        _HEAD.format(source="src/linkwright/diagnostics/translation/language.py"),
+        _HEAD.format(source="src/linkwright/diagnostics/translation/translate.py"),
         "",
         "/** The languages of messages, each with its tag. */",
         f"export const LANGUAGES = {{ {tags} }} as const;",

@@ -48,8 +48,8 @@ def expand(requests: list[dict[str, Any]]) -> list[dict[str, str]]:
     environment = {name: value for name, value in os.environ.items() if name not in ENVIRONMENT}
     environment |= {name: value for name, value in ENVIRONMENT.items() if value is not None}
     questions = "".join(json.dumps(request) + "\n" for request in requests)
-    done = subprocess.run(program, input=questions, env=environment, check=True, stdout=subprocess.PIPE, text=True)
-    return [json.loads(line) for line in done.stdout.splitlines()]
+    result = subprocess.run(program, input=questions, env=environment, check=True, stdout=subprocess.PIPE, text=True)
+    return [json.loads(line) for line in result.stdout.splitlines()]
 
 
 def check_urdf(text: str) -> dict[str, Any]:

@@ -50,12 +50,14 @@ def run(*words: str | Path, cwd: Path = ROOT, umask: int = 0o022, **environment:
     Raises:
         SystemExit: the program fails; its messages are on the terminal.
     """
-    done = subprocess.run(
+    result = subprocess.run(
         words, cwd=cwd, env={**os.environ, **environment}, stdout=subprocess.PIPE, text=True, check=False, umask=umask
     )
-    if done.returncode:
-        raise SystemExit(f"{done.stdout}release: `{' '.join(map(str, words))}` failed with status {done.returncode}")
-    return done.stdout
+    if result.returncode:
+        raise SystemExit(
+            f"{result.stdout}release: `{' '.join(map(str, words))}` failed with status {result.returncode}"
+        )
+    return result.stdout
 
 
 def committed() -> str:

@@ -17,9 +17,9 @@ _VERSION = re.compile(r"(0|[1-9]\d*)\.(0|[1-9]\d*)\.(0|[1-9]\d*)", re.ASCII)
 
 def sections(text: str) -> dict[str, str]:
     """Return the sections of a changelog, by the text in the brackets of their headings."""
-    found = list(_HEADING.finditer(text))
-    ends = [heading.start() for heading in found[1:]] + [len(text)]
-    return {heading["name"]: text[heading.end() : end].strip() for heading, end in zip(found, ends, strict=True)}
+    headings = list(_HEADING.finditer(text))
+    ends = [heading.start() for heading in headings[1:]] + [len(text)]
+    return {heading["name"]: text[heading.end() : end].strip() for heading, end in zip(headings, ends, strict=True)}
 
 
 def section(text: str, version: str) -> tuple[str, str]:

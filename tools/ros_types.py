@@ -24,8 +24,8 @@ SUPPORTS = ("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c
 
 def make(package: str, folder: Path, output: Path) -> None:
     """Generate, compile and install the types of a package."""
-    with tempfile.TemporaryDirectory() as made:
-        generated = Path(made)
+    with tempfile.TemporaryDirectory() as build_folder:
+        generated = Path(build_folder)
         generate(package, folder, [str(path.relative_to(folder)) for path in folder.glob("*/*.idl")], generated)
         headers = generated / "include" / package
         for part in ("c", "fastrtps_c", "introspection_c"):
@@ -38,9 +38,9 @@ def generate(package: str, folder: Path, interfaces: list[str], output: Path) ->
     entry_points: Any = importlib.import_module("rosidl_cli.entry_points")
     api = importlib.import_module("rosidl_cli.command.generate.api")
 
-    found = entry_points.get_entry_points
+    original = entry_points.get_entry_points
 
-    entry_points.get_entry_points = lambda group, *, specs=None, **_: found(group, specs=specs, strict=False)
+    entry_points.get_entry_points = lambda group, *, specs=None, **_: original(group, specs=specs, strict=False)
     api.generate(
         package_name=package,
         interface_files=[f"{folder.resolve()}:{name}" for name in interfaces],
@@ -62,8 +62,8 @@ def build(package: str, generated: Path, output: Path) -> None:
     include = [PREFIX / "include", generated / "include", *sorted((PREFIX / "include").iterdir())]
     include += [Path(sysconfig.get_path("include")), Path(np.get_include())]
     common = [f"-I{folder}" for folder in include]
-    found = [libraries.resolve(), PREFIX / "lib"]
-    paths = [f"{option}{folder}" for folder in found for option in ("-L", "-Wl,-rpath,")]
+    folders = [libraries.resolve(), PREFIX / "lib"]
+    paths = [f"{option}{folder}" for folder in folders for option in ("-L", "-Wl,-rpath,")]
 
     def compile_into(target: Path, sources: list[Path], *needed: str) -> None:
         compiler = "g++" if any(source.suffix == ".cpp" for source in sources) else "gcc"

@@ -79,8 +79,8 @@ def chinese_titles() -> dict[str, str]:
     """Return the Chinese titles of rules, by code."""
     with CATALOG.open("rb") as file:
         catalog = read_po(file)
-    found = {rule.code: catalog.get(rule_page(rule).title, RULES) for rule in all_rules()}
-    return {code: str(message.string) for code, message in found.items() if message is not None}
+    titles = {rule.code: catalog.get(rule_page(rule).title, RULES) for rule in all_rules()}
+    return {code: str(message.string) for code, message in titles.items() if message is not None}
 
 
 def _rules(start: str) -> list[Rule]:

@@ -31,12 +31,12 @@ def main() -> None:
     parser.add_argument("paths", metavar="FILE|FOLDER", nargs="+", type=Path)
     parser.add_argument("--sample", metavar="CODE", action="append", default=[])
     arguments = parser.parse_args()
-    found = {path: survey_of(path, arguments.paths) for path in targets(arguments.paths)}
+    findings = {path: survey_of(path, arguments.paths) for path in targets(arguments.paths)}
     if arguments.sample:
         for code in arguments.sample:
-            print_sample(found, code)
+            print_sample(findings, code)
     else:
-        print_table(found)
+        print_table(findings)
 
 
 def targets(paths: Iterable[Path]) -> list[Path]:
@@ -47,34 +47,35 @@ def targets(paths: Iterable[Path]) -> list[Path]:
 
 def survey_of(path: Path, start: Iterable[Path]) -> list[Diagnostic]:
     """Return the findings about a description or package, which may use the packages below the folders."""
-    finder = PackageFinder(start=[path.absolute().parent, *(each.absolute() for each in start)])
+    finder = PackageFinder(start=[path.absolute().parent, *(folder.absolute() for folder in start)])
     if path.is_dir():
         return list(examine_package(path, Settings(), finder).diagnostics)
     return list(examine(path, packages=finder, settings=Settings()).diagnostics)
 
 
-def print_table(found: dict[Path, list[Diagnostic]]) -> None:
+def print_table(findings_by_target: dict[Path, list[Diagnostic]]) -> None:
     """Print a line for each code and severity, with the numbers of findings and robots."""
     findings: Counter[tuple[int, str]] = Counter()
     robots: Counter[tuple[int, str]] = Counter()
     order = list(Severity)
-    for diagnostics in found.values():
+    for diagnostics in findings_by_target.values():
         keys = [(order.index(diagnostic.severity), diagnostic.code) for diagnostic in diagnostics]
         findings.update(keys)
         robots.update(set(keys))
-    print(f"{len(found)} descriptions and packages")
+    print(f"{len(findings_by_target)} descriptions and packages")
     for key, count in sorted(findings.items(), key=lambda item: (item[0][0], -robots[item[0]])):
+        share = robots[key] / len(findings_by_target)
+        print(f"{order[key[0]].value:8} {key[1]:9} {count:7} findings on {robots[key]:5} ({share:.0%})")
+
+
+def print_sample(findings: dict[Path, list[Diagnostic]], code: str) -> None:
+    """Print a sample of the findings of a code: one of each robot, then the second of each, and so on."""
+    mine = [[diagnostic for diagnostic in diagnostics if diagnostic.code == code] for diagnostics in findings.values()]
+    picked = [of_robot[turn] for turn in range(_SAMPLE) for of_robot in mine if len(of_robot) > turn]
+    for finding in picked[:_SAMPLE]:
         print(
-            f"{order[key[0]].value:8} {key[1]:9} {count:7} findings on {robots[key]:5} ({robots[key] / len(found):.0%})"
+            f"{finding.severity.value}[{finding.code}] {finding.span or '-'}: {finding.message} ({finding.hint or '-'})"
         )
-
-
-def print_sample(found: dict[Path, list[Diagnostic]], code: str) -> None:
-    """Print findings of a code, one of each robot before the second of any robot."""
-    mine = [[diagnostic for diagnostic in diagnostics if diagnostic.code == code] for diagnostics in found.values()]
-    picked = [each[turn] for turn in range(_SAMPLE) for each in mine if len(each) > turn]
-    for each in picked[:_SAMPLE]:
-        print(f"{each.severity.value}[{each.code}] {each.span or '-'}: {each.message} ({each.hint or '-'})")
 
 
 if __name__ == "__main__":

@@ -86,16 +86,16 @@ def language_of(page: Page) -> str:
 
 def _chinese(items: list[Any], folder: Path, titles: dict[str, str]) -> list[Any]:
     """Return the navigation entries with Chinese pages, with titles from the table or their first heading."""
-    found: list[Any] = []
+    pages: list[Any] = []
     for item in items:
         title, below = next(iter(item.items())) if isinstance(item, dict) else ("", item)
         if isinstance(below, list):
             children = _chinese(below, folder, titles)
-            found += [{titles[title]: children}] if children else []
+            pages += [{titles[title]: children}] if children else []
         elif (folder / below).exists():
             path = f"{CHINESE}/{below}"
-            found.append({titles[title]: path} if title in titles else path)
-    return found
+            pages.append({titles[title]: path} if title in titles else path)
+    return pages
 
 
 def _sister(page: Page, language: str) -> Page:

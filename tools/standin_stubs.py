@@ -50,17 +50,17 @@ def _lines(module: table.Module) -> Iterator[str]:
     for submodule in module.submodules:
         if submodule not in module.names:
             yield f"from {module.name} import {submodule} as {submodule}"
-    for name, found in module.names.items():
-        if found.origin == table.VALUE:
-            yield from ("from typing import Final", f"{name}: Final = {found.name}")
-        elif found.origin == module.name:  # a variable of the module itself
+    for name, value in module.names.items():
+        if value.origin == table.VALUE:
+            yield from ("from typing import Final", f"{name}: Final = {value.name}")
+        elif value.origin == module.name:  # a variable of the module itself
             yield from ("from typing import Any", f"{name}: Any")
-        elif found.origin != table.IMPORT:
-            yield f"from {found.origin} import {found.name} as {name}"
-        elif found.name in module.submodules:
-            yield f"from {module.name} import {found.name} as {name}"
+        elif value.origin != table.IMPORT:
+            yield f"from {value.origin} import {value.name} as {name}"
+        elif value.name in module.submodules:
+            yield f"from {module.name} import {value.name} as {name}"
         else:
-            yield f"import {found.name} as {name}"
+            yield f"import {value.name} as {name}"
     yield f"__all__ = {module.public!r}"
 
 

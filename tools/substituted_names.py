@@ -22,15 +22,15 @@ tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "toml
 def names() -> str:
     """Return the list: a line for each package, with its name and the names of its executables."""
     groups = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["entry-points"]
-    found: dict[str, set[str]] = {"rviz2": set()}
+    names_by_module: dict[str, set[str]] = {"rviz2": set()}
     for folder in ("standins/tables", "messages/data"):
-        found |= {file.stem: set() for file in (PACKAGE / folder).glob("*.txt")}
+        names_by_module |= {file.stem: set() for file in (PACKAGE / folder).glob("*.txt")}
     for name in groups["linkwright.components"]:
-        found.setdefault(name.partition("/")[0], set())
+        names_by_module.setdefault(name.partition("/")[0], set())
     for name in groups["linkwright.nodes"]:
         package, _, executable = name.partition("/")
-        found.setdefault(package, set()).add(executable)
-    return "".join(" ".join((package, *sorted(found[package]))) + "\n" for package in sorted(found))
+        names_by_module.setdefault(package, set()).add(executable)
+    return "".join(" ".join((package, *sorted(names_by_module[package]))) + "\n" for package in sorted(names_by_module))
 
 
 def main(words: list[str]) -> int:

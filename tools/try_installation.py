@@ -82,13 +82,13 @@ def try_engine(version: str) -> str:
 
 
 def _run(environment: dict[str, str], *words: str, status: int = 0) -> str:
-    done = subprocess.run(
+    result = subprocess.run(
         [_PROGRAM, *words], env=environment, capture_output=True, text=True, timeout=_SECONDS, check=False
     )
-    assert done.returncode == status, (
-        f"linkwright {' '.join(words)}: status {done.returncode}\n{done.stdout}{done.stderr}"
+    assert result.returncode == status, (
+        f"linkwright {' '.join(words)}: status {result.returncode}\n{result.stdout}{result.stderr}"
     )
-    return done.stdout
+    return result.stdout
 
 
 def _page(environment: dict[str, str], robot: Path) -> int:
@@ -102,12 +102,12 @@ def _page(environment: dict[str, str], robot: Path) -> int:
             lines = []
             for line in viewer.stdout:
                 lines.append(line)
-                if found := re.search(r"Viewer: (http://\S+)", line):
+                if match := re.search(r"Viewer: (http://\S+)", line):
                     break
             else:
                 raise AssertionError("linkwright view ended by itself:\n" + "".join(lines))
             opener = build_opener(ProxyHandler({}), HTTPCookieProcessor(CookieJar()))
-            with opener.open(found[1], timeout=_SECONDS) as answer:
+            with opener.open(match[1], timeout=_SECONDS) as answer:
                 page, address = answer.read().decode("utf-8"), answer.geturl()
             files = re.findall(r'(?:src|href)="(\./[^"]+)"', page)
             assert any(file.endswith(".js") for file in files), page

@@ -151,10 +151,10 @@ export function publishInspection(
       return { name, position: position - start, length: end - start, playing: isPlaying, problem, live: isLive, kept: extent?.size ?? 0 };
     },
     get recording() {
-      const { path, length, savedBytes, problem, files } = session.recording;
+      const { path, length, savedShare, problem, files } = session.recording;
       const { mark, timeline } = session.timeline;
       const start = timeline?.start ?? 0;
-      return { path, length, saved: savedBytes, problem, files: files.map((file) => file.path), mark: mark && [mark.start - start, mark.end - start] };
+      return { path, length, saved: savedShare, problem, files: files.map((file) => file.path), mark: mark && [mark.start - start, mark.end - start] };
     },
     get time() {
       const { isPaused, mode, source, sources } = session.time;

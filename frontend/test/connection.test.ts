@@ -156,7 +156,7 @@ describe("the connection", () => {
   });
 
   it("reports a program that does not know the page's token", async () => {
-    const fetchPage = vi.fn<(createPage: URL) => Promise<{ status: number }>>(() => Promise.resolve({ status: 401 }));
+    const fetchPage = vi.fn<(page: URL) => Promise<{ status: number }>>(() => Promise.resolve({ status: 401 }));
     vi.stubGlobal("fetch", fetchPage);
     const { connection, socket } = openConnection();
     socket.receiveHello();

@@ -3,7 +3,7 @@ import type { ImageFrame } from "../src/protocol";
 import { ImageCanvas } from "../src/scene/images/image-canvas";
 
 /** A decoder that finishes when the test tells it to. */
-let pendingDecodes: ((createBitmap: ImageBitmap) => void)[] = [];
+let pendingDecodes: ((bitmap: ImageBitmap) => void)[] = [];
 let openCount = 0;
 let maxOpenCount = 0;
 

@@ -107,11 +107,11 @@ describe("the drawn samples", () => {
     const many = new SeriesBuffer();
     const times = Array.from({ length: 20_000 }, (_, index) => index / 1000);
     many.append(times, times, times.map((time, index) => (index === 12_345 ? 99 : Math.sin(time))));
-    const [columns, listValues] = tabulatePlot([many], "stamp", 5, 15, 400);
+    const [columns, values] = tabulatePlot([many], "stamp", 5, 15, 400);
     expect(columns.length).toBeLessThan(820);
     expect(columns.every((time, index) => index === 0 || time > (columns[index - 1] ?? 0))).toBe(true);
-    expect(listValues).toContain(99);
-    const column = listValues?.indexOf(99) ?? 0;
+    expect(values).toContain(99);
+    const column = values?.indexOf(99) ?? 0;
     expect(Math.abs((columns[column] ?? 0) - 12.345)).toBeLessThan(10 / 400);
   });
 

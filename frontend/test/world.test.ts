@@ -58,8 +58,8 @@ describe("ground", () => {
   it("has the heights at their positions, the first row at minimum y", () => {
     const geometry = createHeightmap(new Float32Array([0, 0, 1, 1]), 2, [10, 20, 3, 1, 2, 0.5, 5]);
     geometry.computeBoundingBox();
-    const createBox = geometry.boundingBox ?? new Box3();
-    expect([...createBox.min.toArray(), ...createBox.max.toArray()]).toEqual([-4, -8, 0.5, 6, 12, 3.5]);
+    const box = geometry.boundingBox ?? new Box3();
+    expect([...box.min.toArray(), ...box.max.toArray()]).toEqual([-4, -8, 0.5, 6, 12, 3.5]);
     const points = geometry.getAttribute("position");
     expect([points.getY(0), points.getZ(0)]).toEqual([12, 3.5]);
     expect(geometry.getAttribute("uv").getX(1)).toBe(2);

@@ -14,7 +14,7 @@ export interface SeriesSamples {
   values: Float64Array;
 }
 
-/** Unpacks the bytes that `pack_samples` of `viewer/protocol/monitor.py` wrote; returns null for any other bytes. */
+/** Unpacks the bytes that `pack_samples` of `page/protocol/monitor.py` wrote; returns null for any other bytes. */
 export function unpackSamples(buffer: ArrayBuffer): SeriesSamples[] | null {
   if (buffer.byteLength < HEADER_BYTES) return null;
   const view = new DataView(buffer);

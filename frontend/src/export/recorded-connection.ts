@@ -97,7 +97,7 @@ export class RecordedConnection extends Connection {
 
 /**
  * Returns the side of a grid cell for a robot with a bounding box of this diagonal, m: `ModelSize.cell` of
- * `viewer/config/model_size.py`.
+ * `rviz/config/views.py`.
  */
 function chooseCellSize(diagonal: number): number {
   return 10 ** Math.floor(Math.log10(diagonal * 1.5));

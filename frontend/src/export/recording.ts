@@ -1,6 +1,6 @@
 import type { ServerMessage } from "../protocol";
 
-/** The server's messages at the time of the export, as `viewer/features/export/html.py` writes them. */
+/** The server's messages at the time of the export, as `panels/export/html.py` writes them. */
 export interface Recording {
   /** Name and version of the program. */
   program: string;

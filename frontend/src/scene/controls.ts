@@ -3,12 +3,12 @@ import { strings } from "../strings";
 import type { Stage } from "./stage";
 import type { PointerButton, ToolEvent } from "./tools/tool";
 
-/** Pixels; a press that moves less than this is a click. */
+/** A press that moves less than this is a click, px. */
 const CLICK_SLOP = 4;
 const LINE_PX = 40;
 const KEY_PX = 20;
 const ZOOM_NOTCH = 120;
-/** The wheel delta that corresponds to a pinch which changes the distance by its whole. */
+/** The wheel delta per relative change of the fingers' distance, 1 - old distance / new distance. */
 const PINCH_UNIT = 1000;
 const BUTTONS: readonly PointerButton[] = ["left", "middle", "right"];
 

@@ -7,7 +7,7 @@ import type { Viewport } from "./viewport";
 const COLOR = 0xff9d3c;
 const FILL = 0.55;
 const DURATION_MS = 1600;
-/** ms at full strength at the start, because new meshes may take a moment to load. */
+/** The time at full strength at the start, ms, because new meshes may take a moment to load. */
 const FULL_MS = 600;
 
 /** Highlights for a moment the links that an edit changed, or whose joints it moved. */

@@ -6,7 +6,7 @@ import { framePose } from "./pose";
 import type { Stage } from "./stage";
 import type { ToolEvent } from "./tools/tool";
 
-/** The angle is searched within this range on both sides of the last one, rad, in this many steps. */
+/** The range on both sides of the last angle in which the angle is searched, rad, and the number of steps. */
 const REACH = Math.PI / 2;
 const STEPS = 48;
 const REFINEMENTS = 24;

@@ -121,10 +121,10 @@ export class Stage {
   /** Returns the scene as PNG, without marks of the selection and of camera motion. */
   async takeScreenshot(scale: number): Promise<Blob | null> {
     this.overlays.visible = false;
-    const takeScreenshot = this.viewport.takeScreenshot(scale);
+    const screenshot = this.viewport.takeScreenshot(scale);
     this.overlays.visible = true;
     this.draw(FINEST);
-    return takeScreenshot;
+    return screenshot;
   }
 
   /** Whether a display has objects that the Interact tool can move. */

@@ -144,7 +144,7 @@ export class Viewport {
     return { camera: this.activeCamera, height: this.canvas.height };
   }
 
-  /** Draws the scene; with antialiasing if `fine`. */
+  /** Draws the scene; with antialiasing if `isFine`. */
   render(isFine: boolean): void {
     const draw = (): void => this.renderer.render(this.scene, this.camera);
     if (isFine) this.smoothing.render(this.renderer, draw);
@@ -161,9 +161,9 @@ export class Viewport {
     renderer.setSize(width, height, false);
     this.render(true);
     // The frame is available only until the browser regains control.
-    const takeScreenshot = new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
+    const screenshot = new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
     this.resize();
-    return takeScreenshot;
+    return screenshot;
   }
 
   private project(viewCamera: Camera, nearDistance: number): void {

@@ -9,7 +9,7 @@ import type { ToolEvent } from "./tools/tool";
 
 /** The tools that leave mouse events on models to other handlers. */
 export const HANDLING_TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera"];
-/** ms; the minimum time between two requests of a page. */
+/** The minimum time between two requests of a page, ms. */
 const PERIOD_MS = 50;
 /** The force in N per m between the pulled point of a link and the mouse. */
 const STIFFNESS = 50;
@@ -92,7 +92,7 @@ export class WorldHandling {
       hold.target.copy(target);
       return;
     }
-    target.z = hold.start.z; // the height stays exactly, which the intersection does not
+    target.z = hold.start.z; // keep the exact height, from which the intersection deviates
     hold.offset = target.sub(hold.start);
     const now = performance.now();
     if (now - hold.lastMs < PERIOD_MS) return;

@@ -119,7 +119,7 @@ export class CourseState {
     this.connection.send({ type: "ask_catch_up" });
   }
 
-  /** Takes over all steps before the shown one from the course. */
+  /** Brings the workspace into the course's state before the shown step. */
   catchUp(): void {
     this.connection.send({ type: "catch_up" });
   }

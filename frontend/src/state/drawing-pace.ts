@@ -19,7 +19,7 @@ export class DrawingPace {
     return this.wasSlow;
   }
 
-  /** Counts a frame; `late` if it was drawn long after it was due, because the frames before took too long. */
+  /** Counts a frame; `isLate` if it was drawn long after it was due, because the frames before took too long. */
   countFrame(isLate: boolean): void {
     this.lateness.push(isLate);
     if (this.lateness.length > JUDGED_FRAMES) this.lateness.shift();

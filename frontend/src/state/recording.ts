@@ -48,7 +48,7 @@ export class RecordingControl {
   }
 
   /** The saved share of the history, 0 to 1; null while nothing is being saved. */
-  get savedBytes(): number | null {
+  get savedShare(): number | null {
     return this.latest?.saved ?? null;
   }
 

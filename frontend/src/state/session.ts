@@ -133,7 +133,7 @@ export class Session {
     return null;
   }
 
-  /** Keeps joint positions and camera when the program was restarted, unless it shows something else now. */
+  /** Keeps joint positions and camera if the program was restarted and shows the same content. */
   private onHello(hello: Hello): void {
     const previous = this.program;
     this.program = hello;

@@ -2,7 +2,7 @@ import type { DisplayData } from "../connection/data";
 import { Signal } from "../signal";
 import type { DisplayDataStore } from "./display-data";
 
-/** ms over which the rate of contents is measured. */
+/** The period over which the rate of contents is measured, ms. */
 const RATE_WINDOW_MS = 3000;
 /** A WebP image at full resolution with a higher quality than this looks like the original. */
 const VISIBLE_LOSS_QUALITY = 70;

@@ -6,7 +6,7 @@ import type { SlowConnection } from "./slow-connection";
 /** The cause of a reduced data rate: the drawing of the page, the program, or the connection between them. */
 export type SlowCause = "page" | "program" | "line";
 
-/** The interval at which the page's lateness is measured, ms. */
+/** The interval at which the delay of the page's timers is measured, ms. */
 const INTERVAL_MS = 50;
 /** The number of measurements that are averaged. */
 const AVERAGED = 40;

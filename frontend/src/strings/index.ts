@@ -12,7 +12,7 @@ const ALL = Object.keys(TEXTS) as Language[];
 const FALLBACK = "en";
 const LANGUAGE_KEY = "linkwright.language";
 
-/** The language of a locale's tag such as "zh-TW"; undefined if the page has no words in it. */
+/** Returns the language of a locale's tag such as "zh-TW"; undefined if the page has no texts in it. */
 function languageOf(tag: string): Language | undefined {
   return ALL.find((language) => language === tag.toLowerCase().split("-")[0]);
 }
@@ -23,16 +23,16 @@ if (requested) openBrowserStorage().setItem(LANGUAGE_KEY, requested);
 export const language: Language =
   requested ?? languageOf(openBrowserStorage().getItem(LANGUAGE_KEY) ?? "") ?? languageOf(navigator.language) ?? FALLBACK;
 
-/** Its tag, for the document. */
+/** The tag of the page's language, for the `lang` attribute of the document. */
 export const languageTag: string = LANGUAGES[language];
 
-/** The page's words in the user's language. */
+/** The page's texts in the user's language. */
 export const strings: Strings = TEXTS[language];
 
 /** The page is about to be shown in another language. */
 export const languageChosen = new Signal();
 
-/** Remembers the next language as the user's and reloads the page. */
+/** Stores the next language as the user's choice, and reloads the page in it. */
 export function changeLanguage(): void {
   openBrowserStorage().setItem(LANGUAGE_KEY, ALL[ALL.indexOf(language) + 1] ?? FALLBACK);
   languageChosen.emit();

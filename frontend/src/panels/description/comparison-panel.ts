@@ -25,7 +25,7 @@ export class ComparisonPanel implements Panel {
   private readonly count = h("p", { class: "comparison-count", role: "status" });
   private readonly list = h("div", { class: "comparison-list", role: "list", aria: { label: strings.comparison.list } });
 
-  /** `look` points the camera at the selection. */
+  /** @param focusScene - points the camera at the selection. */
   constructor(
     private readonly session: Session,
     private readonly focusScene: () => void,

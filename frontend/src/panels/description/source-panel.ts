@@ -204,7 +204,7 @@ export class SourcePanel implements Panel {
   }
 
   private fill(view: SourceView, text: string | null | undefined, highlights: Highlight[], pane: "expanded" | "origin"): void {
-    if (typeof text !== "string") return; // the old one stays until the new one is here
+    if (typeof text !== "string") return; // the old text stays until the new one has arrived
     view.setText(text);
     view.setHighlights(highlights);
     const line = this.pendingReveal[pane];

@@ -4,10 +4,10 @@ import { strings } from "../../strings";
 import { VirtualRows } from "../../widgets/virtual-rows";
 
 const ROW_PX = 18;
-/** Characters; longer lines are cut, because some files are a single line of a megabyte. */
+/** The maximum number of characters of a line; longer ones are cut, because some files are a single line of a megabyte. */
 const LONGEST_LINE = 4000;
 
-/** Lines `from` to `to`, 1-based and inclusive, and how they are marked. */
+/** The lines `firstLine` to `lastLine`, 1-based and inclusive, and how they are marked. */
 export interface Highlight {
   readonly firstLine: number;
   readonly lastLine: number;

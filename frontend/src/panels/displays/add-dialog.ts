@@ -63,7 +63,7 @@ export class AddDialog {
       "add-dialog",
     );
     this.stopListening = session.configuration.choicesArrived.on(() => {
-      if (!this.isWaiting) return; // what is listed stays where the mouse may be
+      if (!this.isWaiting) return; // the list must not change under the pointer
       this.isWaiting = false;
       this.fill();
     });

@@ -179,7 +179,7 @@ export class DisplaysPanel implements Panel {
 
   private explain(name: string, description: string, troubles: readonly StatusRow[] = []): void {
     const key = JSON.stringify([name, description, troubles]);
-    if (key === this.explained) return; // said once, not again with each message that comes
+    if (key === this.explained) return; // do not announce the text again with each message
     this.explained = key;
     this.tree.runAfterRelease(() => {
       if (key !== this.explained) return;

@@ -19,7 +19,7 @@ export class MessageTree {
   private readonly openPaths = new Set<string>();
   private fields: readonly MessageField[] = [];
 
-  /** `plot` is called with the path of a numeric field whose plot button is clicked. */
+  /** @param onPlotField - called with the path of a numeric field whose plot button is clicked. */
   constructor(private readonly onPlotField: (path: string) => void) {}
 
   show(fields: readonly MessageField[]): void {

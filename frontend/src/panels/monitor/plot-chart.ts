@@ -7,7 +7,7 @@ import type { Plot, PlotsState } from "../../state/monitor/plots";
 const COLORS = 8;
 const AXIS_FONT = "10.5px system-ui, sans-serif";
 const Y_AXIS_PX = 58;
-/** Seconds; greater times are calendar times, smaller ones seconds since the start of a simulation. */
+/** s; greater times are calendar times, smaller ones are counted from the start of a simulation. */
 const MIN_CALENDAR_TIME = 1e8;
 
 /** Returns the color of a plot's series, as a CSS variable. */

@@ -9,7 +9,7 @@ export class TeleopGamepad {
   private frame = 0;
   private lastName: string | null = "";
 
-  /** `nameChanged` is called with the name of the gamepad, or null when there is none. */
+  /** @param nameChanged - called with the name of the gamepad, or null when there is none. */
   constructor(
     private readonly state: TeleopState,
     private readonly nameChanged: (name: string | null) => void,

@@ -17,7 +17,7 @@ interface CodeAction {
 
 const KINDS = ["quickfix", "source.fixAll", "refactor.extract", "refactor.inline", "refactor.rewrite"];
 
-/** What the client can do with code actions, for the server. */
+/** The client's capabilities for code actions, for the server. */
 export const ACTION_CAPABILITIES = {
   textDocument: {
     codeAction: {
@@ -90,7 +90,7 @@ export class CodeActions {
     const { edit } = action.edit ? action : await this.client.request<CodeAction, CodeAction>("codeAction/resolve", action);
     const changedDocuments = edit ? await applyWorkspaceEdit(this.client, edit, this.documents, "action") : [];
     const [document] = changedDocuments;
-    // The result may be in another file, such as the xacro that is made of a URDF.
+    // The result may be in another file, such as the xacro that a URDF is converted to.
     if (document && changedDocuments.length === 1 && document !== this.documents.shownDocument) await this.documents.show(document.path);
     return strings.sourceEditor.acted(action.title, changedDocuments.length);
   }

@@ -17,7 +17,7 @@ export class EditorPane {
   readonly toggle: HTMLButtonElement;
   private editor: SourceEditor | null = null;
   private isWanted: boolean;
-  /** Loads the editor; null before and after. */
+  /** Resolves when the editor is loaded; null unless it is being loaded. */
   private loadPromise: Promise<void> | null = null;
   /** The folder whose files can be edited without a description; empty if there is none. */
   private workspace = "";
@@ -91,7 +91,7 @@ export class EditorPane {
   /**
    * Shows a file, if the user wants the editor; returns whether the editor shows it now.
    *
-   * @param file - the path; null for a text that is not in a file of the disk.
+   * @param file - the path; null for a text that is not in a file on the disk.
    * @param highlights - the marked lines.
    * @param line - the line to scroll to; null for none.
    */

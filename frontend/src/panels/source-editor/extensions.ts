@@ -12,7 +12,7 @@ import { markedLines } from "./marks";
 import { phrases } from "./phrases";
 import { pageTheme } from "./theme";
 
-/** Returns everything of an editor that needs no language server. */
+/** Returns the extensions of an editor that need no language server. */
 export function createBaseExtensions(path: string, text: string, isReadOnly: boolean): Extension {
   const texts = strings.sourceEditor;
   const label = texts.text(shortenPath(path, 2));
@@ -43,7 +43,7 @@ export function createBaseExtensions(path: string, text: string, isReadOnly: boo
     EditorState.phrases.of(phrases),
     EditorState.readOnly.of(isReadOnly),
     EditorView.contentAttributes.of({ "aria-label": label, "aria-description": texts.keys, tabindex: "0" }),
-    tooltips({ parent: document.body }), // the dock cuts what is outside of a panel
+    tooltips({ parent: document.body }), // the dock clips what extends beyond a panel
     markedLines,
     pageTheme,
     syntaxOf(path),

@@ -79,7 +79,7 @@ export class FileTree {
     this.draw();
   }
 
-  /** Reads the folders again that are shown. */
+  /** Reads the shown folders again. */
   reload(): void {
     if (this.element.hidden || this.root === "") return;
     for (const path of [this.root, ...this.expandedFolders]) this.request(path);
@@ -165,11 +165,11 @@ export class FileTree {
     const items = [...this.list.querySelectorAll<HTMLElement>("[role=treeitem]")];
     const index = items.indexOf(item);
     const next = { ArrowDown: index + 1, ArrowUp: index - 1, Home: 0, End: items.length - 1 }[event.key];
-    const isOpen = item.getAttribute("aria-expanded");
+    const expandedState = item.getAttribute("aria-expanded");
     if (next !== undefined) this.focus(items[next]?.dataset["path"] ?? path);
     else if (event.key === "Enter" || event.key === " ") this.activate(item);
-    else if (event.key === "ArrowRight" && isOpen === "false") this.expand(path, true);
-    else if (event.key === "ArrowLeft" && isOpen === "true") this.expand(path, false);
+    else if (event.key === "ArrowRight" && expandedState === "false") this.expand(path, true);
+    else if (event.key === "ArrowLeft" && expandedState === "true") this.expand(path, false);
     else if (event.key === "ArrowLeft") this.focus(path.replace(/\/[^/]*$/, ""));
     else return;
     event.preventDefault();

@@ -19,7 +19,7 @@ const START_MS = 600_000;
 /** Changes are sent this time after the last key, ms. */
 const SYNC_MS = 120;
 
-/** Of the protocol: the request was cancelled, or its text has changed meanwhile. */
+/** Error codes of the protocol: the request was cancelled, or its text has changed meanwhile. */
 const OUTDATED: readonly unknown[] = [-32800, -32801];
 /** Requests that the next key or movement of the mouse repeats. */
 const REPEATED = ["textDocument/completion", "textDocument/hover"];
@@ -30,7 +30,7 @@ class TimeoutError extends Error {
   }
 }
 
-/** A client that waits for the start of its server, and for which an outdated answer is none, and no error. */
+/** A client that waits for the start of its server, and treats an outdated answer as an empty one instead of an error. */
 class PatientClient extends LSPClient {
   // eslint-disable-next-line @typescript-eslint/no-unnecessary-type-parameters -- the type of the overridden method
   override request<Params, Result>(method: string, params: Params): Promise<Result> {
@@ -120,11 +120,11 @@ class DocumentWorkspace extends Workspace {
 
   /** Documents stay open when the view shows another one. */
   override openFile(): void {
-    // `add` has opened it.
+    // `add` has opened the document.
   }
 
   override closeFile(): void {
-    // It may have unsaved changes, which the findings of other files depend on.
+    // The document may have unsaved changes, on which the findings of other files depend.
   }
 
   override async requestFile(uri: string): Promise<DocumentFile | null> {
@@ -201,7 +201,7 @@ export class LanguageService {
       subscribe: (handler) => (this.receive = handler),
       unsubscribe: () => (this.receive = () => undefined),
     });
-    client.initializing.catch(() => undefined); // requests tell it
+    client.initializing.catch(() => undefined); // requests report the error
   }
 
   add(document: SourceDocument): void {
@@ -218,7 +218,7 @@ export class LanguageService {
     if (changes.length > 0) this.client.notification("workspace/didChangeWatchedFiles", { changes });
   }
 
-  /** Returns what makes a view of a document use the server. */
+  /** Returns the extension that makes a view of a document use the server. */
   extensionFor(document: { uri: string; path: string }): Extension {
     return [
       this.client.plugin(document.uri, languageOf(document.path)),

@@ -20,7 +20,7 @@ interface WrittenColor {
   readonly range: ServerRange;
   readonly color: Color;
 }
-/** What the client shows of the meaning of a text, for the server. */
+/** The client's capabilities for values, names and colors, for the server. */
 export const MEANING_CAPABILITIES = {
   textDocument: {
     inlayHint: {},
@@ -130,7 +130,7 @@ class Meanings {
 
   private requestLater(): void {
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => void this.request().catch(() => undefined), PAUSE_MS); // the next change asks again
+    this.timer = setTimeout(() => void this.request().catch(() => undefined), PAUSE_MS); // the next change repeats the request
   }
 
   private async request(): Promise<void> {
@@ -179,13 +179,13 @@ function createPlugin(): ViewPlugin<Meanings, { client: LSPClient; uri: string }
   return plugin;
 }
 
-/** Returns what shows values of expressions, names by their meaning, and colors in a text. */
+/** Returns the extension that shows values of expressions, names by their meaning, and colors in a text. */
 export function createMeanings(client: LSPClient, uri: string): Extension {
-  // The meaning of a name counts more than its syntax: the color of the inner element is seen.
+  // The meaning of a name takes precedence over its syntax, because the color of the inner element is visible.
   return Prec.highest(createPlugin().of({ client, uri }));
 }
 
-/** Returns what lets the user choose the color on the line of a position; null if there is none. */
+/** Returns a function that opens the choice of the color on the line of a position; null if there is no color. */
 export function colorChoice(view: EditorView, position: number): (() => void) | null {
   const plugin = view.plugin(createPlugin());
   const line = view.state.doc.lineAt(position).number - 1;

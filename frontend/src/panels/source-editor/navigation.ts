@@ -69,7 +69,7 @@ export class Navigation {
     if (document) await this.go(document, offsetOf(document.state.doc, range.start));
   }
 
-  /** Remembers the place of the cursor, to which `goBack` returns. */
+  /** Stores the place of the cursor, to which `goBack` returns. */
   leave(): void {
     const bookmark = this.createBookmark();
     const lastBookmark = this.history.at(-1);
@@ -87,7 +87,7 @@ export class Navigation {
     return this.goTo(this.forward, this.history);
   }
 
-  /** Moves the remembered places with the text of a document. */
+  /** Moves the stored places with the text of a document. */
   record(document: SourceDocument, changes: ChangeSet): void {
     for (const bookmark of [...this.history, ...this.forward, ...this.listedPlaces]) {
       if (bookmark.document === document) bookmark.position = changes.mapPos(bookmark.position);

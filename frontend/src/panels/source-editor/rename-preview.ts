@@ -17,7 +17,7 @@ const MAX_LINES = 400;
 /**
  * Shows the lines that a rename changes, and returns whether the user wants it.
  *
- * @param remarks - what the server tells about the rename, such as mentions that stay as they are.
+ * @param remarks - the server's remarks about the rename, such as mentions that stay as they are.
  */
 export function confirmRename(name: string, newName: string, files: readonly RenamedFile[], remarks: readonly string[]): Promise<boolean> {
   const texts = strings.sourceEditor;

@@ -30,7 +30,7 @@ class FormerText {
   }
 }
 
-/** A file in the editor: its edited text, and what is known of the file on the disk. */
+/** A file in the editor: its edited text, and the last known text on the disk. */
 export class SourceDocument {
   conflict: Conflict | null = null;
   /** Why the file cannot be read or written; empty if it can be edited. */
@@ -90,12 +90,12 @@ export class SourceDocument {
     return text.lineAt(Math.min(then, text.length)).number;
   }
 
-  /** Notes that the text is sent to be shown in the scene. */
+  /** Records that the text is sent to be shown in the scene. */
   beginShowing(number: number): void {
     this.sentTexts.set(number, new FormerText(this.state.doc));
   }
 
-  /** Notes that the scene shows a text, or cannot show it. */
+  /** Records that the scene shows a text, or cannot show it. */
   endShowing(number: number, isShown: boolean): void {
     if (!isShown) return;
     this.described = this.sentTexts.get(number) ?? this.described;
@@ -149,12 +149,12 @@ export class SourceDocument {
     return { changes: mergedChanges.edit, annotations: [fromDisk.of(mergedChanges.unsavedChanges), isolateHistory.of("full")], userEvent: "disk" };
   }
 
-  /** Settles a conflict for the edited text, which is unsaved then. */
+  /** Resolves a conflict in favor of the edited text, which is then unsaved. */
   keepMine(): void {
     if (this.conflict) this.rebase(this.conflict.text);
   }
 
-  /** Settles a conflict for the text on the disk; undoing the returned transaction brings back the edited text. */
+  /** Resolves a conflict in favor of the text on the disk; undoing the returned transaction brings back the edited text. */
   takeDisk(): TransactionSpec | null {
     const { conflict } = this;
     if (!conflict) return null;

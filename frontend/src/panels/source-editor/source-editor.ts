@@ -30,7 +30,7 @@ import "../../styles/source-editor.css";
 /** The line at the cursor is reported this time after the last key, ms. */
 const LINE_MS = 200;
 
-/** Pixels; a narrower editor of a workspace lists the files only on request. */
+/** The minimum width, px, at which the editor of a workspace lists the files without a request. */
 const TREE_WIDTH = 480;
 
 /** The editor of the source files: one view, and the documents that it can show. */
@@ -110,7 +110,7 @@ export class SourceEditor implements Documents {
       const shownFiles = session.description.modelOf(this.shownDisplay)?.description.files ?? [];
       this.service.onFilesChanged(this.open.filter(({ path }) => shownFiles.includes(path)).map(({ uri }) => uri));
     });
-    // a course checks its step again when programs, such as those in the terminal, changed files
+    // A course checks its step again after programs, such as those in the terminal, have changed files.
     connection.on("step_checks", () => this.tree.reload());
     this.refresh();
   }

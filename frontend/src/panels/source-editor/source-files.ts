@@ -10,7 +10,7 @@ import { SourceDocument } from "./source-document";
 const RESTARTS = 3;
 const RESTART_MS = 1000;
 
-/** The editor, for its files. */
+/** What the files need of the editor. */
 interface FilesHost {
   /** Returns the state of a view of a new document. */
   stateOf(path: string, uri: string, text: string, isReadOnly: boolean): EditorState;
@@ -134,7 +134,7 @@ export class SourceFiles {
     window.addEventListener("beforeunload", (event) => this.unsavedDocuments.length > 0 && event.preventDefault());
   }
 
-  /** Forgets what the program before was asked. */
+  /** Ends the pending requests to the previous program, which get no answers. */
   private onProgramStarted(): void {
     this.isOpen = false;
     for (const document of this.writing.values()) document.endWriting(null);

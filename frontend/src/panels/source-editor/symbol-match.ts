@@ -1,4 +1,4 @@
-/** Whether a name contains the characters of a query in their order; upper and lower case are equal. */
+/** Whether a name contains the characters of a query in their order; case is ignored. */
 export function matches(query: string, name: string): boolean {
   const characters = name.toLowerCase();
   let index = 0;

@@ -33,7 +33,7 @@ interface FileEdits {
   readonly versions: ReadonlyMap<string, number>;
 }
 
-/** Returns what an edit does to each file. */
+/** Returns the changes of an edit, by file. */
 export function groupByFile(edit: WorkspaceEdit): FileEdits {
   const edits = new Map<string, readonly TextEdit[]>(Object.entries(edit.changes ?? {}));
   const created: string[] = [];

@@ -28,11 +28,11 @@ export class RecordButton {
   }
 
   private show(): void {
-    const { isRecording, length, size, savedBytes, problem, path, isPossible } = this.session.recording;
+    const { isRecording, length, size, savedShare, problem, path, isPossible } = this.session.recording;
     const texts = strings.recording;
     this.element.hidden = !isPossible;
     this.button.classList.toggle("on", isRecording);
-    const text = isRecording ? formatAmount(length, size) : savedBytes === null ? texts.record : texts.saving(Math.floor(100 * savedBytes));
+    const text = isRecording ? formatAmount(length, size) : savedShare === null ? texts.record : texts.saving(Math.floor(100 * savedShare));
     if (this.button.textContent !== text) this.button.textContent = text;
     const label = isRecording ? texts.stopHint(path) : texts.recordHint;
     this.button.title = label;
@@ -53,7 +53,7 @@ export class RecordButton {
     const { recording, timeline } = this.session;
     const { extent, mark } = timeline;
     const texts = strings.recording;
-    const isSaving = recording.savedBytes !== null;
+    const isSaving = recording.savedShare !== null;
     const historyEntries: MenuEntry[] = [
       {
         label: texts.saveMinutes(extent ? formatLength(extent.end - extent.start) : ""),

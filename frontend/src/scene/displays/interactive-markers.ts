@@ -10,7 +10,7 @@ import type { DescriptionRow, Hit, Interaction, ScenePointer } from "../picking"
 import { setPoseMatrix } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
-/** ms; while a marker is dragged, its pose is sent at most once in this interval. */
+/** The minimum interval between the poses that are sent while a marker is dragged, ms. */
 const FEEDBACK_MS = 33;
 
 /** rviz_default_plugins/InteractiveMarkers */

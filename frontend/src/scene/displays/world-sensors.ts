@@ -45,9 +45,9 @@ export class WorldSensors {
   }
 
   setRanges({ lidar, ranges }: WorldRays): void {
-    const createMark = this.lidars.get(lidar);
-    if (!createMark || ranges.length !== createMark.sensor.horizontal.count * createMark.sensor.vertical.count) return;
-    createMark.lines.setSegments(...raysOf(createMark.sensor, ranges));
+    const mark = this.lidars.get(lidar);
+    if (!mark || ranges.length !== mark.sensor.horizontal.count * mark.sensor.vertical.count) return;
+    mark.lines.setSegments(...raysOf(mark.sensor, ranges));
   }
 
   /** Removes the rays of a lidar. */

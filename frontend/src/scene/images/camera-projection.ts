@@ -15,7 +15,7 @@ export function computeZoom(
   return image > aspect ? [factor, (factor / image) * aspect] : [(factor / aspect) * image, factor];
 }
 
-/** Returns the projection of a pinhole camera whose image covers `zoom` of the window; `far` is the far plane, m. */
+/** Returns the projection of a pinhole camera whose image covers `zoom` of the window; the far plane is at `farDistance`, m. */
 export function createProjection(camera: CameraModel, zoom: readonly [number, number], farDistance: number): Matrix4 {
   const { width, height, focal_x, focal_y, center_x, center_y } = camera;
   const x = ((2 * focal_x) / width) * zoom[0];

@@ -44,7 +44,7 @@ export class ImageCanvas {
     return this.canvas.width === 0;
   }
 
-  /** Shows an image; calls `done` when it is on the canvas, or with false if it cannot be decoded. */
+  /** Shows an image; calls `onDone` when it is on the canvas, or with false if it cannot be decoded. */
   show(frame: ImageFrame, onDone: (isShown: boolean) => void): void {
     const imageNumber = ++this.lastTurn;
     if (frame.encoding !== "file") {

@@ -29,7 +29,7 @@ export class DepthMarks {
     parent.add(this.labels.root);
   }
 
-  /** Draws the frames down to the level `deepest`, or all for null; null for `robots` draws nothing. */
+  /** Draws the frames down to the level `maxDepth`, or all for null; null for `robots` draws nothing. */
   update(robots: readonly InspectedRobot[] | null, maxDepth: number | null): void {
     const frames = (robots ?? []).flatMap((robot) =>
       [...robot.model.links.keys()].flatMap((link) => {

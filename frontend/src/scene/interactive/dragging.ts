@@ -168,7 +168,7 @@ function pointOnPlane(ray: Ray, point: Vector3, normal: Vector3): Vector3 | null
   return ray.intersectPlane(new Plane().setFromNormalAndCoplanarPoint(normal, point), new Vector3());
 }
 
-/** Returns the rotation about `axis` from the direction `from` to the direction `to`. */
+/** Returns the rotation about `axis` from the direction `start` to the direction `end`. */
 export function computeRotationBetween(start: Vector3, end: Vector3, axis: Vector3): Quaternion {
   const [a, b] = [start, end].map((direction) => direction.clone().projectOnPlane(axis));
   if (!a || !b) return new Quaternion();

@@ -34,7 +34,7 @@ export class VisualAid {
   }
 
   hide(): void {
-    this.line?.root.removeFromParent(); // what is only invisible counts in bounds
+    this.line?.root.removeFromParent(); // an object that is only made invisible still counts in bounds
   }
 
   dispose(): void {

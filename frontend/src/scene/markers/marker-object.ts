@@ -26,7 +26,7 @@ export interface MarkerObject {
   dispose(): void;
 }
 
-/** Creates the object of a marker; `changed` is called when a mesh or texture has arrived, with the problem or null. */
+/** Creates the object of a marker; `onChanged` is called when a mesh or texture has arrived, with the problem or null. */
 export function makeMarkerObject(
   marker: MarkerShape,
   meshes: MeshLibrary,

@@ -7,7 +7,7 @@ const PADDING_PX = 6;
 const OUTLINE_PX = 6;
 const OUTLINES = { dark: "rgba(12, 14, 18, 0.8)", light: "rgba(255, 255, 255, 0.85)" };
 const LIGHT = 0.4;
-/** Pixels; larger textures would exceed the limit of GPUs. */
+/** The maximum width and height of a texture, px; larger ones would exceed the limit of GPUs. */
 const MAX_TEXTURE_PX = 4096;
 
 /** Returns a text that faces the camera, centered at the origin; `height` is the height of a line, m. */

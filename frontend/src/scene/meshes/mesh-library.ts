@@ -6,7 +6,7 @@ import type { MeshTemplate } from "./mesh-template";
 import type { StandIns } from "./stand-ins";
 import { SharedTextures } from "./shared-textures";
 
-/** Browsers support no longer strings, and no GPU draws so many triangles. */
+/** The maximum size of a file: browsers do not support longer strings, and no GPU draws so many triangles. */
 const MAX_BYTES = 500_000_000;
 
 interface CachedMesh {

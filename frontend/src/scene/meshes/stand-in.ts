@@ -28,7 +28,7 @@ export interface StandIn {
 
 /** The maximum errors of the levels, as shares of the mesh's size. */
 const ERROR_STEPS = [0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1];
-/** A level must have at least this share of triangles fewer than the level before. */
+/** The minimum share of triangles that a level saves over the previous level. */
 const MIN_SAVING = 0.2;
 /** The weight of errors in normals, as a share of the mesh's size. */
 const NORMAL_WEIGHT = 0.2;

@@ -17,7 +17,7 @@ export class LightMarks {
     this.root.matrixAutoUpdate = false;
   }
 
-  /** Updates the marks of all lights; `moved` has the displacements of lights being dragged. */
+  /** Updates the marks of all lights; `displacements` are those of lights being dragged. */
   update(world: Matrix4, displacements: ReadonlyMap<string, Matrix4>): void {
     const { isActive, entities, selectedNames } = this.modeling;
     const lights = isActive ? entities.filter(({ kind }) => kind === "light") : [];

@@ -8,7 +8,7 @@ import { Gizmo } from "./gizmo";
 import { createEntityMatrix, readEntityPose } from "./entity-pose";
 import { computeWorldFrame } from "./world-frame";
 
-/** m or rad; a smaller difference does not count as a change. */
+/** The smallest difference that counts as a change, m or rad. */
 const MIN_CHANGE = 1e-8;
 
 /** Shows entities displaced in the world, by the matrices that premultiply their poses. */

@@ -41,7 +41,7 @@ export class ArrowBatch {
     return this.heads.size;
   }
 
-  /** Removes all arrows; at most `expected` will be added. */
+  /** Removes all arrows; at most `capacity` will be added. */
   begin(capacity: number): void {
     this.withShaft = [];
     this.shafts.begin(capacity);

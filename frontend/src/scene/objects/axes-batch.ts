@@ -28,7 +28,7 @@ export class AxesBatch {
     this.copies = this.make(length, radius, segments);
   }
 
-  /** Removes all axes; at most `expected` will be added. */
+  /** Removes all axes; at most `capacity` will be added. */
   begin(capacity: number): void {
     this.copies.begin(capacity);
   }

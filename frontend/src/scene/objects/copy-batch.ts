@@ -43,7 +43,7 @@ export interface CopyHit {
 /**
  * Many copies of one shape in one draw call, each with its own matrix, color, gray and alpha.
  *
- * Call `begin(most)`, then `add` for each copy, then `end`; this replaces the earlier copies. The shape must have an
+ * Call `begin(capacity)`, then `add` for each copy, then `end`; this replaces the earlier copies. The shape must have an
  * index, normals and colors (`paint` of geometries.ts), which are multiplied by each copy's color.
  *
  * The vertices of all copies are in one buffer, and each finds its matrix in a texture. GPU instancing would be
@@ -73,7 +73,7 @@ export class CopyBatch {
     Object.assign(this.mesh.material, polygonOffsetOf(options.isBehind === true));
     if (options.isOverlay) {
       this.mesh.material.depthTest = this.mesh.material.depthWrite = false;
-      this.mesh.material.transparent = true; // opaque things are drawn before, whatever their order
+      this.mesh.material.transparent = true; // opaque objects are drawn first, whatever their order
       this.mesh.renderOrder = OVERLAY_ORDER;
     }
     this.mesh.visible = false;
@@ -90,7 +90,7 @@ export class CopyBatch {
     return this.count;
   }
 
-  /** Removes all copies; at most `expected` will be added. */
+  /** Removes all copies; at most `capacity` will be added. */
   begin(capacity: number): void {
     this.count = 0;
     this.isSeeThrough = false;

@@ -42,7 +42,7 @@ export class CovarianceBatch {
     this.cones = new CopyBatch(parent, createCone(SEGMENTS));
   }
 
-  /** Removes all covariances; at most `expected` poses will be added. */
+  /** Removes all covariances; at most `capacity` poses will be added. */
   begin(capacity: number): void {
     this.balls.begin(capacity);
     this.discs.begin(capacity * 3);

@@ -34,7 +34,7 @@ export class PointBatch {
     return this.positions.length / 3;
   }
 
-  /** Sets the points, x y z of each in m; `translucent` if some colors have less than full alpha. */
+  /** Sets the points, x y z of each in m; `isTranslucent` if some colors have less than full alpha. */
   setPoints(positions: Float32Array, colors: Uint8Array, isTranslucent: boolean): void {
     this.positions = positions;
     this.colors = colors;

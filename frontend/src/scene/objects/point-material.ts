@@ -124,7 +124,7 @@ const FRAGMENT = /* glsl */ `
       mat3 turn = mat3(modelViewMatrix);
       // The ray in the frame of the points, from the middle of this one.
       vec3 ray = (parallel ? vec3(0.0, 0.0, -1.0) : through) * turn;
-      ray += vec3(lessThan(abs(ray), vec3(1e-6))) * 2e-6; // none is quite parallel to a side
+      ray += vec3(lessThan(abs(ray), vec3(1e-6))) * 2e-6; // keep the ray from being parallel to a side
       vec3 from = ((parallel ? through : vec3(0.0)) - middle) * turn;
       float reached;
       #ifdef FLAT

@@ -124,7 +124,7 @@ export class RobotDrawing {
   }
 
   /**
-   * Applies the display's properties. `contrast` draws collisions over pale visuals; `overrideOf` returns the colors that
+   * Applies the display's properties. `isContrastHigh` draws collisions over pale visuals; `overrideOf` returns the colors that
    * replace those of a link.
    */
   applyStyle(rows: PropertyRows, isContrastHigh: boolean, lighting: Lighting = "Camera", overrideOf: OverrideOf = () => null): void {

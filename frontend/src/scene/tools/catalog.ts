@@ -8,7 +8,7 @@ import { PublishPointTool } from "./publish-point";
 import { SelectTool } from "./select";
 import type { SceneToolClass } from "./tool";
 
-/** A class of tools; its settings are declared in `viewer/config/tools.py`. */
+/** A class of tools; its settings are declared in `rviz/config/tools.py`. */
 export interface ToolEntry {
   /** The key that RViz uses for the tool. */
   readonly key: string;

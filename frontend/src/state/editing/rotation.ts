@@ -12,7 +12,7 @@ export function quaternionOf([roll = 0, pitch = 0, yaw = 0]: readonly number[]):
   return [sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy];
 }
 
-/** Returns roll, pitch and yaw of a rotation: of all equivalent values, those closest to `near`. */
+/** Returns roll, pitch and yaw of a rotation: of all equivalent values, those closest to `reference`. */
 export function findNearestRpy([x, y, z, w]: Quaternion, reference: readonly number[]): [number, number, number] {
   const [nearRoll = 0, nearPitch = 0, nearYaw = 0] = reference;
   const cosPitchCosYaw = 1 - 2 * (y * y + z * z);

@@ -60,7 +60,7 @@ export class Snapping {
     this.store();
   }
 
-  /** Returns the current steps, m and rad, 0 without a grid; `inverted` while Ctrl is held. */
+  /** Returns the current steps, m and rad, 0 without a grid; `isInverted` while Ctrl is held. */
   chooseSteps(isInverted: boolean): { length: number; angle: number } {
     const isOn = this.isOn !== isInverted;
     return { length: isOn ? this.length : 0, angle: isOn ? this.angle * DEGREE : 0 };

@@ -28,8 +28,8 @@ export class NavigationState {
     this.sendWatch();
   }
 
-  sendCommand(sendCommand: NavigationCommand): void {
-    this.connection.send({ type: "command_navigation", command: sendCommand });
+  sendCommand(command: NavigationCommand): void {
+    this.connection.send({ type: "command_navigation", command });
   }
 
   private sendWatch(): void {

@@ -6,7 +6,7 @@ import { ThirdPersonFollowerController, XYOrbitController } from "./xy-orbit";
 
 const ORBIT = new OrbitController();
 
-/** RViz's view classes, whose properties are declared in `viewer/config/views.py`. */
+/** RViz's view classes, whose properties are declared in `rviz/config/views.py`. */
 const CONTROLLERS: ReadonlyMap<string, ViewController> = new Map<string, ViewController>([
   ["rviz_default_plugins/FPS", new FpsController()],
   ["rviz_default_plugins/Orbit", ORBIT],

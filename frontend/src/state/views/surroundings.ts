@@ -15,7 +15,7 @@ const NEARER = [1, 0.6, 0.35];
 /** The share of the surroundings that must become visible to justify a step up, or to another side. */
 const STEP_UP_COST = 0.15;
 const SIDE_COST = 0.05;
-/** The number of places around a robot whose visibility counts. */
+/** The number of positions around a robot whose visibility counts. */
 const RING_POINTS = 8;
 /** The directions to try, with the maximum score of each. */
 const DIRECTIONS = PITCHES.flatMap((pitch, higher) =>
@@ -23,7 +23,7 @@ const DIRECTIONS = PITCHES.flatMap((pitch, higher) =>
 );
 const orbit = new OrbitController();
 
-/** Returns whether nothing hides a place from a viewpoint. */
+/** Returns whether nothing hides a position from a viewpoint. */
 export type IsVisible = (viewpoint: Vector, position: Vector) => boolean;
 
 /** Returns the values of an Orbit view of a whole world from above. */

@@ -8,7 +8,7 @@ import { createVectorValues, type Drag, type Look, type MouseHint, type ViewValu
  * The share of the distance by which the camera is raised, which places the focal point in the lower half of the view.
  */
 const RAISE = 0.2;
-/** m; near the horizon a pixel covers many meters, so the motion of the focal point per step is limited. */
+/** The maximum motion of the focal point per step, m: near the horizon a pixel covers many meters. */
 const MAX_STEP = 1;
 
 /** RViz's XYOrbit: an Orbit view whose focal point moves on the ground, z = 0 of its target. */

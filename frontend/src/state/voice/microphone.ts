@@ -15,7 +15,7 @@ export interface Capture {
   close(): void;
 }
 
-/** Resolves once the capture has started; `block` receives sound, and the seconds missing from it. */
+/** Resolves once the capture has started; `onBlock` receives sound, and the seconds missing from it. */
 export type OpenCapture = (onBlock: (samples: Int16Array, lostSeconds: number) => void, onLost: () => void) => Promise<Capture>;
 
 /** The browser's microphone, which is opened on the first request and closed when it is no longer needed. */

@@ -5,7 +5,7 @@ import type { TextStorage } from "../../storage";
 import { Microphone } from "./microphone";
 import { Speaker } from "./speaker";
 
-/** ms for which the microphone stays open after the button was released: while it opens, a word may be lost. */
+/** The time for which the microphone stays open after the button was released, ms: a word may be lost while it opens. */
 const OPEN_AFTER_USE_MS = 60_000;
 const MAX_HISTORY = 100;
 /**
@@ -22,7 +22,7 @@ export interface ConversationLine {
 }
 
 /**
- * Returns a binary frame with a block of sound and the seconds lost in it; `viewer/protocol/voice.py` defines its
+ * Returns a binary frame with a block of sound and the seconds lost in it; `page/protocol/voice.py` defines its
  * format.
  */
 export function encodeSound(samples: Int16Array, lostSeconds = 0): ArrayBuffer {
@@ -121,7 +121,7 @@ export class VoiceState {
     return this.isAnswered;
   }
 
-  /** Starts or stops receiving the conversation for `who`. */
+  /** Starts or stops receiving the conversation for a panel. */
   watch(watcher: object, isWatching: boolean): void {
     const wasWatched = this.isWatched;
     if (isWatching) this.watching.add(watcher);
@@ -180,7 +180,7 @@ export class VoiceState {
   }
 
   /**
-   * Opens the microphone for a recording; `begun` is called before the first sound is sent, and cancels the recording
+   * Opens the microphone for a recording; `hasBegun` is called before the first sound is sent, and cancels the recording
    * by returning false.
    */
   async record(hasBegun: () => boolean): Promise<boolean> {

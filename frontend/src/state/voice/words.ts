@@ -3,7 +3,7 @@ import type { EnrolledWord, TakeJudged } from "../../protocol";
 import { Signal } from "../../signal";
 import type { VoiceState } from "./voice";
 
-/** ms for which a recording continues after the button was released, because the end of a word is soft. */
+/** The time for which a recording continues after the button was released, ms, because the end of a word is soft. */
 const EXTRA_MS = 300;
 
 /** The words that the user enrolls. */

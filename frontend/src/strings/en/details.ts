@@ -1,4 +1,4 @@
-/** What the read-only rows of frames, links and joints mean, by RViz's names of the rows. */
+/** Explanations of the read-only rows of frames, links and joints, by RViz's names of the rows. */
 export const details = {
   Parent: "The parent frame.",
   Position: "The position in the Fixed Frame, in meters.",
