@@ -509,12 +509,12 @@ def tells_outcome(work):
     _, arrived = answer_goal(main, "kitchen", POSES["kitchen"], ServerGoalHandle.succeed)
     try:
         _, aborted = answer_goal(main, "kitchen", POSES["kitchen"], ServerGoalHandle.abort)
-    except Exception:  # which the program may raise, too, if mbot has not arrived
+    except Exception:  # noqa: BLE001  # the program may raise one if mbot has not arrived
         return
     if arrived and arrived == aborted:
         raise NotYet(
-            en=f"It logs '{arrived[-1]}' when mbot has arrived, and also when the goal is aborted; is the status of the "
-            "result compared with GoalStatus.STATUS_SUCCEEDED?",
+            en=f"It logs '{arrived[-1]}' when mbot has arrived, and also when the goal is aborted; is the status of "
+            "the result compared with GoalStatus.STATUS_SUCCEEDED?",
             zh=f"mbot 到达时它在日志中写“{arrived[-1]}”，目标中止时也这样写；"
             "结果的 status 是与 GoalStatus.STATUS_SUCCEEDED 比较的吗？",
         )
