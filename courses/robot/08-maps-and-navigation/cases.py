@@ -284,6 +284,17 @@ CASES = [
         says="nav2_planner",
     ),
     right(
+        "navigate",
+        "another planner, as newer versions write it",
+        Edit(CONFIG, "nav2_navfn_planner/NavfnPlanner", "nav2_smac_planner::SmacPlanner2D"),
+    ),
+    wrong(
+        "navigate",
+        "a misspelled planner",
+        Edit(CONFIG, "NavfnPlanner", "NavfnPlaner"),
+        says="'nav2_navfn_planner/NavfnPlaner', which nav2 does not have",
+    ),
+    right(
         "send",
         "nav2_simple_commander",
         {NODE: COMMANDER},
@@ -299,6 +310,20 @@ CASES = [
         "it does not wait",
         Edit(NODE, "        rclpy.spin_until_future_complete(self, result)\n", ""),
         says="go_to_room.py, line",
+    ),
+    wrong(
+        "send",
+        "another status",
+        Edit(NODE, "STATUS_SUCCEEDED", "STATUS_ACCEPTED"),
+        says="It logs 'the kitchen cannot be reached' when mbot has arrived",
+    ),
+    right(
+        "send",
+        "the number of the status, and words of one's own",
+        Edit(NODE, "GoalStatus.STATUS_SUCCEEDED", "4"),
+        Edit(NODE, "f'in the {room}' if arrived", "f'welcome to the {room}' if arrived"),
+        Edit(NODE, "from action_msgs.msg import GoalStatus\n", ""),
+        Edit(MANIFEST, "  <depend>action_msgs</depend>\n", ""),
     ),
     wrong("send", "another frame", Edit(NODE, "'map'", "'odom'"), says="header.frame_id of the goal is 'odom'"),
     wrong(

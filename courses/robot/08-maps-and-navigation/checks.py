@@ -3,7 +3,7 @@ import math
 import numpy as np
 from flat import BODY, CONFIG, MAP, PACKAGE, Flat, free_points, read_map, read_parameters, wall_points
 
-from linkwright.graph import ActionClient, ActionServer
+from linkwright.graph import ActionClient, ActionServer, ServerGoalHandle
 from linkwright.learning import NotYet, check
 from linkwright.messages import get_action
 from linkwright.navigation.grids.grid import FREE, OCCUPIED
@@ -307,6 +307,29 @@ def expect_source(costmap, layer, parameters):
             )
 
 
+PLANNERS = (
+    "nav2_navfn_planner/NavfnPlanner",
+    "nav2_theta_star_planner/ThetaStarPlanner",
+    "nav2_smac_planner/SmacPlanner2D",
+    "nav2_smac_planner/SmacPlannerHybrid",
+    "nav2_smac_planner/SmacPlannerLattice",
+)
+"""The planners of nav2; newer versions of nav2 write :: for the slash."""
+
+
+@check("navigate", en="The planner is one of nav2.", zh="规划器是 nav2 的。")
+def planner_exists(work):
+    parameters = read_parameters(work, CONFIG, "planner_server")
+    names = parameters.get("planner_plugins")
+    for name in names if isinstance(names, list) else ["GridBased"]:
+        kind = str(parameters.get(f"{name}.plugin", PLANNERS[0]))
+        if kind.replace("::", "/") not in PLANNERS:
+            raise NotYet(
+                en=f"The plugin of {name} is '{kind}', which nav2 does not have; that of the lesson is {PLANNERS[0]}.",
+                zh=f"{name} 的 plugin 是“{kind}”，nav2 没有这个插件；课文中的是 {PLANNERS[0]}。",
+            )
+
+
 @check("navigate", en="mbot goes to the kitchen and touches nothing.", zh="mbot 去厨房，什么也不碰到。")
 def goes_to_kitchen(work):
     with Flat(work) as test:
@@ -446,22 +469,55 @@ def goal_is_room(work):
 
 def sent_goal(main, room, pose):
     """Return the goal that go_to_room sends for a room."""
+    return answer_goal(main, room, pose, ServerGoalHandle.succeed)[0]
+
+
+def answer_goal(main, room, pose, finish):
+    """Return the goal that go_to_room sends for a room, and what it logs after the result.
+
+    Args:
+        main: the program.
+        room: the name of the room.
+        pose: the pose of the room.
+        finish: ends the goal, such as ServerGoalHandle.succeed.
+    """
     kind = get_action("nav2_msgs/action/NavigateToPose")
-    goals = []
+    handles = []
 
     def execute(handle):
-        goals.append(handle.request)
-        handle.succeed()
+        finish(handle)
         return kind.Result()
 
     with SteppedGraph() as test:
-        ActionServer(test.node, kind, "navigate_to_pose", execute)
+        ActionServer(test.node, kind, "navigate_to_pose", execute, handle_accepted_callback=handles.append)
         words = ["-p", f"room:={room}", "-p", f"{room}:=[{', '.join(map(str, pose))}]"]
         test.start_program(main, ["--ros-args", *words])
         test.advance(5.0)
-    if not goals:
-        raise NotYet(en="No goal arrives at the action navigate_to_pose.", zh="动作 navigate_to_pose 没有收到目标。")
-    return goals[0]
+        if not handles:
+            raise NotYet(
+                en="No goal arrives at the action navigate_to_pose.", zh="动作 navigate_to_pose 没有收到目标。"
+            )
+        logged = len(test.log)
+        handles[0].execute()
+        test.advance(5.0)
+        return handles[0].request, [record.text for record in test.log[logged:]]
+
+
+@check("send", en="It tells whether mbot has arrived.", zh="它说明 mbot 是否到达。")
+def tells_outcome(work):
+    main = work.package(PACKAGE).program("go_to_room")
+    _, arrived = answer_goal(main, "kitchen", POSES["kitchen"], ServerGoalHandle.succeed)
+    try:
+        _, aborted = answer_goal(main, "kitchen", POSES["kitchen"], ServerGoalHandle.abort)
+    except Exception:  # noqa: BLE001  # the program may raise one if mbot has not arrived
+        return
+    if arrived and arrived == aborted:
+        raise NotYet(
+            en=f"It logs '{arrived[-1]}' when mbot has arrived, and also when the goal is aborted; is the status of "
+            "the result compared with GoalStatus.STATUS_SUCCEEDED?",
+            zh=f"mbot 到达时它在日志中写“{arrived[-1]}”，目标中止时也这样写；"
+            "结果的 status 是与 GoalStatus.STATUS_SUCCEEDED 比较的吗？",
+        )
 
 
 @check(

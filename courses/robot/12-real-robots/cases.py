@@ -287,6 +287,28 @@ CASES = [
         Edit(LAUNCH, ",\n             remappings=[('/base_controller/cmd_vel_unstamped', '/cmd_vel')]", ""),
         says="base_controller does not subscribe to /cmd_vel",
     ),
+    right(
+        "bringup",
+        "the topics of the camera are remapped",
+        Edit(
+            LAUNCH,
+            "namespace='camera'",
+            "remappings=[('image_raw', '/camera/image_raw'), ('camera_info', '/camera/camera_info')]",
+        ),
+    ),
+    wrong("bringup", "no namespace", Edit(LAUNCH, ", namespace='camera'", ""), says="usb_cam has no namespace"),
+    wrong(
+        "bringup",
+        "another namespace",
+        Edit(LAUNCH, "namespace='camera'", "namespace='/cam'"),
+        says="usb_cam has the namespace '/cam'",
+    ),
+    wrong(
+        "bringup",
+        "a misspelled driver",
+        Edit(LAUNCH, "'usb_cam_node_exe'", "'usb_cam_node'"),
+        says="The executable of usb_cam is 'usb_cam_node'",
+    ),
     wrong("bringup", "no space", Edit(LAUNCH, "' hardware:='", "'hardware:='"), says="robot.launch.py"),
     wrong(
         "bringup",

@@ -10,6 +10,8 @@ from linkwright.graph.qos.compatibility import QoSCompatibility, qos_check_compa
 from linkwright.learning import NotYet, check, expect_published
 from linkwright.messages import get_message
 from linkwright.packages.readers.cmake import read_cmake
+from linkwright.packages.readers.launch_files import read_launch_file
+from linkwright.packages.readers.python_values import argument_of
 from linkwright.testing import SteppedGraph
 
 String, Image, CameraInfo, PointStamped = (
@@ -416,6 +418,38 @@ def launch_has_defaults(work):
             raise NotYet(
                 en="Without arguments, the launch file does not start the driver of the camera, usb_cam.",
                 zh="没有参数时，launch 文件没有启动摄像头的驱动 usb_cam。",
+            )
+
+
+@check(
+    "bringup",
+    en="The driver of the camera is usb_cam_node_exe in the namespace camera.",
+    zh="摄像头的驱动是命名空间 camera 中的 usb_cam_node_exe。",
+)
+def camera_has_namespace(work):
+    path = work.package(BRINGUP).file(f"launch/{LAUNCH}")
+    python = read_launch_file(SourceText(str(path), path.read_text(encoding="utf-8")), path.name).python
+    if python is None or any(python.calls("PushRosNamespace", "PushROSNamespace")):
+        return
+    for call in python.calls("Node"):
+        if python.text(argument_of(call, "package")) != "usb_cam":
+            continue
+        executable = python.text(argument_of(call, "executable"))
+        if executable not in (None, "usb_cam_node_exe"):
+            raise NotYet(
+                en=f"The executable of usb_cam is '{executable}', but should be usb_cam_node_exe.",
+                zh=f"usb_cam 的可执行文件是“{executable}”，应当是 usb_cam_node_exe。",
+            )
+        given = {keyword.arg for keyword in call.keywords}
+        namespace = python.text(argument_of(call, "namespace"))
+        if namespace is None and given & {"namespace", "remappings", None}:
+            continue  # a value that is known only at run time, or the topics themselves
+        if (namespace or "").strip("/") != "camera":
+            raise NotYet(
+                en=f"usb_cam has {f'the namespace {namespace!r}' if namespace else 'no namespace'}, but the images "
+                "should be on /camera/image_raw: namespace='camera'.",
+                zh=f"usb_cam {f'的命名空间是“{namespace}”' if namespace else '没有命名空间'}，"
+                "而图像应当在 /camera/image_raw 上：namespace='camera'。",
             )
 
 
