@@ -23,6 +23,7 @@ from linkwright.review.drawings.scene_images import lone_world_images
 from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.mesh_groups import grouped_meshes
+from linkwright.review.files.node_sources import source_subjects
 from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
@@ -130,7 +131,7 @@ class _Reviewer:
         )
 
     def _with_other_subjects(self, subjects: Sequence[Subject]) -> list[Subject]:
-        """Return subjects with those of plugin descriptions, and with the paths of launch files that lead nowhere."""
+        """Return subjects with those of plugin descriptions and sources, and with paths that lead nowhere."""
         lost: dict[str, list[Change]] = {}
         for path, change in lost_references(self._versions, self._changed_files):
             lost.setdefault(path, []).append(change)
@@ -138,6 +139,8 @@ class _Reviewer:
         for path, changes in lost.items():
             result.append(Subject(SubjectKind.LAUNCH_FILE, path, self._old_path(path), path, changes))
         result += plugin_subjects(self._versions, self._changed_files)
+        paths = {subject.path for subject in result}
+        result += (found for found in source_subjects(self._versions, self._changed_files) if found.path not in paths)
         return sorted(result, key=lambda subject: subject.path)
 
     def _is_complete(self, path: str) -> bool:
