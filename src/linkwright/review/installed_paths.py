@@ -16,7 +16,7 @@ from linkwright.xacro.cache import read_document
 
 
 def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bool:
-    """Return whether a package certainly installs a moved file of its own where it did before, or never installed it."""
+    """Return whether a package certainly installs a moved file of its own where it did, or never installed it."""
     old_package, new_package = _package(versions.old, old_path), _package(versions.new, new_path)
     if old_package is None or old_package != new_package:
         return False
