@@ -1,4 +1,4 @@
-"""The reading of files or unsaved texts as robots and worlds, with all findings."""
+"""Read files or unsaved texts as robots and worlds, and report all findings."""
 
 from linkwright.descriptions.service import (
     Description,

@@ -1,4 +1,4 @@
-"""The conversion of robots, models and worlds to one SDF file without includes."""
+"""Convert robots, models and worlds to one SDF file without includes."""
 
 from __future__ import annotations
 

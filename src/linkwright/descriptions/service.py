@@ -1,4 +1,4 @@
-"""Reading of descriptions and worlds, and a cache of recently read descriptions.
+"""Read descriptions and worlds, and cache recently read descriptions.
 
 `is_xacro` decides whether a file is expanded with xacro by default.
 """

@@ -1,4 +1,4 @@
-"""The grouping of similar findings."""
+"""Group similar findings."""
 
 from __future__ import annotations
 

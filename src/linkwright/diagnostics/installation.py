@@ -1,4 +1,4 @@
-"""The installation of this Linkwright, and the commands that add packages to it.
+"""This installation of Linkwright, and the commands that add packages to it.
 
 Installers record the origin in files: ``direct_url.json`` (PEP 610) names the origin of a distribution, and
 ``pipx_metadata.json`` or ``uv-receipt.toml`` marks an environment of a tool, which recreates the environment when it

@@ -82,7 +82,7 @@ class Phrase(str):
 
     @property
     def chosen_template(self) -> str:
-        """The English template, or the template for the count of a phrase with a plural."""
+        """The English template. For a counted phrase, the singular or the plural, depending on the count."""
         return self.template
 
     def translated(self, wording: Wording) -> Phrase:

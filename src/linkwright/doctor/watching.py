@@ -359,7 +359,7 @@ class _Watcher:
         return tuple(drivers_by_topic)
 
     def observed_stamps(self, sim_time: Mapping[str, bool]) -> tuple[ObservedStamp, ...]:
-        """Return the age of the last stamps, measured with the clock of their senders.
+        """Return the age of the last stamp of each sender on each topic, measured with the sender's clock.
 
         This clock is simulated time if the sender uses or publishes it. Any other sender may forward the stamps of
         other nodes, so the age is measured with the clock that is closer to the stamp.

@@ -1,4 +1,4 @@
-"""Reading of COLLADA files into arrays."""
+"""Read COLLADA files into arrays."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading of COLLADA files with the colors of their materials, without a library.
+"""Read COLLADA files with the colors of their materials, without a library.
 
 Files with textures or with unusual content are left to trimesh.
 """

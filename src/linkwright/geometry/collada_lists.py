@@ -1,4 +1,4 @@
-"""Reading of small COLLADA files in plain Python.
+"""Read small COLLADA files in plain Python.
 
 Numbers are rounded to 32 bits, as in pycollada.
 """

@@ -1,4 +1,4 @@
-"""Reading of the scene of COLLADA files that have only common content.
+"""Read the scene of COLLADA files that have only common content.
 
 This module reads the XML tree, which is faster than importing trimesh. Numbers are read into arrays (`collada`) or, for
 small files, in plain Python (`collada_lists`).

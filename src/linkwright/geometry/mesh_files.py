@@ -1,4 +1,4 @@
-"""Parsing of mesh files by trimesh, or by simpler readers where these suffice."""
+"""Parse mesh files by trimesh, or by simpler readers where these suffice."""
 
 from __future__ import annotations
 

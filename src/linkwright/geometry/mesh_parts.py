@@ -1,4 +1,4 @@
-"""Reading of mesh files with their materials, as triangles grouped by material.
+"""Read mesh files with their materials, as triangles grouped by material.
 
 The rules for materials are those of RViz, which the page follows, too.
 """

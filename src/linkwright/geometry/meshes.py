@@ -1,4 +1,4 @@
-"""Reading of the triangles in mesh files, in meters and in the frame that RViz uses."""
+"""Read the triangles in mesh files, in meters and in the frame that RViz uses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Triangulation of polygons in a plane, and a test of whether points are inside a polygon."""
+"""Triangulate polygons in a plane, and test whether points are inside a polygon."""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ def capsule(radius: float, length: float, sides: int = SIDES) -> Triangles:
 
 
 def _half_circle(sides: int) -> tuple[Array, Array]:
-    """Return r and z of the corners of a regular polygon from the top to the bottom."""
+    """Return r and z of the corners of half a regular polygon with radius 1, from the top to the bottom."""
     points = circle(sides)
     quarter = [(abs(z), r) for r, z in points[: sides // 4 + 1]]
     lower = [(abs(z), r) for r, z in points[sides // 4 + 1 : sides // 2 + 1]]

@@ -1,4 +1,4 @@
-"""The decoding of image messages, for all supported encodings and transports."""
+"""Decode image messages, for all supported encodings and transports."""
 
 from linkwright.images.decoding import BadImageError, DecodedImage, Range, RangeFinder, decode_image, has_range
 from linkwright.images.image_files import encoding_of, is_cut_off

@@ -1,4 +1,4 @@
-"""Writing of PNG files, and of animations as APNG, without a library."""
+"""A writer of PNG files, and of animations as APNG, in plain Python."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Estimation of a link's mass properties from its shapes."""
+"""Estimate a link's mass properties from its shapes."""
 
 from __future__ import annotations
 

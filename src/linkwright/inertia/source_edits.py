@@ -1,4 +1,4 @@
-"""Insertion of ``<inertial>`` blocks into a description's source, without other changes."""
+"""Insert ``<inertial>`` blocks into a description's source, without other changes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writing of computed ``<inertial>`` elements into the source files of links."""
+"""Write computed ``<inertial>`` elements into the source files of links."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The addition of inferred elements to a description in memory."""
+"""Add inferred elements to a description in memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The writing of inferences to the source files of a description, without other changes."""
+"""Write inferences to the source files of a description, without other changes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Conversion of a URDF file to a new xacro file in the same folder."""
+"""Convert a URDF file to a new xacro file in the same folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The expansion of a description, as text with source locations and as robots."""
+"""Expand a description to text with source locations and to robots."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Extraction of a value to a property."""
+"""Extract a value to a property."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Inlining of a property: its value replaces all uses."""
+"""Inline a property: replace all its uses by its value."""
 
 from __future__ import annotations
 

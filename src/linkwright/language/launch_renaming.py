@@ -1,4 +1,4 @@
-"""Renaming of launch arguments, in the launch files that share them through includes.
+"""Rename launch arguments, in the launch files that share them through includes.
 
 A launch configuration is visible in included files, and a configuration that an included file sets is visible after the
 include. So a name means the same argument in two files if one includes the other without passing the argument. A passed

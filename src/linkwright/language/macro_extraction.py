@@ -1,4 +1,4 @@
-"""Extraction of elements to a macro with parameters for the names that they use."""
+"""Extract elements to a macro with parameters for the names that they use."""
 
 from __future__ import annotations
 
@@ -159,7 +159,7 @@ def _is_block_use(text: str, name: Occurrence) -> bool:
 
 
 def _is_value(text: str, name: Occurrence) -> bool:
-    """Return whether a name is used in an expression, and is not an argument of a call."""
+    """Return whether an occurrence uses the value of a name, and is not an attribute that passes an argument."""
     return re.match(r"\s*=\s*[\"']", text[name.end :]) is None
 
 

@@ -1,4 +1,4 @@
-"""Renaming of links and joints in SRDF, YAML, RViz configurations and launch files.
+"""Rename links and joints in SRDF, YAML, RViz configurations and launch files.
 
 A file refers to the robots of its package or, if it has none, of the package's dependencies. A name is renamed there if
 it is renamed in all these robots that contain it.

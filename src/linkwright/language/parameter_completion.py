@@ -1,4 +1,4 @@
-"""Completion of nodes, controllers and parameters in ROS 2 parameter files."""
+"""Complete nodes, controllers and parameters in ROS 2 parameter files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Completion of values in ROS 2 parameter files, such as types, joints and frames."""
+"""Complete values in ROS 2 parameter files, such as types, joints and frames."""
 
 from __future__ import annotations
 

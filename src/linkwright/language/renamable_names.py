@@ -1,4 +1,4 @@
-"""Renaming of the name at an offset of a file in any format."""
+"""Rename the name at an offset of a file in any format."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Renaming of macros, properties, links and other names in descriptions.
+"""Rename macros, properties, links and other names in descriptions.
 
 The edits are tried on the descriptions that include the file, with each set of arguments that their callers pass. A
 macro, parameter, property or argument may be renamed if all expansions stay equal. A link, joint or material may be

@@ -1,4 +1,4 @@
-"""Renaming of links, joints and materials, with the edits that follow from it.
+"""Rename links, joints and materials, with the edits that follow from it.
 
 The edits are extended until all definitions and references have their new names. Then the expansions may differ only in
 these names.

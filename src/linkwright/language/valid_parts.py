@@ -1,4 +1,4 @@
-"""The expansion of a description, or of its valid parts if it contains errors."""
+"""Expand a description, or only its valid parts if it contains errors."""
 
 from __future__ import annotations
 

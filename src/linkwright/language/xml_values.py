@@ -1,4 +1,4 @@
-"""Completion of attribute values and element texts in descriptions and worlds."""
+"""Complete attribute values and element texts in descriptions and worlds."""
 
 from __future__ import annotations
 

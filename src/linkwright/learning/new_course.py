@@ -1,4 +1,4 @@
-"""Creation of a course from the shipped example."""
+"""Create a course from the shipped example."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The selection of findings for the check of a folder, stricter than for a named file.
+"""Select the findings to report when a folder is checked: fewer than for a file that the user names.
 
 Users do not usually fix tests, discarded files, vendored copies, or URDF files that xacro generates.
 """

@@ -71,7 +71,7 @@ def count_keys(
     Args:
         findings: the findings.
         folder: the absolute folder to which the paths in the keys are relative.
-        names: the other names that files have in the keys.
+        names: the new paths of renamed files, by their old paths. Keys of such files have the new path and file name.
     """
     counts: dict[Key, int] = {}
     for finding in findings:

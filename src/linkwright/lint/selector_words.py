@@ -1,4 +1,4 @@
-"""The validation of selectors, and their canonical forms."""
+"""Validate selectors, and return their canonical forms."""
 
 from __future__ import annotations
 

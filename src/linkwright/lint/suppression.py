@@ -1,4 +1,4 @@
-"""Suppression of findings by comments in the files.
+"""Suppress findings by comments in the files.
 
 ``<!-- linkwright: ignore LW204 limit-inverted (reason) -->`` on its own line applies to the following element with its
 content. On a line with other content, the comment applies to this line. ``ignore-file`` applies to the whole file. In

@@ -1,1 +1,1 @@
-"""Loading of code: extensions, deferred imports, and faster variants of standard modules."""
+"""Load code: extensions, deferred imports, and faster variants of standard modules."""

@@ -1,4 +1,4 @@
-"""Conversion of edits to the protocol, with the versions of the open texts."""
+"""Convert edits to the protocol, with the versions of the open texts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Extraction of a model from an archive, limited to the files that the table names."""
+"""Extract a model from an archive, limited to the files that the table names."""
 
 from __future__ import annotations
 

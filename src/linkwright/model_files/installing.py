@@ -1,4 +1,4 @@
-"""Installation of models from any source: verified and complete, or not at all."""
+"""Install models from any source, verified and complete, or not at all."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Declaration of parameters that are required or set by command-line arguments."""
+"""Declare parameters that are required or set by command-line arguments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stopping of a robot when the publisher of its forwarded velocities disappears.
+"""Stop a robot when the publisher of its forwarded velocities disappears.
 
 See `linkwright.graph.endpoints.commander.Commander`.
 """

@@ -1,4 +1,4 @@
-"""Publication of velocities as Twist or TwistStamped, depending on the subscribers."""
+"""Publish velocities as Twist or TwistStamped, depending on the subscribers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Resolution of ``package://`` and ``file://`` URIs, and of plain paths, in descriptions."""
+"""Resolve ``package://`` and ``file://`` URIs and plain paths in descriptions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None
         LinkwrightError: an error of `share`; PKG102, the URI has another form.
     """
     if not address.strip():
-        raise _bad_uri(phrase("'{uri}' is empty; write the path of a file", uri=address))
+        raise _bad_uri(phrase("the URI is empty; write the path of a file"))
     scheme = _SCHEME.match(address)
     if scheme is None:
         path = Path(address)

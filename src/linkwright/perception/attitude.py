@@ -1,4 +1,4 @@
-"""The estimation of a body's orientation from its gyroscope, accelerometer and magnetometer.
+"""Estimate a body's orientation from its gyroscope, accelerometer and magnetometer.
 
 Orientations are unit quaternions x y z w that rotate vectors from the body to the world. Sources: S. Madgwick, "An
 efficient orientation filter for inertial and inertial/magnetic sensor arrays", 2010; R. Valenti, I. Dryanovski and

@@ -1,4 +1,4 @@
-"""Encoding of animations as files."""
+"""Encode animations as files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rasterization of triangles into samples with array operations.
+"""Rasterize triangles into samples with array operations.
 
 The triangles become rows, and the rows become fragments: samples whose center is inside the triangle. The corners are
 snapped to a grid finer than a sample, and an edge that two triangles share is computed in the same way for both, so

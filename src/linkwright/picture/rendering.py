@@ -1,4 +1,4 @@
-"""Rendering of a scene to the pixels of an image."""
+"""Render a scene to the pixels of an image."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Shading of surfaces: the color of samples from normals, materials and lights.
+"""Shade surfaces: compute the color of samples from normals, materials and lights.
 
 Colors are proportional to light, which is defined as the square of the displayed value. The square is close to the
 power in sRGB, and is bit-identical on every machine.

@@ -159,7 +159,7 @@ class _Reviewer:
 
     def _pairs(self) -> Iterator[_Pair]:
         """Yield the files to compare: the rule of the kind, the old path and the new path."""
-        affected_old, affected_new = (self._affected(version) for version in (self._versions.old, self._versions.new))
+        affected_old, affected_new = self._affected()
         paths: set[tuple[str | None, str | None]] = {(path, self._new_path(path)) for path in affected_old}
         paths |= {(self._old_path(path), path) for path in affected_new}
         for file in self._changed_files:
@@ -208,11 +208,14 @@ class _Reviewer:
             _package_folder(version, path) for version, path in sides if path
         )
 
-    def _affected(self, version: Version) -> set[str]:
-        """Return the complete descriptions and worlds of a version that changed files can affect."""
-        candidates = {path for path in self._targets[version.is_old] if self._is_in_scope(path)}
+    def _affected(self) -> Iterator[set[str]]:
+        """Yield the complete descriptions and worlds of both versions that changed files can affect."""
         changed = {path for file in self._versions.changed_files for path in (file.old_path, file.new_path) if path}
-        return TextFiles(version.root).affected(changed, candidates)
+        files = None
+        for version in (self._versions.old, self._versions.new):
+            files = TextFiles(version.root, files, changed)
+            candidates = {path for path in self._targets[version.is_old] if self._is_in_scope(path)}
+            yield files.affected(changed, candidates)
 
     def _new_path(self, old_path: str) -> str | None:
         path = self._new_paths.get(old_path, old_path)

@@ -1,4 +1,4 @@
-"""Conversion of the lights of a world to the page's form."""
+"""Convert the lights of a world to the page's form."""
 
 from __future__ import annotations
 

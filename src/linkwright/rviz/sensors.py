@@ -1,4 +1,4 @@
-"""Conversion of the lidars and cameras of a world to the page's form."""
+"""Convert the lidars and cameras of a world to the page's form."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Conversion of the sky and the fog of a world to the page's form."""
+"""Convert the sky and the fog of a world to the page's form."""
 
 from __future__ import annotations
 

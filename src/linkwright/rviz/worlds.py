@@ -1,4 +1,4 @@
-"""Conversion of a world to the page's form: shapes and initial poses of all links."""
+"""Convert a world to the page's form: shapes and initial poses of all links."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading of elements by their rules.
+"""Read elements by their rules.
 
 The functions that read elements are generated and compiled once for each version of a language.
 

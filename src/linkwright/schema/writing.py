@@ -1,4 +1,4 @@
-"""The conversion of objects to elements, by the same rules by which elements are read."""
+"""Convert objects to elements, by the same rules by which elements are read."""
 
 from __future__ import annotations
 

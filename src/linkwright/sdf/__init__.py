@@ -1,1 +1,1 @@
-"""Reading of SDF worlds and models, with their includes resolved and poses computed."""
+"""Read SDF worlds and models, with their includes resolved and poses computed."""

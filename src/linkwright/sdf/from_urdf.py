@@ -1,4 +1,4 @@
-"""Conversion of a robot from URDF to a model in SDF, as in gz.
+"""Convert a robot from URDF to a model in SDF, as in gz.
 
 Source: libsdformat's parser of URDF and its page "URDF extensions in SDFormat".
 """

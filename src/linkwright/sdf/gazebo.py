@@ -1,4 +1,4 @@
-"""Reading of the ``<gazebo>`` elements of a URDF, which are for simulators.
+"""Read the ``<gazebo>`` elements of a URDF, which are for simulators.
 
 Most of their content is SDF for the link, joint or model that the attribute ``reference`` names. Some tags, such as
 ``mu1`` and ``turnGravityOff``, are older than SDF and represent SDF elements. Both are combined into one SDF element

@@ -1,4 +1,4 @@
-"""Counting of links without complete parsing of a world.
+"""Count links without complete parsing of a world.
 
 For a huge world, parsing would take minutes and gigabytes.
 """

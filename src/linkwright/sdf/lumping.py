@@ -1,4 +1,4 @@
-"""Combination of the mass properties of several links."""
+"""Combine the mass properties of several links."""
 
 from __future__ import annotations
 

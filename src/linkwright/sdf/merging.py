@@ -1,4 +1,4 @@
-"""Merging of ``<include merge="true">`` into the including model (SDF 1.9).
+"""Merge ``<include merge="true">`` into the including model (SDF 1.9).
 
 Source: the proposal "Merge include" of SDFormat and libsdformat's frame ``_merged__NAME__model__``.
 """

@@ -1,4 +1,4 @@
-"""Translation of SDF 1.0 to 1.2 to the elements of SDF 1.3 and later.
+"""Translate SDF 1.0 to 1.2 to the elements of SDF 1.3 and later.
 
 SDF 1.0 wrote values in attributes, ``<origin pose="1 2 0 0 0 0"/>`` and ``<box size="1 1 1"/>``, where later versions
 have elements, ``<pose>1 2 0 0 0 0</pose>`` and ``<box><size>1 1 1</size></box>``. The rules of the current SDF

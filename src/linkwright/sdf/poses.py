@@ -28,7 +28,7 @@ class RawPose:
     Attributes:
         pose: the pose in the frame named by `relative_to`.
         relative_to: the name of a frame, link, joint or model. If empty, the pose of a joint is relative to its child
-            link, and any other pose to the enclosing element.
+            link, the pose of a frame to its `attached_to`, and any other pose to the enclosing element.
     """
 
     pose: Pose = IDENTITY_POSE

@@ -1,4 +1,4 @@
-"""Reading of the worlds and models of an SDF document, with its errors as findings.
+"""Read the worlds and models of an SDF document, and report its errors as findings.
 
 Like libsdformat, the reader continues after an error if it can: it uses the default for a missing or invalid
 value. If libsdformat rejects the file at that point, the finding is an error.

@@ -1,4 +1,4 @@
-"""Reading of material scripts: Gazebo's built-in materials, and models' ``.material`` files.
+"""Read material scripts: Gazebo's built-in materials, and models' ``.material`` files.
 
 The renderer of Gazebo classic, Ogre, defines materials in a script language. Only the colors and the first image of a
 material are read here. Colors in the SDF file take precedence over the colors of the script.

@@ -1,4 +1,4 @@
-"""Parsing of XML as in the simulators.
+"""Parse XML as in the simulators.
 
 Their parser, TinyXML2, accepts more than XML allows.
 

@@ -1,4 +1,4 @@
-"""Conversion of a model in SDF to a robot in URDF, as in ROS.
+"""Convert a model in SDF to a robot in URDF, as in ROS.
 
 Source: the package sdformat_urdf, which is urdfdom's reader of SDF.
 """

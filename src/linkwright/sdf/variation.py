@@ -1,4 +1,4 @@
-"""Variation of the masses, friction and sensor noise of models."""
+"""Vary the masses, friction and sensor noise of models."""
 
 from __future__ import annotations
 

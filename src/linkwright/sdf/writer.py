@@ -1,4 +1,4 @@
-"""Writing of worlds and models as SDF.
+"""Write worlds and models as SDF.
 
 Reading the output gives equal worlds and models.
 """

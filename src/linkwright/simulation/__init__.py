@@ -1,1 +1,1 @@
-"""Simulation of worlds and their robots with MuJoCo."""
+"""Simulate worlds and their robots with MuJoCo."""

@@ -1,4 +1,4 @@
-"""Selection of MuJoCo's solver of forces: by islands in contact, or all bodies together.
+"""Select MuJoCo's solver of forces: one for each island of bodies in contact, or one for all bodies.
 
 Separate groups, called "islands", may fall asleep, so bodies at rest cost nothing. With the discrete integrator,
 however, MuJoCo processes all motors for each island, which doubles the time of a step with a hundred robots. The forces

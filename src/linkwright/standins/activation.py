@@ -1,4 +1,4 @@
-"""Activation of the stand-ins, which makes them importable as ``launch``, ``rclpy`` and so on."""
+"""Activate the stand-ins, which makes them importable as ``launch``, ``rclpy`` and so on."""
 
 from __future__ import annotations
 

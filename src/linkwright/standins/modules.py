@@ -1,4 +1,4 @@
-"""Creation of the modules in the tables, such as ``launch.actions``, when they are imported.
+"""Create the modules in the tables, such as ``launch.actions``, when they are imported.
 
 `FOLDER` is a virtual folder for Python's path finder. `FOLDER` contains every package that has a table, and
 ``FOLDER/launch`` contains the modules of ``launch``. Earlier entries of ``sys.path`` take precedence, package by

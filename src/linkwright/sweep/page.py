@@ -68,7 +68,7 @@ def summary(table: Table, name: str, command: str, planned: int) -> str:
         cards = "".join(_scatter_card(table, parameter, result) for result in numeric_results)
         if cards:
             sections += [
-                f"<h2>{_escape(phrase('Against {name}', name=parameter))}</h2>",
+                f"<h2>{_escape(phrase('Results by {name}', name=parameter))}</h2>",
                 f'<div class="cards">{cards}</div>',
             ]
     sections += [f"<h2>{_escape(phrase('Rows'))}</h2>", _rows_table(table)]

@@ -1,4 +1,4 @@
-"""Recording of the messages that are published on a topic during a test."""
+"""Record the messages that are published on a topic during a test."""
 
 from __future__ import annotations
 

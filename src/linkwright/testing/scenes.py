@@ -1,4 +1,4 @@
-"""Loading of worlds and robots for simulations, with a cache that ends when a file changes."""
+"""Load worlds and robots for simulations, and cache them until a file changes."""
 
 from __future__ import annotations
 

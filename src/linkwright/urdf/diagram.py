@@ -1,4 +1,4 @@
-"""The rendering of Graphviz text as an image."""
+"""Render Graphviz text as an image."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The evaluation of detectors: COCO's average precision, and the confusion matrix."""
+"""Evaluate detectors: compute COCO's average precision and the confusion matrix."""
 
 from __future__ import annotations
 

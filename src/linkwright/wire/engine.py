@@ -1,5 +1,6 @@
 """The base class of transport engines.
 
+A mirror is the entity of a transport that represents an endpoint of this process, such as a DDS writer for a publisher.
 A single thread serves the requests of all threads.
 """
 
@@ -27,7 +28,7 @@ Work: TypeAlias = "deque[Callable[[Engine], None]]"
 
 
 class Engine(ABC):
-    """Creates, serves and deletes the mirrors of this process's endpoints, in separate threads.
+    """The part of a transport that creates, serves and deletes mirrors, in separate threads.
 
     Args:
         work: the queue of requests; other threads append to it and call `wake`.

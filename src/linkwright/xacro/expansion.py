@@ -1,4 +1,4 @@
-"""The expansion of a file: the resulting document, arguments, dependencies and diagnostics."""
+"""Expand a file to a document, and record its arguments, dependencies and diagnostics."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The expansion of a description without the files and packages that are missing.
+"""Expand a description without the files and packages that are missing.
 
 Includes of missing files are left out. Calls of macros that these files would define stay in the result as elements,
 and values that need names of these files stay as they are written.

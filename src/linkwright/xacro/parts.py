@@ -1,4 +1,4 @@
-"""The expansion of the valid parts of a description that has errors.
+"""Expand the valid parts of a description that has errors.
 
 `linkwright.xacro.expand` stops at the first error after which the result is not reliable. An editor needs the rest of
 the result, too. Here, a tag that fails is left out, and the walk continues. Two rules keep the result correct:

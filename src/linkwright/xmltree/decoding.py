@@ -1,4 +1,4 @@
-"""Decoding of the bytes of a file to text.
+"""Decode the bytes of a file to text.
 
 A file that is valid UTF-8 is read as UTF-8, regardless of its XML declaration, as in ros/xacro. Any other file is read
 in the encoding that it declares.

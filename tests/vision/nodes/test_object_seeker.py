@@ -19,7 +19,7 @@ def test_seeker_goes_to_ball(tmp_path, ball):
         assert test.advance_until_said("I am at the ball")
         assert test.spoken() == [
             "I am looking for the ball.",
-            "I see the ball and drive to it.",
+            "I see the ball and am driving to it.",
             "I am at the ball.",
         ]
         assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.08)

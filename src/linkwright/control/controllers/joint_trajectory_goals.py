@@ -1,4 +1,4 @@
-"""Validation of trajectory messages, and conversion to trajectories of a controller.
+"""Validate trajectory messages, and convert them to trajectories of a controller.
 
 Source: joint_trajectory_controller of ros2_controllers (error messages, effects of missing joints, tolerances of
 goals).

@@ -1,4 +1,4 @@
-"""Creation of controllers' nodes, with their names, parameters and remappings.
+"""Create controllers' nodes, with their names, parameters and remappings.
 
 Source: the controller manager of ros2_control. A controller's node gets its parameters from the files in the arguments
 of the manager's process, then from the files in ``NAME.params_file``, then from ``NAME.node_options_args``.

@@ -1,4 +1,4 @@
-"""Loading of hardware from the robot's description and the manager's parameters.
+"""Load hardware from the robot's description and the manager's parameters.
 
 Source: the controller manager of ros2_control, with the names of Humble and of Jazzy.
 """

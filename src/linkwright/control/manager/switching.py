@@ -1,4 +1,4 @@
-"""Planning of a controller switch: the controllers to activate and deactivate.
+"""Plan a controller switch: which controllers to activate and deactivate.
 
 Source: the controller manager of ros2_control (rules of chains, strictness, messages).
 """

@@ -263,8 +263,8 @@ class _CalledDescription:
     def _inclusions(self) -> dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]]:
         """The inclusions of launch files, by the name of the included file.
 
-        An inclusion is a tuple of the package in the path, the including package, the including file, and the inclusion
-        itself.
+        Each value lists tuples: the package in the path, the including package, the including file, and the
+        `Inclusion`.
         """
         inclusions: dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]] = {}
         for package, file in self.files:

@@ -12,7 +12,7 @@ _MIN_COMMON = 0.5
 
 
 def renamed_hardware(old: Sequence[Element], new: Sequence[Element]) -> Iterator[tuple[Element, Element]]:
-    """Yield the pairs of ``<ros2_control>`` elements with different names that offer the same interfaces."""
+    """Yield the pairs of ``<ros2_control>`` elements with different names that share at least half their interfaces."""
     old_names, new_names = ({_name(element) for element in _hardware(elements)} for elements in (old, new))
     free = [element for element in _hardware(new) if _name(element) not in old_names]
     for element in _hardware(old):

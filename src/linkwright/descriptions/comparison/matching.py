@@ -1,4 +1,4 @@
-"""The matching of the links and joints of two descriptions.
+"""Match the links and joints of two descriptions.
 
 Links and joints match by name, or as renamed if everything else is equal.
 """

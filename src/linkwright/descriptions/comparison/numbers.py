@@ -1,4 +1,4 @@
-"""Normalization of texts in which equal numbers may be written differently."""
+"""Normalize texts in which equal numbers may be written differently."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The matching of renamed elements by their contents."""
+"""Match renamed elements by their contents."""
 
 from __future__ import annotations
 

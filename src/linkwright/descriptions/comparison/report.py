@@ -1,4 +1,4 @@
-"""The formatting of a comparison as text for users and as data for programs."""
+"""Format a comparison as text for users and as data for programs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The editing of robots: the smallest edit of the text for a requested change."""
+"""Edit robots: find the smallest edit of the text for a requested change."""
 
 from linkwright.descriptions.editing.errors import EditRefusedError
 from linkwright.descriptions.editing.files import EditHistory, Workspace

@@ -1,4 +1,4 @@
-"""The formatting and parsing of numbers in descriptions."""
+"""Format and parse numbers in descriptions."""
 
 from __future__ import annotations
 

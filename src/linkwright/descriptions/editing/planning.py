@@ -1,4 +1,4 @@
-"""The planning of edits: the smallest edit of the text that makes a requested change.
+"""Plan edits: find the smallest edit of the text that makes a requested change.
 
 The texts that may determine a number are tried in turn. The plan uses the first text whose edit changes the expanded
 document exactly as requested. If there is none, the edit is refused with a reason.

@@ -1,4 +1,4 @@
-"""The translation of diagnostics to the user's language.
+"""Translate diagnostics to the user's language.
 
 The package chooses the language, and contains the catalogs of texts. Messages are written in English where they are
 reported. A catalog maps their English templates to another language; a template that is not in it stays English.

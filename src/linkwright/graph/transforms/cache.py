@@ -88,7 +88,7 @@ class FrameCache(ABC):
 
     @abstractmethod
     def latest(self) -> tuple[int, int] | None:
-        """Return the stamp of the latest transform (0 if static) and the number of its parent.
+        """Return the stamp of the latest transform in nanoseconds (0 if static), and the number of its parent.
 
         Returns None if there is no transform.
         """

@@ -1,4 +1,4 @@
-"""Transformation of geometry_msgs messages between frames, as in ``tf2_geometry_msgs``.
+"""Transform geometry_msgs messages between frames, as in ``tf2_geometry_msgs``.
 
 Each function takes a message and a geometry_msgs/msg/TransformStamped from a lookup, and returns a new message. If the
 new message has a header, it is the transform's header. The arguments are not changed.

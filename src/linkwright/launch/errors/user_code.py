@@ -1,4 +1,4 @@
-"""Conversion of exceptions in a user's launch file to findings, without a traceback.
+"""Convert exceptions in a user's launch file to findings, without a traceback.
 
 The findings have a location, and their hints suggest similar names.
 """

@@ -1,4 +1,4 @@
-"""Creation of actions from tags, and of substitutions from ``$(name ...)``."""
+"""Create actions from tags, and substitutions from ``$(name ...)``."""
 
 from __future__ import annotations
 

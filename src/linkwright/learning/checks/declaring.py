@@ -1,4 +1,4 @@
-"""Declaration of the checks of a lesson, and loading them from its file."""
+"""Declare the checks of a lesson, and load them from its file."""
 
 from __future__ import annotations
 

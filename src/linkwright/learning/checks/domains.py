@@ -1,4 +1,4 @@
-"""Reservation of a ROS domain that no other check uses."""
+"""Reserve a ROS domain that no other check uses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Simulation of robots that lack masses, collisions or a drive, which are added as by ``linkwright drive``."""
+"""Simulate robots that lack masses, collisions or a drive, which are added as by ``linkwright drive``."""
 
 from __future__ import annotations
 

@@ -131,7 +131,7 @@ def _run_setup(folder: Path) -> str:
 
 
 def _read_outputs(process: subprocess.Popen[str]) -> tuple[str, str] | None:
-    """Return standard output and standard error of a process if it ends soon, or None."""
+    """Return standard output and standard error of a process if it ends within `_PERIOD_SECONDS`, or None."""
     try:
         return process.communicate(timeout=_PERIOD_SECONDS)
     except subprocess.TimeoutExpired:

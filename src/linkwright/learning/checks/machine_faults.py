@@ -1,4 +1,4 @@
-"""Detection of checks that failed because the machine lacks memory, disk space, processes or libraries."""
+"""Detect checks that failed because the machine lacks memory, disk space, processes or libraries."""
 
 from __future__ import annotations
 

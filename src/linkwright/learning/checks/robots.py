@@ -42,8 +42,8 @@ class ShapeSpec:
     Attributes:
         shape: the shape with its size in m.
         along: the direction of a cylinder's axis in the root frame, with all joints at zero; None for any direction.
-        at: the position of its center relative to the link's frame, in the directions of the root frame, in m; None for
-            any position.
+        at: the position of its center relative to the link's origin, expressed in the root frame, in m; None for any
+            position.
     """
 
     shape: Box | Cylinder | Sphere

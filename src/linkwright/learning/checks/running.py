@@ -1,4 +1,4 @@
-"""Execution of a step's checks in a separate process, because checks may run the learner's code."""
+"""Run a step's checks in a separate process, because checks may run the learner's code."""
 
 from __future__ import annotations
 

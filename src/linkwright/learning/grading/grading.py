@@ -1,4 +1,4 @@
-"""Grading of a class: one job for each student and step, and the collection of the marks."""
+"""Grade a class: run one job for each student and step, and collect the marks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Execution of a step's checks on a copy of a student's folder, in the sandbox."""
+"""Run a step's checks on a copy of a student's folder, in the sandbox."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Verification of a pack: the checksums of its files, and whether each target can be installed from it.
+"""Verify a pack: check the checksums of its files, and whether each target can be installed from it.
 
 The check reads the requirements in the wheels themselves and evaluates their markers for each target. It does not use
 the table from which the pack was built.

@@ -1,4 +1,4 @@
-"""Creation of a pack: wheels, models, worlds, documentation and installers in a folder."""
+"""Create a pack: a folder with wheels, models, worlds, documentation and installers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading of the metadata in a wheel."""
+"""Read the metadata in a wheel."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Conversion of lesson texts to HTML for pages."""
+"""Convert lesson texts to HTML for pages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cleaning of the folder of a run, so that the grader can read it safely."""
+"""Clean the folder of a run, so that the grader can read it safely."""
 
 from __future__ import annotations
 

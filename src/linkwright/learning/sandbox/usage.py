@@ -1,4 +1,4 @@
-"""Monitoring of the resources of a run, and detection of an exceeded limit."""
+"""Monitor the resources that a run uses, and detect an exceeded limit."""
 
 from __future__ import annotations
 

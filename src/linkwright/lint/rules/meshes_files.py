@@ -238,7 +238,7 @@ class WrongCase(Rule):
             corrected = _with_case_of(use.mesh.filename, existing_file)
             yield self.report(
                 phrase(
-                    "the mesh file is named '{name}', which differs from '{path_name}' in upper and lower case",
+                    "the mesh file is named '{name}', and not '{path_name}': upper and lower case differ",
                     name=existing_file.name,
                     path_name=path.name,
                 )

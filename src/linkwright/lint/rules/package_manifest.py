@@ -1,4 +1,4 @@
-"""Rules about ``package.xml``, and whether it agrees with the files next to it."""
+"""Rules that check ``package.xml``, also against the files next to it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Serves an editor with Linkwright's own language server and the servers for Python files."""
+"""Serve an editor as one language server, which combines Linkwright's server with servers for Python files."""
 
 from __future__ import annotations
 

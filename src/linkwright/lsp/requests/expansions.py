@@ -1,4 +1,4 @@
-"""The expansion of a description as a virtual document, with navigation to and from it.
+"""Expand a description as a virtual document, with navigation to and from it.
 
 The URI of the document is ``linkwright-expansion:///PATH?NAME:=VALUE...`` with the path of the description. Its content
 is the response to ``workspace/textDocumentContent`` (protocol 3.18). The implementations of an element in a description

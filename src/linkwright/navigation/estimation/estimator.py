@@ -1,4 +1,4 @@
-"""Fusion of measurements from several sensors, received in any order, in one filter."""
+"""Fuse measurements from several sensors, received in any order, in one filter."""
 
 from __future__ import annotations
 

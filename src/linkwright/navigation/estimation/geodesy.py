@@ -1,4 +1,4 @@
-"""Conversion of WGS 84 coordinates in degrees to meters: UTM and tangent planes.
+"""Convert WGS 84 coordinates in degrees to meters: UTM and tangent planes.
 
 Sources: L. Krüger 1912 for the transverse Mercator projection, with the coefficients of C. Karney, "Transverse Mercator
 with an accuracy of a few nanometers", 2011, to the fourth order, whose error is far below a millimeter within a zone;

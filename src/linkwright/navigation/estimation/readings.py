@@ -1,4 +1,4 @@
-"""Conversion of sensor poses, twists and accelerations to measurements of the robot's body.
+"""Convert sensor poses, twists and accelerations to measurements of the robot's body.
 
 Source of the rules: robot_localization. Two computations that are approximate there are exact here: the orientation of
 a rotated IMU, and the attitude that is used to remove gravity if the IMU provides no orientation.

@@ -1,4 +1,4 @@
-"""Reading and writing of map images.
+"""Read and write map images.
 
 Only formats other than PGM, such as PNG and BMP, need Pillow.
 """

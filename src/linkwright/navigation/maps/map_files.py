@@ -1,4 +1,4 @@
-"""Loading and saving of maps as a YAML file with an image, as in nav2_map_server."""
+"""Load and save maps as a YAML file with an image, as in nav2_map_server."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Creation of costmap layers from nav2's parameters.
+"""Create costmap layers from nav2's parameters.
 
 Source: nav2_costmap_2d, Humble and Jazzy.
 """

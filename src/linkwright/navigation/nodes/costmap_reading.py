@@ -1,4 +1,4 @@
-"""Conversion of received nav2_msgs/Costmap messages to costmaps."""
+"""Convert received nav2_msgs/Costmap messages to costmaps."""
 
 from __future__ import annotations
 

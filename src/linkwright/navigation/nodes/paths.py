@@ -1,4 +1,4 @@
-"""Conversion of paths and poses to and from messages."""
+"""Convert paths and poses to and from messages."""
 
 from __future__ import annotations
 

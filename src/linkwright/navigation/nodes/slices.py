@@ -1,4 +1,4 @@
-"""Execution of long computations in slices on the event loop.
+"""Run long computations in slices on the event loop.
 
 Other callbacks run between the slices.
 """

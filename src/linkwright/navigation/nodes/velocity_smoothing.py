@@ -1,4 +1,4 @@
-"""Smoothing of velocities within limits of speed and acceleration, as in nav2."""
+"""Smooth velocities within limits of speed and acceleration, as in nav2."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Extraction of paths by descent on a potential.
+"""Extract paths by descent on a potential.
 
 Source: nav2_navfn_planner, which steps half a cell along the interpolated gradient.
 """

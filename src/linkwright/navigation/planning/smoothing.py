@@ -1,4 +1,4 @@
-"""Smoothing of paths: each point moves towards the middle of its neighbors.
+"""Smooth paths: each point moves towards the middle of its neighbors.
 
 Points stay near their original positions.
 

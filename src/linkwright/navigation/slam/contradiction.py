@@ -1,4 +1,4 @@
-"""Detection of contradictory poses of two scans.
+"""Detect contradictory poses of two scans.
 
 Poses are contradictory if rays of one scan pass through points of the other.
 """

@@ -1,1 +1,1 @@
-"""Creation of new packages."""
+"""Create new packages."""

@@ -1,4 +1,4 @@
-"""Creation of new packages with the layout of ``ros2 pkg create`` (ROS 2 Humble).
+"""Create new packages with the layout of ``ros2 pkg create`` (ROS 2 Humble).
 
 A request is checked and converted to a list of steps (folders and files with their contents), which are then carried
 out.

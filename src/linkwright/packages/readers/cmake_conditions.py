@@ -1,4 +1,4 @@
-"""Evaluation of conditions in ``if(...)`` and ``while(...)`` to true, false or unknown."""
+"""Evaluate conditions in ``if(...)`` and ``while(...)`` to true, false or unknown."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Evaluation of the CMake commands that compute texts and lists.
+"""Evaluate the CMake commands that compute texts and lists.
 
 The commands are ``list``, ``string``, ``math`` and ``get_filename_component``.
 """

@@ -1,4 +1,4 @@
-"""Evaluation of string and path expressions in a Python file without running the file.
+"""Evaluate string and path expressions in a Python file without running the file.
 
 An expression has a value only if the value is certain: literals, names that are assigned once, joined paths, share
 folders of packages, and patterns of file names. Every other value is `UNKNOWN`, and rules ignore it.

@@ -1,4 +1,4 @@
-"""Editing of a robot: editable parts, previews of text changes, writing, undo and redo.
+"""The messages for editing a robot: editable parts, previews of text changes, writing, undo and redo.
 
 Positions are in meters and angles in radians, in the parent link's frame for a joint, and in the link's frame for a
 visual, a collision or an inertial. An axis is in its joint's frame.

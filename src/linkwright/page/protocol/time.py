@@ -22,8 +22,8 @@ class TimelineTopic(Record):
 class Timeline(ServerMessage):
     """The displayed recording: its name, its start and end, and its topics.
 
-    If `live` is true, the timeline covers the last minutes. It then has no name, and `HistoryExtent` contains its
-    changing start and end.
+    Start and end are in seconds. If `live` is true, the timeline covers the last minutes. It then has no name, and
+    `HistoryExtent` contains its changing start and end.
     """
 
     name: str

@@ -1,1 +1,1 @@
-"""Editing of a robot in the page."""
+"""Edit a robot in the page."""

@@ -1,4 +1,4 @@
-"""Editing of a robot in the page: previews of the smallest text change, and writing.
+"""Edit a robot in the page: previews of the smallest text change, and writing.
 
 All pages share one history. Requests are handled one after the other in a thread, because an edit is verified by
 expanding the description again.

@@ -1,4 +1,4 @@
-"""The compression of images as JPEG for image_bridge.
+"""Compress images as JPEG for image_bridge.
 
 Source: the plugin ``compressed`` of image_transport (the topic, the format string, the quality).
 """

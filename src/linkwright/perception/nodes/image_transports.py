@@ -1,4 +1,4 @@
-"""The conversion of images to and from ``compressed`` and ``compressedDepth`` messages.
+"""Convert images to and from ``compressed`` and ``compressedDepth`` messages.
 
 Sources: compressed_image_transport (the format string), compressed_depth_image_transport (the header, and the
 quantization of depths in meters with ``depth_max`` 10 and ``depth_quantization`` 100).

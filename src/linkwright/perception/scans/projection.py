@@ -1,4 +1,4 @@
-"""The conversion of depth images and point clouds to scans, and of scans to points."""
+"""Convert depth images and point clouds to scans, and scans to points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an added or removed build file installs, in one line."""
+"""The line about an added or removed build file, with the targets and files that it installs."""
 
 from __future__ import annotations
 

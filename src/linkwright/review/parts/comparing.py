@@ -152,12 +152,12 @@ def _file_changes(file: ChangedFile, old: Outline | Phrase | None, new: Outline 
     reason = phrase("launch files and descriptions that name the file do not find it")
     is_semantic = file.path.endswith(_SEMANTIC)
     if isinstance(old, Outline) and file.new_path is None:
-        text = phrase("semantic description removed") if is_semantic else phrase("part of descriptions removed")
+        text = phrase("semantic description removed") if is_semantic else phrase("included description file removed")
         yield Change(text, Effect.BREAKING, reason)
     elif isinstance(old, Outline) and file.old_path and file.old_path != file.new_path:
         yield Change(phrase("renamed from {path}", path=file.old_path), Effect.BREAKING, reason)
     if isinstance(new, Outline) and file.old_path is None:
-        yield Change(phrase("semantic description added") if is_semantic else phrase("part of descriptions added"))
+        yield Change(phrase("semantic description added") if is_semantic else phrase("included description file added"))
         names = list(new.macros)
         if names:
             yield Change(phrase("macro '{name}' added", name=names[0]), other_names=tuple(names[1:]))

@@ -1,4 +1,4 @@
-"""Extraction of points from clouds and laser scans: coordinates and other fields.
+"""Extract points from clouds and laser scans: coordinates and other fields.
 
 Scans are projected in the same way as by laser_geometry.
 """

@@ -1,4 +1,4 @@
-"""Reading and writing of configuration files.
+"""Read and write configuration files.
 
 The encoding and line endings are preserved, and a file is never left half written.
 """

@@ -274,7 +274,7 @@ class NewSection:
 
 
 def make_section(section: Section, *path: str) -> tuple[Section, list[NewSection]]:
-    """Return the mapping at a path, and the list of mappings that were created for it."""
+    """Return the mapping at a path, creating missing mappings, and the list of created mappings."""
     new_sections = []
     for key in path:
         child_section = section.section(key)

@@ -1,4 +1,4 @@
-"""Conversion of visualization_msgs/msg/Marker to the page's shapes, and a store of markers.
+"""Convert visualization_msgs/msg/Marker to the page's shapes, and store the markers.
 
 The rules and the texts of errors are the same as in RViz.
 """

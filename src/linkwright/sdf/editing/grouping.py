@@ -1,4 +1,4 @@
-"""Grouping of models into one model, and ungrouping."""
+"""Group models into one model, and ungroup them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Conversion of the command lines of Gazebo's programs to parameters of substitute nodes.
+"""Convert the command lines of Gazebo's programs to parameters of substitute nodes.
 
 Of the many options of `gazebo`, `gzserver` and `gz sim`, only the world, the paused start, the random seed and the ROS
 arguments have an effect here. The node's parameters are ``world``, ``pause`` and ``seed``, and ``gui`` for a server

@@ -1,4 +1,4 @@
-"""Reloading of the files of a running simulation when any program saves them."""
+"""Reload the files of a running simulation when any program saves them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Motion of a model at a commanded velocity: ``gz-sim-velocity-control-system``.
+"""The plugin ``gz-sim-velocity-control-system``, which moves a model at a commanded velocity.
 
 Source: gz-sim (parameters, topic; velocities are in the frame of the model and apply until the next message).
 """

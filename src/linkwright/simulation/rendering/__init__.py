@@ -1,1 +1,1 @@
-"""Rendering of a simulated world by OpenGL, or by ray casting without an OpenGL library."""
+"""Render a simulated world by OpenGL, or by ray casting without an OpenGL library."""

@@ -1,4 +1,4 @@
-"""Creation of the first renderer that works on this machine."""
+"""Create the first renderer that works on this machine."""
 
 from __future__ import annotations
 

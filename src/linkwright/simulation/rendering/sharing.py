@@ -1,4 +1,4 @@
-"""Sharing of one renderer among all cameras of a simulation."""
+"""Share one renderer among all cameras of a simulation."""
 
 from __future__ import annotations
 

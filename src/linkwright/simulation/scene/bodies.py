@@ -1,4 +1,4 @@
-"""Conversion of links to MuJoCo bodies: mass, joints, collision geoms and visual geoms."""
+"""Convert links to MuJoCo bodies: mass, joints, collision geoms and visual geoms."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Compilation of a scene to MuJoCo's model, and detection of the models that MuJoCo rejects."""
+"""Compile a scene to MuJoCo's model, and detect the models that MuJoCo rejects."""
 
 from __future__ import annotations
 

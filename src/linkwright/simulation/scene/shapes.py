@@ -1,4 +1,4 @@
-"""Conversion of SDF shapes to geoms of MuJoCo."""
+"""Convert SDF shapes to geoms of MuJoCo."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading of models that programs send as URDF or SDF."""
+"""Read models that programs send as URDF or SDF."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lifting of models that are spawned inside the ground.
+"""Lift models that are spawned inside the ground.
 
 Some launch files spawn robots at a height of 0 although their origin is above the wheels, or into worlds in which the
 ground is a thick plate. Contacts would push such a robot out of the ground within a few steps, so fast that a light

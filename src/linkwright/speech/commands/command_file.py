@@ -1,4 +1,4 @@
-"""The command file in YAML, read strictly, with errors at their positions."""
+"""A strict reader of the command file, which reports each error in the YAML text with its position."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The conversion of phrases to the vocabulary of an engine, and of its results to phrases."""
+"""Convert phrases to the vocabulary of an engine, and its results to phrases."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The recognition of enrolled words, with a confidence.
+"""Recognize enrolled words, with a confidence.
 
 A word counts only if nothing else is nearer: no other word, not the background, and no take played backwards, which is
 speech of the same voice but not a word. Then logistic regression computes the confidence from four inputs. The first

@@ -1,4 +1,4 @@
-"""The conversion of samples to messages of audio_common_msgs, and back from any format.
+"""Convert samples to messages of audio_common_msgs, and back from any format.
 
 audio_capture publishes interleaved samples in one of GStreamer's formats (``S16LE``), which it announces on
 ``audio_info``. Without an AudioInfo, the format is audio_capture's default: 16 kHz, mono, S16LE.
@@ -121,7 +121,7 @@ def _sample_bytes(audio_format: AudioFormat) -> int:
 
 
 def _values(data: bytes, audio_format: AudioFormat) -> NDArray[np.float64]:
-    """Return samples with the stream's channels and rate, full scale at 1.
+    """Return the samples in the data as numbers from -1 to 1, with interleaved channels.
 
     An incomplete last sample is dropped.
     """

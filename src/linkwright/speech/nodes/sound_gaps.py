@@ -1,4 +1,4 @@
-"""The detection of missing sound from the stamps of sound blocks.
+"""Detect missing sound from the stamps of sound blocks.
 
 AudioDataStamped does not number its messages. Linkwright's sources stamp each block with the end of the previous one
 and follow the clock only slowly. A jump forward therefore means that sound was lost in transit.

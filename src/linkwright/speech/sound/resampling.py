@@ -1,4 +1,4 @@
-"""The resampling of a stream to `RATE` without aliasing, in blocks, by a polyphase filter.
+"""Resample a stream to `RATE` without aliasing, in blocks, by a polyphase filter.
 
 The filter is a sinc in a Kaiser window. Its pass band ends at 0.92 of half the lower rate; frequencies above that half
 are attenuated by at least 60 dB. The output starts with the first sample of the input, without the filter's delay.

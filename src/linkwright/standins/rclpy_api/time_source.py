@@ -1,4 +1,4 @@
-"""Setting of clocks from ``/clock`` (rclpy ``time_source``).
+"""Set clocks from ``/clock`` (rclpy ``time_source``).
 
 The clock of a node does not need this module.
 """

@@ -1,4 +1,4 @@
-"""Conversion of messages to dictionaries, YAML and CSV."""
+"""Convert messages to dictionaries, YAML and CSV."""
 
 from collections import OrderedDict
 from typing import Any

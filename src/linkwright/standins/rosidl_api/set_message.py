@@ -1,4 +1,4 @@
-"""Setting of a message's fields from a dictionary."""
+"""Set a message's fields from a dictionary."""
 
 from typing import Any
 

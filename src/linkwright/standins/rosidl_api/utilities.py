@@ -1,4 +1,4 @@
-"""Loading of interface classes by name."""
+"""Load interface classes by name."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Activation of the stand-ins in every Python process with this folder on ``PYTHONPATH``.
+"""Activate the stand-ins in every Python process with this folder on ``PYTHONPATH``.
 
 Linkwright is imported only when the program imports a stand-in that no other finder provides. If a real rclpy is
 importable, the stand-ins are not provided, because the nodes of each rclpy accept only its own message classes.

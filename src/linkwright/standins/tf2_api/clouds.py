@@ -1,4 +1,4 @@
-"""Transformation of point clouds into another frame (``tf2_sensor_msgs``)."""
+"""Transform point clouds into another frame (``tf2_sensor_msgs``)."""
 
 from __future__ import annotations
 

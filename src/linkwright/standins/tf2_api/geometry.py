@@ -1,4 +1,4 @@
-"""Registration of transformations of geometry_msgs messages (``import tf2_geometry_msgs``)."""
+"""Register transformations of geometry_msgs messages (``import tf2_geometry_msgs``)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parsing of the arguments of the command ``xacro``, as in ``xacro.cli``."""
+"""Parse the arguments of the command ``xacro``, as in ``xacro.cli``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Evaluation of attribute values and expressions, as in the module ``xacro``."""
+"""Evaluate attribute values and expressions, as in the module ``xacro``."""
 
 from __future__ import annotations
 

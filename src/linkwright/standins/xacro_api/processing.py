@@ -1,4 +1,4 @@
-"""Expansion of files, strings and documents, as in the module ``xacro``."""
+"""Expand files, strings and documents, as in the module ``xacro``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Resolution of substitution arguments, as in ``xacro.substitution_args``."""
+"""Resolve substitution arguments, as in ``xacro.substitution_args``."""
 
 from __future__ import annotations
 

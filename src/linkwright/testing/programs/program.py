@@ -30,7 +30,8 @@ class Program:
     """A program that runs in a stepped graph, created by `SteppedGraph.start_program`.
 
     Attributes:
-        exit_code: the exit code: 0, 1 after an exception, or the argument of ``sys.exit``; None while the program runs.
+        exit_code: None while the program runs. Then 0, 1 after an exception, the argument of ``sys.exit`` (1 if it is a
+            text), or a negated signal number: of SIGINT after `interrupt`, of SIGTERM if the test ended the program.
         error: the exception that ended the program, or None.
     """
 

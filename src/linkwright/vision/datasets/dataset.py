@@ -1,4 +1,4 @@
-"""The creation of a dataset in one or several processes."""
+"""Create a dataset in one or several processes."""
 
 from __future__ import annotations
 

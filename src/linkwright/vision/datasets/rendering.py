@@ -1,4 +1,4 @@
-"""The rendering of single images with their labels."""
+"""Render single images with their labels."""
 
 from __future__ import annotations
 

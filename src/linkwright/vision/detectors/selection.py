@@ -1,4 +1,4 @@
-"""The selection of detections that satisfy limits."""
+"""Select detections that satisfy limits."""
 
 from __future__ import annotations
 

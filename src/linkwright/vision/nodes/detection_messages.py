@@ -1,4 +1,4 @@
-"""The conversion of detections and images to messages."""
+"""Convert detections and images to messages."""
 
 from __future__ import annotations
 

@@ -75,7 +75,7 @@ class Answer(Enum):
 
 _ANSWERS: Mapping[Answer, Callable[[str], Phrase]] = {
     Answer.SEARCHING: lambda name: phrase("I am looking for the {name}.", name=name),
-    Answer.FOUND: lambda name: phrase("I see the {name} and drive to it.", name=name),
+    Answer.FOUND: lambda name: phrase("I see the {name} and am driving to it.", name=name),
     Answer.ARRIVED: lambda name: phrase("I am at the {name}.", name=name),
     Answer.NOT_FOUND: lambda name: phrase("I cannot find the {name}.", name=name),
     Answer.LOST: lambda name: phrase("I have lost the {name}.", name=name),

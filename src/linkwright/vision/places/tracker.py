@@ -1,4 +1,4 @@
-"""The tracking of objects from image to image, after ByteTrack.
+"""Track objects from image to image, after ByteTrack.
 
 Source: SORT (Bewley et al., 2016): boxes move with constant velocity and are assigned by their overlap; ByteTrack
 (Zhang et al., 2022): detections with a low score keep tracks alive, but do not start them.

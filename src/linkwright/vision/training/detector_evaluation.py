@@ -1,4 +1,4 @@
-"""The evaluation of a detector on labeled images."""
+"""Evaluate a detector on labeled images."""
 
 from __future__ import annotations
 

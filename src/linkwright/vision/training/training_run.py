@@ -1,4 +1,4 @@
-"""The training of a network: learning, export, evaluation of the exported file, and card."""
+"""Train a network: learn, export, evaluate the exported file, and write the card."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Encoding of ``ros_discovery_info`` messages: a participant's nodes and their endpoints.
+"""Encode ``ros_discovery_info`` messages: a participant's nodes and their endpoints.
 
 The encoding is implemented here because the layout depends on the peer: a gid has 24 bytes up to Humble and 16 from
 Iron on (`rmw_dds_common/msg/Gid`), and one process may receive both.

@@ -1,4 +1,4 @@
-"""Conversion of ROS QoS profiles to DDS policies and back, as in rmw_cyclonedds_cpp."""
+"""Convert ROS QoS profiles to DDS policies and back, as in rmw_cyclonedds_cpp."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The conversion of common YAML nodes to values: mappings and lists of scalars.
+"""Convert common YAML nodes to values: mappings and lists of scalars.
 
 PyYAML's own conversion has the same results but needs a dozen calls for each value. PyYAML still converts the rare
 cases: merge keys, keys that are not scalars, dates, and tags.

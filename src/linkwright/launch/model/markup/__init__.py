@@ -1,1 +1,1 @@
-"""Registration of actions and substitutions in XML and YAML, and parsing of their tags."""
+"""Register actions and substitutions for XML and YAML, and parse their tags."""

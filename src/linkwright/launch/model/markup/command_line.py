@@ -1,4 +1,4 @@
-"""Splitting of command lines with substitutions in XML and YAML launch files."""
+"""Split command lines with substitutions in XML and YAML launch files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Conversion of text and substitutions to typed values (``launch.utilities.type_utils``).
+"""Convert text and substitutions to typed values (``launch.utilities.type_utils``).
 
 The types are ``int``, ``float``, ``bool``, ``str`` and uniform lists of these, written ``List[int]`` or ``list[int]``.
 The type None means that YAML's rules determine the type.

@@ -1,4 +1,4 @@
-"""Selection of processes of a launch in tests (``launch_testing.util``)."""
+"""Select processes of a launch in tests (``launch_testing.util``)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Evaluation of Python expressions to texts, lists and mappings.
+"""Evaluate Python expressions to texts, lists and mappings.
 
 A placeholder represents an expression that may have several values.
 """

@@ -108,9 +108,13 @@ def _leaf_cells(inner_nodes: NDArray[np.int64], bits: NDArray[np.int64], resolut
     """Return the leaves among the children of inner nodes.
 
     Args:
-        inner_nodes: the inner nodes, shape (N, 4).
+        inner_nodes: the inner nodes, shape (N, 4): x, y and z of the center, and the edge length, in halves of
+            `resolution`.
         bits: for each inner node, the states of its eight children, two bits each.
         resolution: the edge length of the smallest cells, meters.
+
+    Raises:
+        BadOctreeError: there are too many cells or levels.
     """
     states = bits[:, None] >> 2 * np.arange(8) & 3
     parents, children = np.nonzero((states == _FREE) | (states == _OCCUPIED))
