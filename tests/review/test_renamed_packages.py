@@ -61,8 +61,10 @@ def test_what_follows_from_the_new_name_of_a_package_is_one_change(repository, c
     (change,) = result.subjects[0].changes
     assert set(change.other_names) >= {"arm_tools_core -> arm_gear_core", "arm_tools/Grip -> arm_gear/Grip"}
     assert [str(note) for note in result.notes if "follow" in str(note)]
-    (line,) = other_files(result)
-    assert (line[0], str(line[1])) == ("arm_gear/src/", "4 files, moved with the package from arm_tools/")
+    assert [(path, str(state)) for path, state in other_files(result)] == [
+        ("arm_gear/src/", "4 files, moved with the package from arm_tools/"),
+        ("robot/package.xml", "None"),
+    ]
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,7 @@ class SubjectKind(Enum):
     SEMANTICS = "semantic description"
     PART = "part of descriptions"
     PLUGINS = "plugin description"
+    SOURCE = "node source"
 
 
 @dataclass(frozen=True)

@@ -16,19 +16,26 @@ from linkwright.xacro.cache import read_document
 
 
 def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bool:
-    """Return whether both versions certainly install a moved file at the same place, or neither installs it."""
-    old_places, new_places = _places(versions.old, old_path), _places(versions.new, new_path)
-    return old_places is not None and old_places == new_places
+    """Return whether a package certainly installs a moved file of its own where it did, or never installed it."""
+    old_package, new_package = _package(versions.old, old_path), _package(versions.new, new_path)
+    if old_package is None or old_package != new_package:
+        return False
+    old_places = _places(versions.old, old_package, old_path)
+    return old_places is not None and old_places == _places(versions.new, old_package, new_path)
 
 
-def _places(version: Version, path: str) -> frozenset[str] | None:
+def _package(version: Version, path: str) -> PurePosixPath | None:
+    """Return the folder of the package of a file relative to the root, or None if there is none."""
+    parents = PurePosixPath(path).parents
+    return next((parent for parent in parents if version.file(f"{parent}/{MANIFEST}").is_file()), None)
+
+
+def _places(version: Version, package: PurePosixPath, path: str) -> frozenset[str] | None:
     """Return the installed paths of a file without the name of its package, or None if they are not known."""
-    parents = (parent for parent in PurePosixPath(path).parents if version.file(f"{parent}/{MANIFEST}").is_file())
-    package = next(parents, None)
-    facts = None if package is None else _facts(version.root, version, package.as_posix().removeprefix("."))
+    facts = _facts(version.root, version, package.as_posix().removeprefix("."))
     if facts is None or not facts.is_complete:
         return None
-    source = PurePosixPath(path).relative_to(package or ".").as_posix()
+    source = PurePosixPath(path).relative_to(package).as_posix()
     return frozenset(facts.place(target) for target, other in facts.files.items() if other == source)
 
 

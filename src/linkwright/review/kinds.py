@@ -17,7 +17,7 @@ from linkwright.review.files.build_facts import BuildFacts
 from linkwright.review.files.cmake_files import CMAKE_FILE, compare_cmake_files, read_cmake_facts
 from linkwright.review.files.interfaces import compare_interfaces, interface_contents
 from linkwright.review.files.manifests import compare_manifests, manifest_contents
-from linkwright.review.files.maps import compare_maps
+from linkwright.review.files.maps import compare_map_files, compare_maps, map_contents
 from linkwright.review.files.meshes import compare_meshes, mesh_contents
 from linkwright.review.files.parameter_files import compare_parameter_files, parameter_contents
 from linkwright.review.files.python_settings import (
@@ -193,6 +193,18 @@ LAUNCH_HELPER = KindRule(
     phrase("launch files that import the module do not find it"),
 )
 """The rule for modules that make actions for launch files."""
+
+
+MAP = KindRule(
+    SubjectKind.MAP,
+    compare_map_files,
+    _YAML_SUFFIXES,
+    phrase("map added"),
+    phrase("map removed"),
+    phrase("launch files and users that name the file do not find it"),
+    contents=map_contents,
+)
+"""The rule for the YAML files of maps, with their images."""
 
 
 def may_help_launch_files(path: str) -> bool:

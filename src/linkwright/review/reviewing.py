@@ -22,12 +22,14 @@ from linkwright.review.drawings.images import lone_images
 from linkwright.review.drawings.scene_images import lone_world_images
 from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
 from linkwright.review.files.cmake_files import CMAKE_FILE
+from linkwright.review.files.maps import is_map, map_of_image
 from linkwright.review.files.mesh_groups import grouped_meshes
+from linkwright.review.files.node_sources import source_subjects
 from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
 from linkwright.review.installed_paths import keeps_installed_path
-from linkwright.review.kinds import LAUNCH_HELPER, KindRule, may_help_launch_files, rule_of
+from linkwright.review.kinds import LAUNCH_HELPER, MAP, KindRule, may_help_launch_files, rule_of
 from linkwright.review.launches.formats import with_other_formats
 from linkwright.review.launches.helpers import makes_actions
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
@@ -43,6 +45,8 @@ _Pair = tuple[KindRule, "str | None", "str | None"]
 _MIN_EXPANDED = 4
 """The number of descriptions from which several processes are faster than one."""
 _MOVED = "moved from {folder}, installed at the same place"
+_LISTED = (SubjectKind.BUILD, SubjectKind.MANIFEST, SubjectKind.LAUNCH_FILE, SubjectKind.PARAMETERS)
+"""The kinds whose changed files are listed with the other files if no difference is found."""
 _EXPANDED = (SubjectKind.DESCRIPTION, SubjectKind.WORLD)
 """The kinds that include other files. Parts of them are not compared on their own."""
 
@@ -95,6 +99,7 @@ class _Reviewer:
         self._new_paths = {
             file.old_path: file.new_path for file in self._changed_files if file.old_path and file.new_path
         }
+        self._maps = dict(_maps_of_images(versions, self._changed_files))
         self._targets = {
             version.is_old: _targets(version) | self._plain_robots(version) for version in (versions.old, versions.new)
         }
@@ -117,7 +122,8 @@ class _Reviewer:
         all_subjects, notes = without_consequences(self._versions, all_subjects)
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
         untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
-        reported |= {path for rule, *paths in pairs if rule.kind is not SubjectKind.BUILD for path in paths if path}
+        reported |= {path for rule, *paths in pairs if rule.kind not in _LISTED for path in paths if path}
+        reported |= self._maps.keys()
         other_files = [
             file for file in self._changed_files if file.path in moved or not {file.old_path, file.new_path} & reported
         ]
@@ -132,7 +138,7 @@ class _Reviewer:
         )
 
     def _with_other_subjects(self, subjects: Sequence[Subject]) -> list[Subject]:
-        """Return subjects with those of plugin descriptions, and with the paths of launch files that lead nowhere."""
+        """Return subjects with those of plugin descriptions and sources, and with paths that lead nowhere."""
         lost: dict[str, list[Change]] = {}
         for path, change in lost_references(self._versions, self._changed_files):
             lost.setdefault(path, []).append(change)
@@ -140,6 +146,8 @@ class _Reviewer:
         for path, changes in lost.items():
             result.append(Subject(SubjectKind.LAUNCH_FILE, path, self._old_path(path), path, changes))
         result += plugin_subjects(self._versions, self._changed_files)
+        paths = {subject.path for subject in result}
+        result += (found for found in source_subjects(self._versions, self._changed_files) if found.path not in paths)
         return sorted(result, key=lambda subject: subject.path)
 
     def _is_complete(self, path: str) -> bool:
@@ -163,6 +171,9 @@ class _Reviewer:
         paths |= {(self._old_path(path), path) for path in affected_new}
         for file in self._changed_files:
             rule = self._rule(file.old_path, file.new_path)
+            if file.path in self._maps:
+                paths.add((self._old_path(self._maps[file.path]), self._new_path(self._maps[file.path])))
+                continue
             if rule is None or rule.kind in _EXPANDED or file.is_submodule:
                 continue
             if self._is_part_of_a_robot(rule, file):
@@ -176,6 +187,8 @@ class _Reviewer:
         """Return the rule for a file, or None for a file that is not compared."""
         rule = rule_of(new_path or old_path or "")
         sides = ((self._versions.old, old_path), (self._versions.new, new_path))
+        if rule is not None and rule.kind is SubjectKind.PARAMETERS:
+            return MAP if any(is_map(version.file(path)) for version, path in sides if path) else rule
         if rule is None and may_help_launch_files(new_path or old_path or ""):
             is_helper = any(makes_actions(version.file(path)) for version, path in sides if path)
             return LAUNCH_HELPER if is_helper else None
@@ -361,6 +374,16 @@ def _processes(count: int) -> Iterator[Callable[..., Callable[[], Any]]]:
         yield lambda function, *arguments: pool.submit(function, *arguments).result
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def _maps_of_images(versions: Versions, files: Sequence[ChangedFile]) -> Iterator[tuple[str, str]]:
+    """Yield the paths of the changed images of maps, each with the path of the YAML file that describes the map."""
+    for file in files:
+        for version, path in ((versions.new, file.new_path), (versions.old, file.old_path)):
+            map_path = None if path is None else map_of_image(version, path)
+            if map_path is not None:
+                yield file.path, map_path
+                break
 
 
 def _targets(version: Version) -> set[str]:

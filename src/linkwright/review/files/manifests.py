@@ -75,8 +75,14 @@ def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:
         if old_addresses != new_addresses and _texts(old, tag) == _texts(new, tag):
             text = phrase("email of {tag}: {old} -> {new}", tag=tag, old=old_addresses or "-", new=new_addresses or "-")
             pair.add(text, pair.location((new.root.first(tag) or new.root).span()))
-    if old.text("description") != new.text("description"):
+    if _description(old) != _description(new):
         pair.add(phrase("description changed"), pair.location((new.root.first("description") or new.root).span()))
+
+
+def _description(manifest: Manifest) -> str:
+    """Return the description with the texts of the elements in it."""
+    element = manifest.root.first("description")
+    return "" if element is None else " ".join(" ".join(part.text() for part in element.walk()).split())
 
 
 def _read(file: Path) -> Manifest:

@@ -1,20 +1,117 @@
-"""The comparison of the images of maps: size, and the cells that changed."""
+"""The comparison of maps: the settings in YAML, the size, and the cells of the image that changed."""
 
 from __future__ import annotations
 
-from pathlib import Path
+import re
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, joined, phrase
 from linkwright.navigation.maps.images import read_image
+from linkwright.navigation.maps.map_yaml import MapYaml, read_map_yaml
 from linkwright.review.changes import Figure
 from linkwright.review.file_pair import FilePair
+from linkwright.review.list_changes import change_text
+from linkwright.review.versions import Version
+
+IMAGE_SUFFIXES = (".pgm", ".png", ".bmp", ".jpg", ".jpeg", ".gif")
+"""The ends of the names of files that can be the image of a map."""
+_KEYS = tuple(re.compile(rf"^{key}\s*:", re.MULTILINE) for key in ("image", "resolution", "origin"))
+_MAX_BYTES = 100_000
+_MAX_FILES = 100
+"""The number of YAML files in a folder that are searched for the one of an image."""
+
+
+def is_map(file: Path) -> bool:
+    """Return whether a YAML file describes a map."""
+    try:
+        if file.stat().st_size > _MAX_BYTES:
+            return False
+        text = file.read_text("utf-8", errors="replace")
+    except OSError:
+        return False
+    return all(key.search(text) for key in _KEYS)
+
+
+def map_of_image(version: Version, path: str) -> str | None:
+    """Return the path of the YAML file beside an image that describes it as a map, or None if there is none."""
+    file = version.file(path)
+    if PurePosixPath(path).suffix.lower() not in IMAGE_SUFFIXES:
+        return None
+    for other in sorted(file.parent.glob("*.y*ml"))[:_MAX_FILES]:
+        if is_map(other) and _map_yaml(other) is not None and read_map_yaml(other).image.name == file.name:
+            return version.relative(other)
+    return None
+
+
+def map_contents(version: Version, path: str) -> Phrase | None:
+    """Return the image, size, resolution and origin of a map.
+
+    Raises:
+        LinkwrightError: the YAML file is not that of a map.
+    """
+    content = read_map_yaml(version.file(path))
+    size = _size(content)
+    parts: list[Phrase | str] = [content.image.name, *([size] if size else [])]
+    parts.append(phrase("resolution {resolution} m", resolution=f"{content.resolution:g}"))
+    parts.append(phrase("origin {origin}", origin=_numbers(content.origin)))
+    return joined(parts)
+
+
+def compare_map_files(pair: FilePair) -> None:
+    """Compare two versions of a map: its settings, and its image."""
+    maps = pair.read(read_map_yaml)
+    if maps is None:
+        return
+    for name, old_text, new_text in _settings(*maps):
+        if old_text != new_text:
+            pair.add(change_text(name, old_text, new_text), None)
+    old_size, new_size = (_size(content) for content in maps)
+    if old_size and new_size and str(old_size) != str(new_size):
+        pair.figures.append(Figure(phrase("size of the map"), str(old_size), str(new_size)))
+    old_image, new_image = (_readable_shade(content.image) for content in maps)
+    if old_image is not None and new_image is not None and old_image.shape == new_image.shape:
+        _compare_cells(pair, old_image, new_image)
+
+
+def _settings(old: MapYaml, new: MapYaml) -> Iterator[tuple[str, str, str]]:
+    yield "image", old.image.name, new.image.name
+    yield "resolution", f"{old.resolution:g} m", f"{new.resolution:g} m"
+    yield "origin", _numbers(old.origin), _numbers(new.origin)
+    yield "negate", str(old.negate).lower(), str(new.negate).lower()
+    yield "occupied_thresh", f"{old.occupied_thresh:g}", f"{new.occupied_thresh:g}"
+    yield "free_thresh", f"{old.free_thresh:g}", f"{new.free_thresh:g}"
+    yield "mode", old.mode.value, new.mode.value
+
+
+def _numbers(values: tuple[float, ...]) -> str:
+    return " ".join(f"{value:g}" for value in values)
+
+
+def _map_yaml(file: Path) -> MapYaml | None:
+    try:
+        return read_map_yaml(file)
+    except LinkwrightError:
+        return None
+
+
+def _size(content: MapYaml) -> Phrase | None:
+    """Return the size of a map in cells and in meters, or None if its image cannot be read."""
+    image = _readable_shade(content.image)
+    if image is None:
+        return None
+    rows, columns = image.shape
+    width, height = (f"{count * content.resolution:g}" for count in (columns, rows))
+    return phrase(
+        "{columns} x {rows} cells ({width} x {height} m)", columns=columns, rows=rows, width=width, height=height
+    )
 
 
 def compare_maps(pair: FilePair) -> None:
-    """Compare two versions of the image of a map, cell by cell."""
+    """Compare two versions of an image that no YAML file describes as a map, cell by cell."""
     images = pair.read(_shade)
     if images is None:
         return
@@ -23,10 +120,15 @@ def compare_maps(pair: FilePair) -> None:
         old_text, new_text = (f"{image.shape[1]} x {image.shape[0]}" for image in images)
         pair.figures.append(Figure(phrase("size of the map"), old_text, new_text, "cells"))
         return
+    if not _compare_cells(pair, old, new):
+        pair.add(phrase("contents changed, with the same cells"), None)
+
+
+def _compare_cells(pair: FilePair, old: NDArray[np.float64], new: NDArray[np.float64]) -> bool:
+    """Add the share and place of the cells that differ, and return whether there are any."""
     rows, columns = np.nonzero(old != new)
     if not len(rows):
-        pair.add(phrase("contents changed, with the same cells"), None)
-        return
+        return False
     text = phrase(
         "{share:.2g} % of the cells changed, in columns {left} to {right} and rows {top} to {bottom} of the image",
         share=100.0 * len(rows) / old.size,
@@ -36,6 +138,15 @@ def compare_maps(pair: FilePair) -> None:
         bottom=int(rows.max()),
     )
     pair.add(text, None)
+    return True
+
+
+def _readable_shade(file: Path) -> NDArray[np.float64] | None:
+    """Return the brightness of the cells, or None for an image that cannot be read, such as a pointer of Git LFS."""
+    try:
+        return _shade(file)
+    except (LinkwrightError, OSError):
+        return None
 
 
 def _shade(file: Path) -> NDArray[np.float64]:

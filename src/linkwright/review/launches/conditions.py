@@ -36,7 +36,7 @@ def _part_holds(part: str) -> bool | None:
 def _truth(text: str) -> bool | None:
     evaluation = _EVALUATION.fullmatch(text)
     text = text if evaluation is None else _unquoted(evaluation[1].strip())
-    if "$(" in text or len(text) > _MAX_LENGTH:
+    if "$(" in text or "`" in text or len(text) > _MAX_LENGTH:
         return None
     if evaluation is None:
         comparison = _COMPARISON.fullmatch(text)

@@ -30,6 +30,7 @@ _PUSHES = ("PushRosNamespace", "PushROSNamespace", "PushNamespace")
 _LISTS = ("LaunchDescription", "GroupAction", "TimerAction")
 """The objects whose first argument is a list of actions."""
 _ADDITIONS = ("add_action", "add_entity")
+_LIST_METHODS = ("append", "extend", "insert")
 _OUTSIDE = Scope()
 _INNER_ACTIONS = frozenset({"composable_node_descriptions", "on_exit"})
 """The arguments of actions that contain other actions, which are entries themselves."""
@@ -52,7 +53,7 @@ def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchO
     reader = _Reader(python, helpers, ExpressionTexts(python))
     reader.visit(python.tree)
     entries = sorted(reader.entries(), key=lambda entry: (entry.span.line, entry.span.column))
-    return LaunchOutline(entries, rest_of(python, reader.covered), definitions_of(python))
+    return LaunchOutline(entries, rest_of(python, reader.covered, reader.branches), definitions_of(python))
 
 
 @dataclass
@@ -68,6 +69,7 @@ class _Reader:
         scopes: each call that makes an action, with its scope and its texts, by the identity of its syntax tree and
             the passes of the loops around it.
         covered: the calls that entries describe, which do not belong to the rest of the file.
+        branches: the ``if`` statements whose conditions actions have.
     """
 
     python: PythonFile
@@ -77,6 +79,7 @@ class _Reader:
     depth: int = 0
     scopes: dict[_Place, tuple[ast.Call, Scope, ExpressionTexts]] = field(default_factory=dict)
     covered: set[int] = field(default_factory=set)
+    branches: set[int] = field(default_factory=set)
     _loops: tuple[int, ...] = ()
     _outside: list[tuple[int, int, ExpressionTexts, tuple[int, ...]]] = field(default_factory=list)
     _seen: set[tuple[int, tuple[int, ...], Scope]] = field(default_factory=set)
@@ -106,7 +109,7 @@ class _Reader:
         """Find the actions below a node, which is in a scope."""
         if isinstance(node, ast.Name):
             value = self.python.resolved(node)
-            if value is not node:
+            if value is not node and not isinstance(node.ctx, ast.Store):
                 self._visit_value(value, scope)
             return
         if (id(node), self._loops, scope) in self._seen:
@@ -114,6 +117,8 @@ class _Reader:
         self._seen.add((id(node), self._loops, scope))
         if isinstance(node, ast.Call):
             self._visit_call(node, scope)
+        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            return  # the object of a method, whose value is not in the scope of the call
         elif isinstance(node, (ast.List, ast.Tuple)):
             for item in node.elts:
                 scope = scope.pushed(self._pushed(item))
@@ -122,6 +127,8 @@ class _Reader:
             self._visit_loop(node.target.id, node.iter, node.body, scope)
         elif isinstance(node, (ast.ListComp, ast.GeneratorExp)) and isinstance(node.generators[0].target, ast.Name):
             self._visit_loop(node.generators[0].target.id, node.generators[0].iter, [node.elt], scope)
+        elif isinstance(node, ast.If):
+            self._visit_branches(node, scope)
         elif isinstance(node, ast.FunctionDef):
             if node.name not in self.helpers.local_names(self.python):
                 self._visit_body(node, scope)
@@ -156,6 +163,18 @@ class _Reader:
         self.texts, self._loops = texts, loops
         self._outside.pop()
 
+    def _visit_branches(self, node: ast.If, scope: Scope) -> None:
+        """Find the actions of both branches, which have the condition of the statement."""
+        source = " ".join(ast.unparse(node.test).split())
+        conditions = [f"{word} `{source}`" for word in ("if", "unless")]
+        for condition, body in zip(conditions, (node.body, node.orelse), strict=True):
+            inner = scope.under(condition)
+            for statement in body:
+                inner = inner.pushed(self._pushed(_added_action(statement)))
+                self.visit(statement, inner)
+        if any(condition in inner.conditions for _, inner, _ in self.scopes.values() for condition in conditions):
+            self.branches.add(id(node))
+
     def _visit_body(self, function: ast.FunctionDef, scope: Scope) -> None:
         for statement in function.body:
             scope = scope.pushed(self._pushed(_added_action(statement)))
@@ -180,8 +199,16 @@ class _Reader:
         if function in _LISTS or function in _ADDITIONS:
             for action in self._foreign_actions(call):
                 self._add(action, inner)
-        for child in (call.func, *call.args, *(item.value for item in call.keywords if item.arg != CONDITION)):
+        children = [call.func, *call.args, *(item.value for item in call.keywords if item.arg != CONDITION)]
+        if not self._takes_actions(call, function):
+            children = [child for child in children if not isinstance(child, ast.Name)]
+        for child in children:
             self.visit(child, inner)
+
+    def _takes_actions(self, call: ast.Call, function: str) -> bool:
+        """Return whether the actions in the arguments of a call are in the scope of the call."""
+        is_list = function in (*_LISTS, *_ADDITIONS, *_LIST_METHODS, _HANDLER) or function in ACTIONS
+        return is_list or self._is_helper(call)
 
     def _add(self, call: ast.Call, scope: Scope) -> None:
         """Add an action with the innermost scope in which it is named."""
@@ -226,7 +253,7 @@ class _Reader:
         texts = ExpressionTexts(function.python, bindings, values)
         reader = _Reader(function.python, self.helpers, texts, extra, self.depth + 1)
         if function.python is self.python:
-            reader.covered = self.covered
+            reader.covered, reader.branches = self.covered, self.branches
         reader.visit_function(function.node)
         span = self.python.span(call)
         self.covered.add(id(call))

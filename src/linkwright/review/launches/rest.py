@@ -35,14 +35,15 @@ def definitions_of(python: PythonFile) -> list[CodePart]:
     ]
 
 
-def rest_of(python: PythonFile, covered: Collection[int]) -> list[CodePart]:
+def rest_of(python: PythonFile, covered: Collection[int], branches: Collection[int] = ()) -> list[CodePart]:
     """Return the statements besides the actions, without names of variables, imports, comments and layout.
 
     Args:
         python: the file.
         covered: the identities of the calls that make actions.
+        branches: the identities of the ``if`` statements whose conditions actions have.
     """
-    rest = _Rest(python, covered)
+    rest = _Rest(python, covered, branches)
     conditions = _failing_conditions(python.tree)
     parts = (
         CodePart(rest.statement_text(node), _source(_header(node)), python.span(node), conditions.get(id(node), ""))
@@ -90,8 +91,9 @@ def _header(node: ast.stmt) -> ast.stmt:
 
 
 class _Rest:
-    def __init__(self, python: PythonFile, covered: Collection[int]) -> None:
+    def __init__(self, python: PythonFile, covered: Collection[int], branches: Collection[int] = ()) -> None:
         self._python = python
+        self._branches = branches
         self._covered = covered
         self._texts: dict[int, str] = {}
 
@@ -107,10 +109,10 @@ class _Rest:
         """Return a statement without the statements in it; empty if it only makes actions."""
         if not any(hasattr(node, name) for name in _BODIES):
             return self.text(node)
-        return self._other(node)
+        return "" if id(node) in self._branches else self._other(node)
 
     def _text(self, node: ast.AST) -> str:
-        if isinstance(node, (ast.Import, ast.ImportFrom)) or id(node) in self._covered:
+        if isinstance(node, (ast.Import, ast.ImportFrom, ast.Pass)) or id(node) in self._covered:
             return ""
         if isinstance(node, ast.Expr):
             return "" if isinstance(node.value, ast.Constant) else self.text(node.value)
@@ -123,6 +125,8 @@ class _Rest:
             return self._group(node)
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _ADDITIONS:
             return self._other(node) if self._items(node.args) else ""
+        if isinstance(node, ast.AugAssign) and not self.text(node.value):
+            return ""
         if isinstance(node, (ast.List, ast.Tuple)):
             return self._items(node.elts)
         if isinstance(node, ast.Return):

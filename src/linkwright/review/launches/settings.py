@@ -9,6 +9,7 @@ from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.breaking import name_reason
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
+from linkwright.review.launches.default_names import default_name
 from linkwright.review.launches.effects import setting_reason, value_reason
 from linkwright.review.launches.outlines import CONDITION, PARAMETER, READING, REMAPPING, Entry, LaunchOutline
 from linkwright.review.launches.titles import joined_titles, title
@@ -82,13 +83,19 @@ class SettingChanges:
         settings = []
         for name in dict.fromkeys([*new.settings, *old.settings]):
             old_value, new_value = old.settings.get(name), new.settings.get(name)
-            if old_value != new_value and not new.is_same_name(name, old_value, new_value):
+            if old_value != new_value and not self._is_same_name(new, name, old_value, new_value):
                 reason = setting_reason(new, name, old_value, new_value, self._old, self._new)
                 if new.kind != READING or reason is not None:
                     settings.append(_Setting(name, old_value, new_value, reason))
         for text, reason, name in _joined_settings(settings):
             # A group may give a condition to actions that other programs need and to those of a user interface.
             self._add(new, text, reason, is_apart=name != CONDITION)
+
+    def _is_same_name(self, entry: Entry, setting: str, old: str | None, new: str | None) -> bool:
+        """Return whether a setting gives the name that is used without it: of a node, or of a topic."""
+        if entry.kind == "node" and setting == "name" and None in (old, new):
+            return default_name(self._pair.versions.new.root, entry.name) == (old or new)
+        return entry.is_same_name(setting, old, new)
 
     def _add(self, entry: Entry, text: Phrase, reason: Phrase | None, *, is_apart: bool = True) -> None:
         place = entry, self._pair.location(entry.span), text, reason

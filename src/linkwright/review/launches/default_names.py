@@ -1,0 +1,52 @@
+"""The names that nodes have without being given one, in the sources of the repository."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from pathlib import Path
+
+from linkwright.diagnostics import SourceText
+from linkwright.lint.targets import find_targets
+from linkwright.packages.manifest import package_name
+from linkwright.packages.readers.setup_py import read_setup
+from linkwright.review.files.source_names import CPP_SUFFIXES, NameKind, read_source_names
+
+
+@lru_cache(maxsize=256)
+def default_name(root: Path, program: str) -> str | None:
+    """Return the name that a node has without being given one, or None if the sources do not show it.
+
+    Args:
+        root: the folder of the repository.
+        program: the package and the executable or the class of a component, such as ``arm/arm::Driver``.
+    """
+    package, _, name = program.partition("/")
+    folder = _packages(root).get(package)
+    if folder is None or not name:
+        return None
+    files = _sources_of_class(folder, name.rpartition("::")[2]) if "::" in name else _modules(folder, name)
+    names = {item.name for file in files for item in read_source_names(file).names if item.kind is NameKind.NODE}
+    return names.pop() if len(names) == 1 else None
+
+
+@lru_cache(maxsize=4)
+def _packages(root: Path) -> dict[str | None, Path]:
+    return {package_name(folder): folder for folder in find_targets([root]).packages}
+
+
+def _sources_of_class(folder: Path, name: str) -> list[Path]:
+    """Return the sources that define the constructor of a class."""
+    constructor = re.compile(rf"\b{re.escape(name)}\s*\([^;{{}}]*\)\s*:")
+    files = (file for file in folder.rglob("*") if file.suffix in CPP_SUFFIXES and file.is_file())
+    return [file for file in files if constructor.search(file.read_text("utf-8", errors="replace"))]
+
+
+def _modules(folder: Path, executable: str) -> list[Path]:
+    """Return the module of an executable of a package in Python."""
+    setup = folder / "setup.py"
+    if not setup.is_file():
+        return []
+    programs = read_setup(SourceText(str(setup), setup.read_text("utf-8", errors="replace"))).entry_points
+    modules = [folder / f"{each.module.replace('.', '/')}.py" for each in programs if each.executable == executable]
+    return [module for module in modules if module.is_file()]

@@ -1,0 +1,65 @@
+"""What a review says of ``if`` statements in launch files in Python: they are conditions of the actions in them."""
+
+from __future__ import annotations
+
+import pytest
+
+LAUNCH = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    actions = [DeclareLaunchArgument("speed", default_value="1")]
+    driver = Node(package="arm", executable="driver")
+    PLACE
+    return LaunchDescription(actions)
+"""
+
+
+def launch(*lines: str) -> str:
+    return LAUNCH.replace("PLACE", "\n    ".join(lines))
+
+
+CHECK = "'nav2' in get_packages_with_prefixes()"
+PLAIN = launch("actions.append(driver)")
+UNDER = launch(f"if {CHECK}:", "    actions.append(driver)")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (PLAIN, UNDER, [f"node 'arm/driver': condition if `{CHECK}` added"]),
+        (UNDER, PLAIN, [f"node 'arm/driver': condition if `{CHECK}` removed"]),
+        (UNDER, UNDER.replace("'nav2'", "'nav3'"),
+         [f"node 'arm/driver': condition if `{CHECK}` -> if `'nav3' in get_packages_with_prefixes()`"]),
+        (launch("actions += [Node(package='arm', executable='camera')]"),
+         launch(f"if {CHECK}:", "    pass", "else:", "    actions += [Node(package='arm', executable='camera')]"),
+         [f"node 'arm/camera': condition unless `{CHECK}` added"]),
+        (UNDER, UNDER.replace("    actions.append(driver)", "    actions.append(driver)\n        print('ready')"),
+         ["other code added: print('ready')"]),
+    ],
+)  # fmt: skip
+def test_if_statement_is_a_condition_of_the_actions_in_it(changes_of, old, new, expected):
+    found, _ = changes_of("arm.launch.py", old, old, new)
+    assert found == expected
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        (
+            "description = LaunchDescription([driver])",
+            f"if {CHECK}:",
+            "    description.add_action(Node(package='a', executable='b'))",
+        ),
+        ("actions.append(driver)", f"if {CHECK}:", "    print(driver)"),
+        ("actions.append(driver)", f"if {CHECK}:", "    check(driver)"),
+    ],
+)
+def test_actions_outside_of_an_if_statement_have_no_condition(changes_of, lines):
+    new = launch(*lines)
+    old = new.replace(f"if {CHECK}:", "if True:")
+    found, breaking = changes_of("arm.launch.py", old, old, new)
+    assert not [sentence for sentence in found if "arm/driver" in sentence]
+    assert not breaking

@@ -1,0 +1,142 @@
+"""What a review says of literal names in the sources of nodes."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+PYTHON = """import rclpy
+from rclpy.action import ActionServer
+from rclpy.node import Node
+from std_msgs.msg import Bool, String
+
+TOPIC = "state"
+
+
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.declare_parameter("rate", 10)
+        self.declare_parameters("arm", [("length", 1.0), ("mass", 2.0)])
+        self.state = self.create_publisher(String, TOPIC, 10)
+        self.create_subscription(Bool, "enable", self.enable, 10)
+        self.create_service(SetBool, "stair_mode", self.set_mode)
+        self.create_client(Trigger, "home")
+        self.server = ActionServer(self, Reach, "reach", self.reach)
+"""
+CPP = """// create_publisher<String>("old", 10);
+class Camera : public rclcpp::Node {
+public:
+  explicit Camera(const rclcpp::NodeOptions & options) : rclcpp::Node("camera", options) {
+    rate_ = declare_parameter<double>("rate", 10.0);
+    image_ = this->create_publisher<sensor_msgs::msg::Image>("image", rclcpp::QoS(1));
+    sub_ = create_subscription<std_msgs::msg::Bool>("enable", 10, [this](std::shared_ptr<const Bool> m) {});
+    service_ = create_service<std_srvs::srv::SetBool>("stair_mode", f);
+    server_ = rclcpp_action::create_server<Reach>(this, "reach", a, b, c);
+  }
+};
+"""
+FILES = {
+    "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+    "arm/arm/driver.py": PYTHON,
+    "arm/src/camera.cpp": CPP,
+}
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new", "expected", "is_breaking"),
+    [
+        ("arm/arm/driver.py", 'SetBool, "stair_mode"', 'SetMode, "stairs_mode"',
+         ["service 'stair_mode' (SetBool) renamed to 'stairs_mode' (SetMode)"], True),
+        ("arm/arm/driver.py", '"state"', '"arm_state"',
+         ["publisher 'state' (String) renamed to 'arm_state' (String)"], True),
+        ("arm/arm/driver.py", '        self.create_subscription(Bool, "enable", self.enable, 10)\n', "",
+         ["subscriptions removed: 'enable' (Bool)"], True),
+        ("arm/arm/driver.py", "Reach,", "Grasp,", ["action 'reach': type Reach -> Grasp"], True),
+        ("arm/arm/driver.py", '"rate", 10', '"rate", 20', ["parameter 'rate': default 10 -> 20"], False),
+        ("arm/arm/driver.py", '("mass", 2.0)', "", ["parameters removed: 'arm.mass' (2.0)"], True),
+        ("arm/arm/driver.py", '"home"', '"go_home"',
+         ["service client 'home' (Trigger) renamed to 'go_home' (Trigger)"], False),
+        ("arm/arm/driver.py", '"driver"', '"arm_driver"', ["node 'driver' renamed to 'arm_driver'"], True),
+        ("arm/arm/driver.py", '"enable"', 'self.name', [], False),
+        ("arm/arm/driver.py", "self.enable, 10", "self.enable, 1", [], False),
+        ("arm/src/camera.cpp", '"image"', '"image_raw"',
+         ["publisher 'image' (Image) renamed to 'image_raw' (Image)"], True),
+        ("arm/src/camera.cpp", '"camera"', '"left_camera"', ["node 'camera' renamed to 'left_camera'"], True),
+        ("arm/src/camera.cpp", '"rate", 10.0', '"rate", 20.0', ["parameter 'rate': default 10.0 -> 20.0"], False),
+        ("arm/src/camera.cpp", "<Reach>", "<Grasp>", ["action 'reach': type Reach -> Grasp"], True),
+        ("arm/src/camera.cpp", '"image", rclcpp', "name_, rclcpp", [], False),
+        ("arm/src/camera.cpp", '"old"', '"older"', [], False),
+        ("arm/src/camera.cpp", "    service_ =", '    create_publisher<Bool>("ready", 1);\n    service_ =',
+         ["publishers added: 'ready' (Bool)"], False),
+    ],
+)  # fmt: skip
+def test_changed_names_in_sources_are_reported(repository, compare, path, old, new, expected, is_breaking):
+    text = FILES[path]
+    assert old in text
+    others = {other: content for other, content in FILES.items() if other != path and other.endswith("xml")}
+    repository.commit({**others, path: text})
+    repository.write({path: text.replace(old, new)})
+    result = compare(repository)
+    assert [sentence for found in result.subjects for sentence in sentences(found)] == expected
+    assert bool(breaking(result)) is is_breaking
+    assert (path in result.other_files) is not expected
+
+
+def test_name_that_moves_to_another_source_of_the_package_is_not_reported(repository, compare):
+    repository.commit(FILES)
+    line = "        self.state = self.create_publisher(String, TOPIC, 10)\n"
+    moved = f"from driver import *\n\n\ndef publish(self):\n{line.replace('TOPIC', repr('state'))}"
+    repository.commit({"arm/arm/driver.py": PYTHON.replace(line, ""), "arm/arm/state.py": moved})
+    assert compare(repository, "HEAD~1..HEAD").subjects == []
+
+
+def test_removed_source_of_a_node_is_breaking(repository, compare):
+    repository.commit(FILES)
+    repository.commit({"arm/src/camera.cpp": None})
+    found = subject(compare(repository, "HEAD~1..HEAD"), "arm/src/camera.cpp")
+    assert "publishers removed: 'image' (Image)" in sentences(found)
+
+
+ROS1 = """import rospy
+
+rospy.init_node("driver")
+rospy.Publisher("state", String, queue_size=1)
+rospy.Subscriber("enable", Bool, enable)
+rospy.Service("home", Trigger, home)
+"""
+
+
+def test_names_of_ros_1_are_compared(repository, compare):
+    cpp = 'void f(ros::NodeHandle & n) { p = n.advertise<std_msgs::Bool>("ready", 1); s = n.subscribe("go", 1, g); }\n'
+    repository.commit({"arm/driver.py": ROS1, "arm/driver.cpp": cpp})
+    repository.write(
+        {"arm/driver.py": ROS1.replace('"home"', '"rest"'), "arm/driver.cpp": cpp.replace('"go"', '"run"')}
+    )
+    assert breaking(compare(repository)) == [
+        "subscription 'go' renamed to 'run'",
+        "service 'home' (Trigger) renamed to 'rest' (Trigger)",
+    ]
+
+
+LAUNCH = """from launch import LaunchDescription
+from launch_ros.actions import ComposableNodeContainer
+from launch_ros.descriptions import ComposableNode
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        ComposableNodeContainer(name="all", package="rclcpp_components", executable="component_container",
+            composable_node_descriptions=[ComposableNode(package="arm", plugin="arm::Camera")]),
+    ])
+"""
+
+
+@pytest.mark.parametrize(("name", "count"), [("camera", 0), ("left", 1)])
+def test_default_name_of_a_node_that_is_written_out_is_not_a_change(repository, compare, name, count):
+    repository.commit({**FILES, "arm/launch/arm.launch.py": LAUNCH})
+    text = LAUNCH.replace('plugin="arm::Camera"', f'plugin="arm::Camera", name="{name}"')
+    repository.write({"arm/launch/arm.launch.py": text})
+    assert len(compare(repository).subjects) == count
