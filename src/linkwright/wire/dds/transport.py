@@ -24,7 +24,7 @@ _SETTLED_AMONG_KNOWN = 0.05
 
 
 class DdsTransport(BackgroundTransport):
-    """Mirrors the graph of this process in a DDS domain.
+    """The transport that mirrors the graph of this process in a DDS domain.
 
     Args:
         settings: the domain and how to join it.

@@ -33,7 +33,7 @@ _ALONE_AFTER = 1.4
 
 
 class ZenohTransport(BackgroundTransport):
-    """Mirrors the graph of this process in a Zenoh session.
+    """The transport that mirrors the graph of this process in a Zenoh session.
 
     Args:
         settings: the domain and how to join it.
