@@ -12,7 +12,7 @@ from typing import Any
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.dds.cyclone import CycloneError
-from linkwright.wire.dds.departures import Departures
+from linkwright.wire.dds.departures import DdsDepartureMonitor
 from linkwright.wire.dds.discovery import Discovery
 from linkwright.wire.dds.discovery_info import NodeEntities
 from linkwright.wire.dds.domain import Domain
@@ -63,7 +63,7 @@ class Engine(AnyEngine):
         self,
         settings: Settings,
         remote: RemoteGraph,
-        departures: Departures,
+        departures: DdsDepartureMonitor,
         work: Work,
         logger: Logger,
     ) -> None:
