@@ -165,7 +165,7 @@ def rows() -> list[Row]:
 
         def row(what: str, field: str, unit: str, target: str = "", name: str = name, about: str = about) -> Row:
             def middle(which: str) -> float:
-                return float(statistics.median(getattr(each, field) for each in turns[which]))
+                return float(statistics.median(getattr(turn, field) for turn in turns[which]))
 
             peers: dict[str, float | None] = {"bare loop": middle("bare")}
             return Row(f"12 joints at 1 kHz, {about}: {what}", middle(name), unit, target, peers)

@@ -63,8 +63,8 @@ class _Fleet:
         asked, measured = controller.command_interfaces(), controller.state_interfaces()
         assert not isinstance(asked, Interfaces)
         assert not isinstance(measured, Interfaces)
-        controller.commands = [CommandInterface(*_parts(each)) for each in asked]
-        controller.states = [StateInterface(*_parts(each), 0.1) for each in measured]
+        controller.commands = [CommandInterface(*_parts(name)) for name in asked]
+        controller.states = [StateInterface(*_parts(name), 0.1) for name in measured]
         controller.references = [
             CommandInterface("drive", reference_interface) for reference_interface in controller.reference_interfaces()
         ]

@@ -92,7 +92,7 @@ def rosbags_object(store: Any, message: Any) -> Any:
     def value(kind: FieldType, given: Any) -> Any:
         if kind.primitive is None:
             one = kind.container is Container.ONE
-            return rosbags_object(store, given) if one else [rosbags_object(store, each) for each in given]
+            return rosbags_object(store, given) if one else [rosbags_object(store, item) for item in given]
         return np.array(given, kind.primitive.dtype) if kind.is_numeric_array else given
 
     values = {field.name: value(field.type, getattr(message, field.name)) for field in message._definition.fields}
@@ -132,7 +132,7 @@ def cyclone_object(cls: type[Any], message: Any) -> Any:
             value = cyclone_object(field.type, value)
         elif isinstance(value, list) and value and hasattr(value[0], "TYPE_NAME"):
             (inner,) = (field.type.__metadata__[0].subtype,)
-            value = [cyclone_object(inner, each) for each in value]
+            value = [cyclone_object(inner, item) for item in value]
         elif not isinstance(value, (str, int, float)):
             value = list(value)
         values[field.name] = value
@@ -199,8 +199,8 @@ def _texts() -> list[Row]:
 
 def _plain(value: Any) -> Any:
     if isinstance(value, dict):
-        return {key: _plain(each) for key, each in value.items()}
-    return [_plain(each) for each in value] if isinstance(value, list) else value
+        return {key: _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, list) else value
 
 
 def _start() -> Row:

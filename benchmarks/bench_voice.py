@@ -151,8 +151,8 @@ def rows() -> list[Row]:
         found += list(other.rows(_OTHER_VOICE))
         if speakers:
             reading = pool.submit(_reading, speakers, Path(folder))
-            for each in pool.map(_sound, _SOUNDS, speakers[:1] * len(_SOUNDS), [Path(folder)] * len(_SOUNDS)):
-                found += each
+            for sound_rows in pool.map(_sound, _SOUNDS, speakers[:1] * len(_SOUNDS), [Path(folder)] * len(_SOUNDS)):
+                found += sound_rows
             found += reading.result()
     return found
 

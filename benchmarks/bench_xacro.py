@@ -118,10 +118,14 @@ def _collection(other: Engine | None) -> list[Row]:
     what = f"{len(robots)} public descriptions, processor time"
     return [
         _row(
-            f"{what}, first pass", {name: statistics.median(each) for name, each in first.items()}, "a tenth of xacro's"
+            f"{what}, first pass",
+            {name: statistics.median(times) for name, times in first.items()},
+            "a tenth of xacro's",
         ),
         _row(
-            f"{what}, again", {name: statistics.median(each) for name, each in again.items()}, "a twentieth of xacro's"
+            f"{what}, again",
+            {name: statistics.median(times) for name, times in again.items()},
+            "a twentieth of xacro's",
         ),
     ]
 

@@ -104,13 +104,13 @@ def markers(count: int = 1000) -> list[Any]:
     for turn in range(KINDS):
         array = get_message("visualization_msgs/msg/MarkerArray")()
         for number in range(count):
-            each = marker(ns="bench", id=number, type=marker.CUBE, color=color(r=1.0, g=number / count, b=0.2, a=1.0))
-            each.header.frame_id = FRAME
-            each.pose.position.x, each.pose.position.y = number % 32 * 0.3 - 5, number // 32 * 0.3 - 5
-            each.pose.position.z = float(np.sin(number + turn))
-            each.pose.orientation.w = 1.0
-            each.scale.x = each.scale.y = each.scale.z = 0.1
-            array.markers.append(each)
+            cube = marker(ns="bench", id=number, type=marker.CUBE, color=color(r=1.0, g=number / count, b=0.2, a=1.0))
+            cube.header.frame_id = FRAME
+            cube.pose.position.x, cube.pose.position.y = number % 32 * 0.3 - 5, number // 32 * 0.3 - 5
+            cube.pose.position.z = float(np.sin(number + turn))
+            cube.pose.orientation.w = 1.0
+            cube.scale.x = cube.scale.y = cube.scale.z = 0.1
+            array.markers.append(cube)
         made.append(array)
     return made
 

@@ -58,8 +58,8 @@ async def drive(first: int, count: int) -> None:
     for tick in itertools.count():
         begin = time.monotonic()
         for robot in publishers:
-            for publisher, message, each in robot:
-                if tick % each == 0:
+            for publisher, message, period in robot:
+                if tick % period == 0:
                     publisher.publish(message)
         if stop.done():
             break
@@ -128,7 +128,7 @@ def measure(robots: int) -> dict[str, float]:
             assert part.stdout is not None
             assert part.stdout.readline() == "ready\n"
         joined = time.monotonic() - begin
-        used = {each.pid: psutil.Process(each.pid) for each in (router, *parts)}
+        used = {process.pid: psutil.Process(process.pid) for process in (router, *parts)}
         discovery = settle(used)
         assert listener.stdin is not None
         print(file=listener.stdin, flush=True)

@@ -144,8 +144,8 @@ class Soak:
                 helper.start()
             while (passed := time.monotonic() - self._begin) < self._seconds:
                 time.sleep(SAMPLE_SECONDS)
-                for each in self._watched:
-                    each.sample(self._begin)
+                for watched in self._watched:
+                    watched.sample(self._begin)
                 self._look(passed)
             for helper in helpers:
                 helper.join(60.0)
@@ -155,7 +155,7 @@ class Soak:
 
     def samples(self) -> dict[str, list[tuple[float, float, int, int]]]:
         """What was seen of each process: seconds, MB, threads, file descriptors."""
-        return {each.name: each.samples for each in self._watched}
+        return {watched.name: watched.samples for watched in self._watched}
 
     @contextmanager
     def _processes(self, folder: Path) -> Iterator[None]:
@@ -169,9 +169,9 @@ class Soak:
             yield
         finally:
             # The talker first, and some time for what is on its way: the listener must then have all of it.
-            for each in sorted(self._watched, key=lambda each: each.name != "talker"):
-                self._end(each)
-                if each.name == "talker":
+            for watched in sorted(self._watched, key=lambda watched: watched.name != "talker"):
+                self._end(watched)
+                if watched.name == "talker":
                     time.sleep(4.0)
 
     def _start(self, name: str, words: list[str], more: Mapping[str, str]) -> None:
@@ -213,7 +213,7 @@ class Soak:
         launcher, listener = self._of("launcher"), self._of("listener")
         while not self._is_over():
             time.sleep(KILL_SECONDS)
-            victims = [each for each in _descendants(launcher.process.pid) if "victim" in _words(each)]
+            victims = [process for process in _descendants(launcher.process.pid) if "victim" in _words(process)]
             if len(victims) != 1:
                 self.faults.append(f"{len(victims)} processes are there to be killed instead of one")
                 continue
@@ -248,26 +248,26 @@ class Soak:
             time.sleep(COMMAND_SECONDS)
 
     def _look(self, passed: float) -> None:
-        for each in self._watched:
-            if each.process.poll() is not None:
-                said = each.errors.read_text()[-2000:]
-                raise SystemExit(f"{said}\n{each.name} ended with {each.process.returncode} after {passed:.0f} s")
+        for watched in self._watched:
+            if watched.process.poll() is not None:
+                said = watched.errors.read_text()[-2000:]
+                raise SystemExit(f"{said}\n{watched.name} ended with {watched.process.returncode} after {passed:.0f} s")
         if sys.stderr.isatty():
             listener = self._of("listener")
             text = f"{passed:6.0f} s, {listener.seen('/soak/rate_1000')} messages, {listener.seen('lost')} lost"
             print(f"\r{text}, {self._kills} kills, {len(self.faults)} faults", end="", file=sys.stderr)
 
     def _of(self, name: str) -> Watched:
-        return next(each for each in self._watched if each.name == name)
+        return next(watched for watched in self._watched if watched.name == name)
 
     def _judge(self) -> None:
         talker, listener = self._of("talker"), self._of("listener")
-        for each in self._watched:
-            for failure in each.told.get("failures", ()):
-                self.faults.append(f"{each.name}: {failure}")
-            growth = _growth(each, self._warm_up)
+        for watched in self._watched:
+            for failure in watched.told.get("failures", ()):
+                self.faults.append(f"{watched.name}: {failure}")
+            growth = _growth(watched, self._warm_up)
             if growth is not None:
-                self._judge_growth(each, growth)
+                self._judge_growth(watched, growth)
         for name, count in talker.told.get("seen", {}).items():
             if listener.seen(name) != count:
                 self.faults.append(f"of {count} messages of {name} the last that came was {listener.seen(name)}")
@@ -277,24 +277,27 @@ class Soak:
             if not self._of(name).seen(what):
                 self.faults.append(f"{name} has no {what}")
 
-    def _judge_growth(self, each: Watched, growth: Growth) -> None:
+    def _judge_growth(self, watched: Watched, growth: Growth) -> None:
         if growth.megabytes > max(GROWTH_MB, GROWTH_SHARE * growth.last_megabytes):
-            self.faults.append(f"{each.name}: memory grew by {growth.megabytes:.1f} MB")
+            self.faults.append(f"{watched.name}: memory grew by {growth.megabytes:.1f} MB")
         if growth.threads > SPREAD:
-            self.faults.append(f"{each.name}: {growth.threads:g} threads more")
+            self.faults.append(f"{watched.name}: {growth.threads:g} threads more")
         if growth.descriptors > SPREAD:
-            self.faults.append(f"{each.name}: {growth.descriptors:g} file descriptors more")
+            self.faults.append(f"{watched.name}: {growth.descriptors:g} file descriptors more")
 
     def _print(self) -> None:
         print(f"{'process':10} {'memory':>9} {'growth':>9} {'slope':>11} {'threads':>9} {'files':>8}  seen")
-        for each in self._watched:
-            growth = _growth(each, self._warm_up)
+        for watched in self._watched:
+            growth = _growth(watched, self._warm_up)
             if growth is None:
-                print(f"{each.name:10} too short a run to tell")
+                print(f"{watched.name:10} too short a run to tell")
                 continue
-            seen = ", ".join(f"{name.rpartition('/')[2]} {count}" for name, count in each.told.get("seen", {}).items())
+            seen = ", ".join(
+                f"{name.rpartition('/')[2]} {count}" for name, count in watched.told.get("seen", {}).items()
+            )
             print(
-                f"{each.name:10} {growth.last_megabytes:6.1f} MB {growth.megabytes:+6.2f} MB {growth.slope:+6.2f} MB/h "
+                f"{watched.name:10} {growth.last_megabytes:6.1f} MB {growth.megabytes:+6.2f} MB "
+                f"{growth.slope:+6.2f} MB/h "
                 f"{growth.last_threads:4.0f}{growth.threads:+5.0f} "
                 f"{growth.last_descriptors:4.0f}{growth.descriptors:+4.0f}  {seen}"
             )
@@ -320,7 +323,7 @@ class Growth:
 
 
 def _growth(watched: Watched, warm_up: float) -> Growth | None:
-    samples = [each for each in watched.samples if each[0] >= warm_up]
+    samples = [sample for sample in watched.samples if sample[0] >= warm_up]
     share = len(samples) // 5
     if share < 2:
         return None

@@ -39,10 +39,10 @@ def complete(listed: str) -> str:
     others = [component for component in components if component is not root]
     bill["components"] = sorted([*others, *page], key=_reference)
     bill["metadata"]["component"] = {**root, "type": "application"}
-    (depending,) = [each for each in bill["dependencies"] if each["ref"] == root["bom-ref"]]
+    (depending,) = [entry for entry in bill["dependencies"] if entry["ref"] == root["bom-ref"]]
     depending["dependsOn"] = sorted({*depending.get("dependsOn", ()), *map(_reference, page)})
     bill["dependencies"] = sorted(
-        [*bill["dependencies"], *({"ref": _reference(each)} for each in page)], key=_reference
+        [*bill["dependencies"], *({"ref": _reference(entry)} for entry in page)], key=_reference
     )
     return json.dumps(bill, indent=2, ensure_ascii=False) + "\n"
 
@@ -64,9 +64,9 @@ def check(path: Path) -> list[str]:
     return [component["name"] for component in bill["components"] if not component.get("licenses")]
 
 
-def _reference(each: dict[str, Any]) -> str:
+def _reference(entry: dict[str, Any]) -> str:
     """Return the name of a component, or of a dependency of a component, in the bill."""
-    return str(each.get("bom-ref") or each["ref"])
+    return str(entry.get("bom-ref") or entry["ref"])
 
 
 def _npm_component(name: str, package: dict[str, str]) -> dict[str, Any]:

@@ -93,7 +93,7 @@ class Source:
 
     def _rule(self, node: ast.ClassDef, place: str) -> None:
         """Record the title of a rule, which is a class with a code."""
-        given = {ast.unparse(each.targets[0]) for each in node.body if isinstance(each, ast.Assign)}
+        given = {ast.unparse(statement.targets[0]) for statement in node.body if isinstance(statement, ast.Assign)}
         if "code" in given:
             title = cleandoc(ast.get_docstring(node) or "").partition("\n")[0]
             self.titles.setdefault(title.rstrip("."), place)
@@ -190,7 +190,7 @@ def _formats(template: str) -> set[tuple[str, str | None]]:
 def updated(catalog: Catalog, source: Source) -> Catalog:
     """Return the catalog with the texts of the source: templates in the order of rooms, then titles, then the rest."""
     new = Catalog(catalog.locale, "linkwright", _HEADER.format(catalog.locale.english_name), fuzzy=False)
-    for template in sorted(source.templates.values(), key=lambda each: (each.rooms, each.template)):
+    for template in sorted(source.templates.values(), key=lambda entry: (entry.rooms, entry.template)):
         identity = (template.template, template.several) if template.several else template.template
         before = catalog.get(template.template)
         string = before.string if before is not None else ""
@@ -203,7 +203,7 @@ def updated(catalog: Catalog, source: Source) -> Catalog:
         before = catalog.get(title, TITLES)
         new.add(title, before.string if before is not None else "", context=TITLES)
     kept = [message for message in catalog if message.context in LOOKED_UP]
-    for message in sorted(kept, key=lambda each: (each.context, each.id)):
+    for message in sorted(kept, key=lambda entry: (entry.context, entry.id)):
         new.add(message.id, message.string, context=message.context)
     return new
 

@@ -113,7 +113,7 @@ def _section(parser: argparse.ArgumentParser, help_text: str) -> Iterator[str]:
 def arguments(parser: argparse.ArgumentParser) -> list[argparse.Action]:
     """Return the positional arguments of a command, then its options without ``--help``."""
     listed = [action for action in parser._actions if action.help != argparse.SUPPRESS]
-    listed = [each for each in listed if not isinstance(each, argparse._HelpAction | argparse._SubParsersAction)]
+    listed = [action for action in listed if not isinstance(action, argparse._HelpAction | argparse._SubParsersAction)]
     return [a for a in listed if not a.option_strings] + [a for a in listed if a.option_strings]
 
 

@@ -92,14 +92,14 @@ def make(browser: Browser, step: Step, row: dict[str, Any], workspace: Path) -> 
             image = step.lesson.folder / "images" / f"{step.id}.webp"
             image.parent.mkdir(exist_ok=True)
             make_picture(browser, terminals, row).save(image, quality=80, method=6)
-            for language, each in step.lesson.texts.items():
-                link_picture(each, step, row.get(language))
+            for language, lesson_text in step.lesson.texts.items():
+                link_picture(lesson_text, step, row.get(language))
             print(image, image.stat().st_size)
         if "output" in row:
             with closing(Terminals(workspace)) as more:
                 text = output(more, row)
-            for each in step.lesson.texts.values():
-                write_output(each, step, text)
+            for lesson_text in step.lesson.texts.values():
+                write_output(lesson_text, step, text)
             print(step.address, text, sep="\n")
 
 
@@ -193,7 +193,7 @@ def link_picture(text: LessonText, step: Step, description: str | None) -> None:
     """Insert the picture of a step into a text, below the section on what the learner should see."""
     content = text.path.read_text(encoding="utf-8")
     start, end = section_of(text, step, content)
-    title = description or next(each.title for each in text.steps if each.id == step.id)
+    title = description or next(step_text.title for step_text in text.steps if step_text.id == step.id)
     picture = f"![{title}](images/{step.id}.webp)"
     section = re.sub(rf"\n!\[[^\]]*\]\(images/{step.id}\.webp\)\n", "", content[start:end]).rstrip() + "\n"
     text.path.write_text(f"{content[:start]}{section}\n{picture}\n{content[end:]}", encoding="utf-8")

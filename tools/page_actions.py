@@ -139,13 +139,13 @@ def act(page: Page, terminals: Terminals, action: str) -> None:
             page.keyboard.press("Enter")
         case "set":
             panel, *values = shlex.split(text)
-            for name, _, value in (each.partition("=") for each in values):
+            for name, _, value in (pair.partition("=") for pair in values):
                 _write(_row(page, panel, name), value)
         case "view":
             kind, *values = shlex.split(text)
             page.get_by_role("tabpanel", name="Views").get_by_label("Type", exact=True).select_option(label=kind)
             act(page, terminals, f"until lw.view.type === '{kind}'")
-            for name, _, value in (each.partition("=") for each in values):
+            for name, _, value in (pair.partition("=") for pair in values):
                 _write(_row(page, "Views", name), value)
         case "click":
             page.get_by_text(text, exact=True).first.click(timeout=PATIENCE)
@@ -154,7 +154,7 @@ def act(page: Page, terminals: Terminals, action: str) -> None:
         case "key":
             page.keyboard.press(text)
         case "point" | "drag":
-            _use_mouse(page, [float(each) for each in text.split()])
+            _use_mouse(page, [float(number) for number in text.split()])
         case _:
             raise SystemExit(f"there is no action '{verb}'")
 

@@ -171,8 +171,10 @@ def extras(chinese: bool) -> str:
     apart = "；不在 `all` 里" if chinese else "; not in `all`"
     for name, extra in EXTRAS.items():
         purpose = (extra.chinese if chinese else extra.english) + ("" if name in together else apart)
-        brought = dict.fromkeys(each.name for each in _required(name) if each.name != PROJECT["name"])
-        own = [f"`{other}`" for each in _required(name) for other in sorted(each.extras)]
+        brought = dict.fromkeys(
+            requirement.name for requirement in _required(name) if requirement.name != PROJECT["name"]
+        )
+        own = [f"`{other}`" for requirement in _required(name) for other in sorted(requirement.extras)]
         rows.append(f"| `{name}` | {purpose} | {('、' if chinese else ', ').join([*own, *brought])} |")
     return "\n".join(rows)
 

@@ -47,7 +47,7 @@ def targets(paths: Iterable[Path]) -> list[Path]:
 
 def survey_of(path: Path, start: Iterable[Path]) -> list[Diagnostic]:
     """Return the findings about a description or package, which may use the packages below the folders."""
-    finder = PackageFinder(start=[path.absolute().parent, *(each.absolute() for each in start)])
+    finder = PackageFinder(start=[path.absolute().parent, *(folder.absolute() for folder in start)])
     if path.is_dir():
         return list(examine_package(path, Settings(), finder).diagnostics)
     return list(examine(path, packages=finder, settings=Settings()).diagnostics)
@@ -72,9 +72,11 @@ def print_table(found: dict[Path, list[Diagnostic]]) -> None:
 def print_sample(found: dict[Path, list[Diagnostic]], code: str) -> None:
     """Print findings of a code, one of each robot before the second of any robot."""
     mine = [[diagnostic for diagnostic in diagnostics if diagnostic.code == code] for diagnostics in found.values()]
-    picked = [each[turn] for turn in range(_SAMPLE) for each in mine if len(each) > turn]
-    for each in picked[:_SAMPLE]:
-        print(f"{each.severity.value}[{each.code}] {each.span or '-'}: {each.message} ({each.hint or '-'})")
+    picked = [findings[turn] for turn in range(_SAMPLE) for findings in mine if len(findings) > turn]
+    for finding in picked[:_SAMPLE]:
+        print(
+            f"{finding.severity.value}[{finding.code}] {finding.span or '-'}: {finding.message} ({finding.hint or '-'})"
+        )
 
 
 if __name__ == "__main__":

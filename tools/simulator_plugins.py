@@ -92,7 +92,7 @@ def table() -> str:
     lines = []
     for library, about in sorted(texts["libraries"].items()):
         entry: dict[str, Any] = {"about": about, "class": _class_of(library, texts)}
-        parameters = ",\n".join("   " + json.dumps(each, ensure_ascii=False) for each in _parameters(library, texts))
+        parameters = ",\n".join("   " + json.dumps(entry, ensure_ascii=False) for entry in _parameters(library, texts))
         inside = f'{json.dumps(entry, ensure_ascii=False)[:-1]}, "parameters": [\n{parameters}\n  ]}}'
         lines.append(f" {json.dumps(library)}: {inside}")
     return "{\n" + ",\n".join(lines) + "\n}\n"

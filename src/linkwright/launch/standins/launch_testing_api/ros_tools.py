@@ -27,7 +27,7 @@ _STOP_TIMEOUT_SECONDS = 5.0
 
 
 class LaunchTestRunner(_LaunchTestRunner):
-    """A runner that runs launches and the tests of each launch."""
+    """A runner of launches and the tests of each launch."""
 
 
 class WaitForTopics:

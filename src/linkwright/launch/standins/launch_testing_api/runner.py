@@ -141,7 +141,7 @@ class _RunnerWorker:
 
 
 class LaunchTestRunner:
-    """A runner that runs several launches and the tests of each launch.
+    """A runner of several launches and the tests of each launch.
 
     Args:
         test_runs: the tests of each launch.
