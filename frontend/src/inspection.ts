@@ -5,8 +5,8 @@ import type { FramePose } from "./state/frames";
 import type { SelectedItem } from "./state/selection";
 import type { Session } from "./state/session";
 import type { Camera } from "./state/views/camera";
-import { shortName } from "./state/views/catalog";
-import { number, vector } from "./state/views/view-controller";
+import { shortNameOf } from "./state/views/catalog";
+import { number, readVector } from "./state/views/view-controller";
 
 /**
  * The value of `window.linkwright`, for tests and curious users; each property is a copy made at the time of reading.
@@ -121,9 +121,9 @@ export function publishInspection(
     },
     get view(): Inspection["view"] {
       const { current, values, camera, savedViews } = session.view;
-      const [x, y, z] = vector(values, "Focal Point", [0, 0, 0]);
+      const [x, y, z] = readVector(values, "Focal Point", [0, 0, 0]);
       return {
-        type: shortName(current.cls),
+        type: shortNameOf(current.cls),
         yaw: number(values, "Yaw", 0),
         pitch: number(values, "Pitch", 0),
         distance: number(values, "Distance", 0),

@@ -16,7 +16,7 @@ export function takeRequested(setting: RequestedSetting, location: Location | un
 }
 
 /** Returns the address of a page with requested settings. */
-export function withSettings(href: string, settings: Readonly<Record<RequestedSetting, string>>): string {
+export function addSettings(href: string, settings: Readonly<Record<RequestedSetting, string>>): string {
   const address = new URL(href);
   for (const [name, value] of Object.entries(settings)) address.searchParams.set(name, value);
   return address.href;

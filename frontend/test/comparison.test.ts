@@ -2,22 +2,27 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { ComparedDescriptions, ComparedItem } from "../src/protocol";
 import { shortenPlace } from "../src/panels/place";
-import { ComparisonState, groupDifferences, MARK_COLORS, usedMarks } from "../src/state/comparison";
+import { ComparisonState, groupDifferences, MARK_COLORS, listUsedMarks } from "../src/state/comparison";
 
-function item(part: Partial<ComparedItem> = {}): ComparedItem {
+function createItem(part: Partial<ComparedItem> = {}): ComparedItem {
   return {
     subject: "link", name: "arm", kind: "changed", property: "mass", old: "1", new: "2", unit: "kg",
     element: "arm", element_kind: "link", in_old: false, old_place: null, new_place: null, ...part,
   };
 }
 
-const TOLD: ComparedDescriptions & { type: "compared_descriptions" } = {
+const COMPARED: ComparedDescriptions & { type: "compared_descriptions" } = {
   type: "compared_descriptions",
   old: { display: "display-2", label: "old.urdf", marks: { camera: "removed" } },
   new: { display: "display-1", label: "new.urdf", marks: { arm: "changed" } },
   joints: {},
   shapes: { arm: "arm" },
-  items: [item(), item({ property: "origin xyz" }), item({ subject: "joint" }), item({ name: "camera", kind: "removed", property: "", element: "camera", in_old: true })],
+  items: [
+    createItem(),
+    createItem({ property: "origin xyz" }),
+    createItem({ subject: "joint" }),
+    createItem({ name: "camera", kind: "removed", property: "", element: "camera", in_old: true }),
+  ],
 };
 
 describe("sources of descriptions", () => {
@@ -39,15 +44,15 @@ describe("two descriptions in one scene", () => {
   beforeEach(() => {
     connection = new Connection("ws://localhost/ws");
     comparison = new ComparisonState(connection);
-    connection.message.emit(TOLD);
+    connection.message.emit(COMPARED);
   });
 
   it("draws the old robot in one color, behind the new one, and removed links more opaque in a color of their own", () => {
-    const ghost = comparison.overrideOf("display-2", "arm");
-    const gone = comparison.overrideOf("display-2", "camera");
-    expect(ghost).toMatchObject({ isBehind: true, isOpaque: false });
-    expect(gone).toMatchObject({ isBehind: true, isOpaque: true });
-    expect(gone?.color.map((part) => Math.round(part * 255))).toEqual([0xcc, 0x33, 0x77]);
+    const oldLink = comparison.overrideOf("display-2", "arm");
+    const removedLink = comparison.overrideOf("display-2", "camera");
+    expect(oldLink).toMatchObject({ isBehind: true, isOpaque: false });
+    expect(removedLink).toMatchObject({ isBehind: true, isOpaque: true });
+    expect(removedLink?.color.map((part) => Math.round(part * 255))).toEqual([0xcc, 0x33, 0x77]);
     expect(comparison.isOld("display-2")).toBe(true);
   });
 
@@ -55,19 +60,19 @@ describe("two descriptions in one scene", () => {
     expect(comparison.overrideOf("display-1", "arm")?.isBehind).toBeUndefined();
     expect(comparison.overrideOf("display-1", "base")).toBeNull();
     expect(comparison.overrideOf("display-7", "arm")).toBeNull();
-    const changed = vi.fn();
-    comparison.changed.on(changed);
-    comparison.marks = false;
-    expect(changed).toHaveBeenCalledTimes(1);
+    const onChanged = vi.fn();
+    comparison.changed.on(onChanged);
+    comparison.areMarksShown = false;
+    expect(onChanged).toHaveBeenCalledTimes(1);
     expect(comparison.overrideOf("display-1", "arm")).toBeNull();
     expect(comparison.overrideOf("display-2", "camera")).toEqual(comparison.overrideOf("display-2", "arm"));
   });
 
   it("names the link or joint that shows a difference, in the robot that has it", () => {
-    const [arm, , , camera] = TOLD.items;
+    const [arm, , , camera] = COMPARED.items;
     expect(arm && comparison.elementOf(arm)).toEqual({ display: "display-1", kind: "link", name: "arm" });
     expect(camera && comparison.elementOf(camera)).toEqual({ display: "display-2", kind: "link", name: "camera" });
-    expect(comparison.elementOf(item({ element: "" }))).toBeNull();
+    expect(comparison.elementOf(createItem({ element: "" }))).toBeNull();
   });
 
   it("has no legend for a program that did not announce itself", () => {
@@ -78,32 +83,32 @@ describe("two descriptions in one scene", () => {
   });
 
   it("groups the differences of one element, and lists only kinds that occur in the legend", () => {
-    const groups = groupDifferences(TOLD.items);
+    const groups = groupDifferences(COMPARED.items);
     expect(groups.map(({ items, kind }) => [items.length, kind])).toEqual([[2, "changed"], [1, "changed"], [1, "removed"]]);
-    expect(usedMarks([TOLD.new, TOLD.old])).toEqual(["changed", "removed", "old"]);
+    expect(listUsedMarks([COMPARED.new, COMPARED.old])).toEqual(["changed", "removed", "old"]);
   });
 });
 
 /** Machado, Oliveira and Fernandes (2009), severity 1: how people without one type of cone see linear colors. */
-const SIGHT: Readonly<Record<string, readonly (readonly number[])[]>> = {
+const CONE_MATRICES: Readonly<Record<string, readonly (readonly number[])[]>> = {
   all: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
   "no red": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
   "no green": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
   "no blue": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.3039]],
 };
 
-function times(matrix: readonly (readonly number[])[], vector: readonly number[]): number[] {
-  return matrix.map((row) => row.reduce((sum, each, i) => sum + each * (vector[i] ?? 0), 0));
+function multiply(matrix: readonly (readonly number[])[], vector: readonly number[]): number[] {
+  return matrix.map((row) => row.reduce((sum, value, i) => sum + value * (vector[i] ?? 0), 0));
 }
 
 /** Returns CIE L*a*b* of a color as seen with a color vision deficiency. */
-function lab(hex: string, sight: readonly (readonly number[])[]): number[] {
-  const linear = [1, 3, 5].map((from) => {
-    const part = parseInt(hex.slice(from, from + 2), 16) / 255;
+function toLab(hex: string, coneMatrix: readonly (readonly number[])[]): number[] {
+  const linear = [1, 3, 5].map((start) => {
+    const part = parseInt(hex.slice(start, start + 2), 16) / 255;
     return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
   });
-  const seen = times(sight, linear).map((part) => Math.min(1, Math.max(0, part)));
-  const xyz = times([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]], seen);
+  const perceived = multiply(coneMatrix, linear).map((part) => Math.min(1, Math.max(0, part)));
+  const xyz = multiply([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]], perceived);
   const [x = 0, y = 0, z = 0] = [0.9505, 1, 1.089].map((white, i) => {
     const ratio = (xyz[i] ?? 0) / white;
     return ratio > 0.008856 ? Math.cbrt(ratio) : 7.787 * ratio + 16 / 116;
@@ -111,12 +116,12 @@ function lab(hex: string, sight: readonly (readonly number[])[]): number[] {
   return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
 }
 
-describe.each(Object.entries(SIGHT))("to eyes with cones: %s", (_, sight) => {
+describe.each(Object.entries(CONE_MATRICES))("to eyes with cones: %s", (_, coneMatrix) => {
   const colors = Object.entries(MARK_COLORS);
-  const pairs = colors.flatMap(([one, a], i) => colors.slice(i + 1).map(([other, b]) => [one, other, a, b] as const));
+  const pairs = colors.flatMap(([firstName, a], i) => colors.slice(i + 1).map(([secondName, b]) => [firstName, secondName, a, b] as const));
 
-  it.each(pairs)("%s and %s differ (CIE76, 25; 2.3 is just seen)", (_one, _other, a, b) => {
-    const [first, second] = [lab(a, sight), lab(b, sight)];
-    expect(Math.hypot(...first.map((each, i) => each - (second[i] ?? 0)))).toBeGreaterThan(25);
+  it.each(pairs)("%s and %s differ (CIE76, 25; 2.3 is just seen)", (_firstName, _secondName, a, b) => {
+    const [firstLab, secondLab] = [toLab(a, coneMatrix), toLab(b, coneMatrix)];
+    expect(Math.hypot(...firstLab.map((value, i) => value - (secondLab[i] ?? 0)))).toBeGreaterThan(25);
   });
 });

@@ -3,26 +3,26 @@ import { Connection, createSocketUrl } from "../src/connection/connection";
 import { extractToken, Tokens, type AddressBar } from "../src/connection/tokens";
 import { PROTOCOL_VERSION } from "../src/protocol";
 import type { BrowserStorage } from "../src/storage";
-import { packed } from "./messages";
+import { packTransforms } from "./messages";
 
 class FakeSocket {
   static readonly OPEN = 1;
-  static made: FakeSocket[] = [];
+  static instances: FakeSocket[] = [];
   readyState = 1;
-  sent: string[] = [];
+  sentTexts: string[] = [];
   onmessage: ((event: { data: string | ArrayBuffer }) => void) | null = null;
   onclose: ((event: { code: number }) => void) | null = null;
 
   constructor(readonly url: string) {
-    FakeSocket.made.push(this);
+    FakeSocket.instances.push(this);
   }
   send(text: string): void {
-    this.sent.push(text);
+    this.sentTexts.push(text);
   }
   close(): void {
     this.onclose?.({ code: 1000 });
   }
-  hello(protocol = PROTOCOL_VERSION): void {
+  receiveHello(protocol = PROTOCOL_VERSION): void {
     this.onmessage?.({ data: JSON.stringify({ type: "hello", protocol, version: "1", title: "", run: "1" }) });
   }
 }
@@ -32,7 +32,7 @@ const storage = new Map<string, string>();
 
 beforeEach(() => {
   vi.useFakeTimers();
-  FakeSocket.made = [];
+  FakeSocket.instances = [];
   reload.mockClear();
   storage.clear();
   vi.stubGlobal("WebSocket", FakeSocket);
@@ -48,20 +48,20 @@ afterEach(() => {
   vi.unstubAllGlobals();
 });
 
-function opened(): { connection: Connection; socket: FakeSocket } {
+function openConnection(): { connection: Connection; socket: FakeSocket } {
   const connection = new Connection("ws://127.0.0.1/ws");
   connection.open();
-  return { connection, socket: FakeSocket.made[0]! };
+  return { connection, socket: FakeSocket.instances[0]! };
 }
 
-function page(href: string, stored?: string, isPersistent = true): { tokens: Tokens; storage: BrowserStorage; address: AddressBar } {
+function createPage(href: string, storedToken?: string, isPersistent = true): { tokens: Tokens; storage: BrowserStorage; address: AddressBar } {
   const address = {
     href,
     moveTo(next: string) {
       address.href = next;
     },
   };
-  const texts = new Map(stored === undefined ? [] : [["linkwright.token", stored]]);
+  const texts = new Map(storedToken === undefined ? [] : [["linkwright.token", storedToken]]);
   const storage = {
     isPersistent,
     getItem: (key: string) => texts.get(key) ?? null,
@@ -73,7 +73,7 @@ function page(href: string, stored?: string, isPersistent = true): { tokens: Tok
 
 describe("the token", () => {
   it("moves from the address to the browser's storage only after the server has accepted it", () => {
-    const { tokens, storage, address } = page("http://localhost:7447/?token=abc&displays=own#x");
+    const { tokens, storage, address } = createPage("http://localhost:7447/?token=abc&displays=own#x");
     expect(tokens.current).toBe("abc");
     expect(storage.getItem("linkwright.token")).toBeNull();
     tokens.accept("abc");
@@ -83,13 +83,13 @@ describe("the token", () => {
   });
 
   it("stays in the address if the browser stores nothing", () => {
-    const { tokens, address } = page("http://localhost:7447/?token=abc", undefined, false);
+    const { tokens, address } = createPage("http://localhost:7447/?token=abc", undefined, false);
     tokens.accept("abc");
     expect(address.href).toBe("http://localhost:7447/?token=abc");
   });
 
   it("in the address has priority, and an outdated one in the address does not delete the stored one", () => {
-    const { tokens, storage } = page("http://localhost:7447/?token=old", "good");
+    const { tokens, storage } = createPage("http://localhost:7447/?token=old", "good");
     expect(tokens.current).toBe("old");
     expect(tokens.refuse()).toBe(true);
     expect(tokens.current).toBe("good");
@@ -111,97 +111,97 @@ describe("the token", () => {
 
 describe("the connection", () => {
   it("is connected after the handshake and passes on both kinds of messages", () => {
-    const { connection, socket } = opened();
-    const [message, transforms] = [vi.fn(), vi.fn()];
-    connection.message.on(message);
-    connection.transforms.on(transforms);
+    const { connection, socket } = openConnection();
+    const [onMessage, onTransforms] = [vi.fn(), vi.fn()];
+    connection.message.on(onMessage);
+    connection.transforms.on(onTransforms);
     expect(connection.state).toBe("connecting");
-    socket.hello();
-    socket.onmessage?.({ data: packed(1, [[0, 0, 0, 0, 0, 0, 1]], [0]) });
+    socket.receiveHello();
+    socket.onmessage?.({ data: packTransforms(1, [[0, 0, 0, 0, 0, 0, 1]], [0]) });
     expect(connection.state).toBe("connected");
-    expect(message).toHaveBeenCalledOnce();
-    expect(transforms).toHaveBeenCalledOnce();
+    expect(onMessage).toHaveBeenCalledOnce();
+    expect(onTransforms).toHaveBeenCalledOnce();
   });
 
   it("acknowledges the handshake and large messages", () => {
-    const { socket } = opened();
-    socket.hello();
-    socket.onmessage?.({ data: packed(1, [[0, 0, 0, 0, 0, 0, 1]], [0]) });
+    const { socket } = openConnection();
+    socket.receiveHello();
+    socket.onmessage?.({ data: packTransforms(1, [[0, 0, 0, 0, 0, 0, 1]], [0]) });
     socket.onmessage?.({ data: JSON.stringify({ type: "hello", protocol: PROTOCOL_VERSION, version: "1", title: "x".repeat(2000), run: "1" }) });
-    const counts = socket.sent.map((text) => JSON.parse(text) as unknown);
+    const counts = socket.sentTexts.map((text) => JSON.parse(text) as unknown);
     expect(counts).toEqual([{ type: "received", count: 1 }, { type: "received", count: 3 }]);
   });
 
   it("reconnects with growing delays", () => {
-    const { connection, socket } = opened();
-    socket.hello();
+    const { connection, socket } = openConnection();
+    socket.receiveHello();
     socket.onclose?.({ code: 1006 });
     expect(connection.state).toBe("reconnecting");
     vi.advanceTimersByTime(250);
-    expect(FakeSocket.made).toHaveLength(2);
-    FakeSocket.made[1]!.onclose?.({ code: 1006 });
+    expect(FakeSocket.instances).toHaveLength(2);
+    FakeSocket.instances[1]!.onclose?.({ code: 1006 });
     vi.advanceTimersByTime(250);
-    expect(FakeSocket.made).toHaveLength(2);
+    expect(FakeSocket.instances).toHaveLength(2);
     vi.advanceTimersByTime(200);
-    expect(FakeSocket.made).toHaveLength(3);
-    FakeSocket.made[2]!.hello();
+    expect(FakeSocket.instances).toHaveLength(3);
+    FakeSocket.instances[2]!.receiveHello();
     expect(connection.state).toBe("connected");
   });
 
   it("distinguishes a server that has ended from a broken connection", () => {
-    const { connection, socket } = opened();
-    socket.hello();
+    const { connection, socket } = openConnection();
+    socket.receiveHello();
     socket.onclose?.({ code: 1001 });
     expect(connection.state).toBe("ended");
   });
 
   it("reports a program that does not know the page's token", async () => {
-    const asked = vi.fn<(page: URL) => Promise<{ status: number }>>(() => Promise.resolve({ status: 401 }));
-    vi.stubGlobal("fetch", asked);
-    const { connection, socket } = opened();
-    socket.hello();
+    const fetchPage = vi.fn<(createPage: URL) => Promise<{ status: number }>>(() => Promise.resolve({ status: 401 }));
+    vi.stubGlobal("fetch", fetchPage);
+    const { connection, socket } = openConnection();
+    socket.receiveHello();
     socket.onclose?.({ code: 1001 });
     await vi.advanceTimersByTimeAsync(250);
-    Object.assign(FakeSocket.made[1]!, { readyState: 3 }).onclose?.({ code: 1006 });
+    Object.assign(FakeSocket.instances[1]!, { readyState: 3 }).onclose?.({ code: 1006 });
     await vi.advanceTimersByTimeAsync(0);
-    expect(asked.mock.calls[0]?.[0].href).toBe("http://127.0.0.1/ws");
+    expect(fetchPage.mock.calls[0]?.[0].href).toBe("http://127.0.0.1/ws");
     expect(connection.state).toBe("refused");
   });
 
   it("tries all known tokens before it reports a refusal, and keeps trying", async () => {
     vi.stubGlobal("fetch", () => Promise.resolve({ status: 401 }));
-    const { tokens, storage } = page("http://127.0.0.1/?token=new", "old");
+    const { tokens, storage } = createPage("http://127.0.0.1/?token=new", "old");
     const connection = new Connection("ws://127.0.0.1/ws", tokens);
-    const isRefused = async (): Promise<void> => {
-      Object.assign(FakeSocket.made.at(-1)!, { readyState: 3 }).onclose?.({ code: 1006 });
+    const refuse = async (): Promise<void> => {
+      Object.assign(FakeSocket.instances.at(-1)!, { readyState: 3 }).onclose?.({ code: 1006 });
       await vi.advanceTimersByTimeAsync(0);
     };
     connection.open();
-    await isRefused();
+    await refuse();
     expect(connection.state).toBe("connecting");
     await vi.advanceTimersByTimeAsync(250);
-    await isRefused();
+    await refuse();
     expect(connection.state).toBe("refused");
     storage.setItem("linkwright.token", "of-another-tab");
     for (let time = 0; time < 3; time += 1) {
       await vi.advanceTimersByTimeAsync(4000);
-      await isRefused();
+      await refuse();
     }
-    const shown = FakeSocket.made.map(({ url }) => new URL(url).searchParams.get("token"));
-    expect(shown.slice(0, 2)).toEqual(["new", "old"]);
-    expect(shown).toContain("of-another-tab");
+    const sentTokens = FakeSocket.instances.map(({ url }) => new URL(url).searchParams.get("token"));
+    expect(sentTokens.slice(0, 2)).toEqual(["new", "old"]);
+    expect(sentTokens).toContain("of-another-tab");
   });
 
   it("does not connect without a token until another page of the browser has one", () => {
-    const { tokens, storage } = page("http://127.0.0.1/");
+    const { tokens, storage } = createPage("http://127.0.0.1/");
     const connection = new Connection("ws://127.0.0.1/ws", tokens);
     connection.open();
     expect(connection.state).toBe("refused");
-    expect(FakeSocket.made).toEqual([]);
+    expect(FakeSocket.instances).toEqual([]);
     storage.setItem("linkwright.token", "abc");
     vi.advanceTimersByTime(250);
-    expect(FakeSocket.made[0]?.url).toBe("ws://127.0.0.1/ws?token=abc");
-    FakeSocket.made[0]!.hello();
+    expect(FakeSocket.instances[0]?.url).toBe("ws://127.0.0.1/ws?token=abc");
+    FakeSocket.instances[0]!.receiveHello();
     expect(connection.state).toBe("connected");
   });
 
@@ -209,81 +209,81 @@ describe("the connection", () => {
     const token = "a".repeat(32);
 
     /** A page that was connected and lost its server; returns what it asks the server that answers with `answer`. */
-    async function comingBack(answer: (nonce: string) => Promise<string>) {
-      const asked: string[] = [];
+    async function returnToPage(answer: (nonce: string) => Promise<string>) {
+      const requestedUrls: string[] = [];
       vi.stubGlobal("fetch", async (url: URL) => {
-        asked.push(url.href);
+        requestedUrls.push(url.href);
         const text = await answer(url.searchParams.get("nonce") ?? "");
         return { status: 200, text: () => Promise.resolve(text) };
       });
-      const { tokens } = page(`http://127.0.0.1/?token=${token}`);
+      const { tokens } = createPage(`http://127.0.0.1/?token=${token}`);
       const connection = new Connection("ws://127.0.0.1/ws", tokens);
       connection.open();
-      FakeSocket.made[0]!.hello();
-      FakeSocket.made[0]!.onclose?.({ code: 1001 });
+      FakeSocket.instances[0]!.receiveHello();
+      FakeSocket.instances[0]!.onclose?.({ code: 1001 });
       await vi.advanceTimersByTimeAsync(250);
-      await vi.waitFor(() => expect(asked).not.toEqual([]));
-      return { connection, asked };
+      await vi.waitFor(() => expect(requestedUrls).not.toEqual([]));
+      return { connection, asked: requestedUrls };
     }
 
     async function proofOf(nonce: string): Promise<string> {
       const [text, { subtle }] = [new TextEncoder(), crypto];
       const key = await subtle.importKey("raw", text.encode(token), { name: "HMAC", hash: "SHA-256" }, false, ["sign"]);
-      const made = new Uint8Array(await subtle.sign("HMAC", key, text.encode(nonce)));
-      return Array.from(made, (byte) => byte.toString(16).padStart(2, "0")).join("");
+      const instances = new Uint8Array(await subtle.sign("HMAC", key, text.encode(nonce)));
+      return Array.from(instances, (byte) => byte.toString(16).padStart(2, "0")).join("");
     }
 
     /** Replaces the browser's digest, which runs in threads: the test's clock does not wait for these, and they would end in the next test. */
-    function computeAtOnce(): void {
+    function stubCrypto(): void {
       const subtle = {
         importKey: (_format: string, key: Uint8Array) => Promise.resolve(key),
-        sign: (_name: string, key: Uint8Array, text: Uint8Array) => Promise.resolve(text.map((byte, at) => byte ^ key[at]!).buffer),
+        sign: (_name: string, key: Uint8Array, text: Uint8Array) => Promise.resolve(text.map((byte, index) => byte ^ key[index]!).buffer),
       };
       const { crypto } = globalThis;
       vi.stubGlobal("crypto", { subtle, getRandomValues: (bytes: Uint8Array<ArrayBuffer>) => crypto.getRandomValues(bytes) });
     }
 
     it("reconnects to a program that proves that it knows the token", async () => {
-      const { connection, asked } = await comingBack(proofOf);
-      await vi.waitFor(() => expect(FakeSocket.made).toHaveLength(2));
-      FakeSocket.made[1]!.hello();
+      const { connection, asked } = await returnToPage(proofOf);
+      await vi.waitFor(() => expect(FakeSocket.instances).toHaveLength(2));
+      FakeSocket.instances[1]!.receiveHello();
       expect(connection.state).toBe("connected");
       expect(asked[0]).toMatch(/^http:\/\/127\.0\.0\.1\/proof\?nonce=[0-9a-f]{32}$/);
     });
 
     it("never sends the token to another program, and reports that it is another", async () => {
-      computeAtOnce();
+      stubCrypto();
       const answers = ["", "<html>", "0".repeat(64), await proofOf("0".repeat(32))];
       for (const answer of answers) {
-        FakeSocket.made = [];
-        const { connection, asked } = await comingBack(() => Promise.resolve(answer));
+        FakeSocket.instances = [];
+        const { connection, asked } = await returnToPage(() => Promise.resolve(answer));
         await vi.waitFor(() => expect(connection.state).toBe("refused"));
-        expect(FakeSocket.made).toHaveLength(1);
+        expect(FakeSocket.instances).toHaveLength(1);
         expect(asked.join()).not.toContain(token);
       }
     });
 
     it("asks again with a new number while there is no answer, and at once when the page becomes visible", async () => {
-      computeAtOnce();
-      const { connection, asked } = await comingBack(() => Promise.reject(new Error("nobody")));
+      stubCrypto();
+      const { connection, asked } = await returnToPage(() => Promise.reject(new Error("nobody")));
       await vi.advanceTimersByTimeAsync(10_000);
       expect(asked.length).toBeGreaterThan(3);
       expect(connection.state).toBe("ended");
       expect(new Set(asked).size).toBe(asked.length);
-      const before = asked.length;
+      const countBefore = asked.length;
       connection.retryNow();
       await vi.advanceTimersByTimeAsync(0);
-      expect(asked).toHaveLength(before + 1);
+      expect(asked).toHaveLength(countBefore + 1);
     });
   });
 
   it("reloads the page once if the server has another protocol version", () => {
-    const first = opened();
-    first.socket.hello(PROTOCOL_VERSION + 1);
+    const first = openConnection();
+    first.socket.receiveHello(PROTOCOL_VERSION + 1);
     expect(reload).toHaveBeenCalledOnce();
-    FakeSocket.made = [];
-    const second = opened();
-    second.socket.hello(PROTOCOL_VERSION + 1);
+    FakeSocket.instances = [];
+    const second = openConnection();
+    second.socket.receiveHello(PROTOCOL_VERSION + 1);
     expect(reload).toHaveBeenCalledOnce();
     expect(second.connection.state).toBe("outdated");
   });

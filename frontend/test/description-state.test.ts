@@ -8,20 +8,20 @@ import { DescriptionModel } from "../src/state/description-model";
 import { layOut } from "../src/state/diagram-layout";
 import { InspectState } from "../src/state/inspect";
 import { formatJointCells, sortJoints } from "../src/state/joint-table";
-import { visibleRows, LinkTreeState } from "../src/state/link-tree";
+import { listVisibleRows, LinkTreeState } from "../src/state/link-tree";
 import { formatGeneral } from "../src/state/number-text";
 import { Session } from "../src/state/session";
 import { openBrowserStorage } from "../src/storage";
-import { display, robot, tree } from "./messages";
+import { createDisplay, createRobotScene, createTree } from "./messages";
 
 const NOWHERE = { expanded: null, origin: null, calls: [] };
 
-function link(name: string, parent_joint: string | null = null, lines: readonly [number, number] | null = null): LinkDetails {
+function createLink(name: string, parent_joint: string | null = null, lines: readonly [number, number] | null = null): LinkDetails {
   const origin = lines && { file: "m.xacro", line: lines[0], column: 1, end_line: lines[1], end_column: 9 };
   return { name, frame: name, parent_joint, inertia: null, written: { ...NOWHERE, origin } };
 }
 
-function joint(name: string, parent: string, child: string, part: Partial<JointDetails> = {}): JointDetails {
+function createJoint(name: string, parent: string, child: string, part: Partial<JointDetails> = {}): JointDetails {
   return {
     name,
     kind: "revolute",
@@ -47,28 +47,32 @@ function joint(name: string, parent: string, child: string, part: Partial<JointD
   };
 }
 
-function description(part: Partial<Description> = {}): Description {
+function createDescription(part: Partial<Description> = {}): Description {
   return {
     type: "description",
     display: "d1",
     revision: 1,
     name: "arm",
     root: "base",
-    links: [link("base"), link("left", "turn", [3, 6]), link("right", "lift", [3, 6]), link("tip", "fix")],
-    joints: [joint("turn", "base", "left"), joint("lift", "base", "right", { kind: "prismatic" }), joint("fix", "left", "tip", { kind: "fixed" })],
+    links: [createLink("base"), createLink("left", "turn", [3, 6]), createLink("right", "lift", [3, 6]), createLink("tip", "fix")],
+    joints: [
+      createJoint("turn", "base", "left"),
+      createJoint("lift", "base", "right", { kind: "prismatic" }),
+      createJoint("fix", "left", "tip", { kind: "fixed" }),
+    ],
     files: ["m.xacro"],
     ...part,
   };
 }
 
-let sent: PageMessage[];
+let sentMessages: PageMessage[];
 let session: Session;
 
 beforeEach(() => {
-  sent = [];
+  sentMessages = [];
   vi.stubGlobal("window", { setTimeout });
   const connection = new Connection("ws://localhost/ws");
-  vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+  vi.spyOn(connection, "send").mockImplementation((message) => void sentMessages.push(message));
   session = new Session(connection);
 });
 
@@ -76,33 +80,33 @@ function receive(...messages: ServerMessage[]): void {
   for (const message of messages) session.connection.message.emit(message);
 }
 
-function changed(revision: number, links: string[] = [], joints: string[] = []): ServerMessage {
+function createChange(revision: number, links: string[] = [], joints: string[] = []): ServerMessage {
   return { type: "description_changed", display: "d1", revision, links, joints };
 }
 
 describe("the description", () => {
   it("is requested while something uses it, and not again while it is current", () => {
-    receive(changed(1));
-    expect(sent).toEqual([]);
+    receive(createChange(1));
+    expect(sentMessages).toEqual([]);
     const release = session.description.hold();
-    expect(sent).toEqual([{ type: "ask_description", display: "d1" }]);
-    receive(description());
+    expect(sentMessages).toEqual([{ type: "ask_description", display: "d1" }]);
+    receive(createDescription());
     expect(session.description.modelOf("d1")?.links.size).toBe(4);
     release();
     session.description.hold()();
-    expect(sent).toHaveLength(1);
-    receive(changed(2));
-    expect(sent).toHaveLength(1);
+    expect(sentMessages).toHaveLength(1);
+    receive(createChange(2));
+    expect(sentMessages).toHaveLength(1);
     session.description.hold();
-    expect(sent).toHaveLength(2);
-    receive(changed(3));
-    expect(sent).toHaveLength(3);
+    expect(sentMessages).toHaveLength(2);
+    receive(createChange(3));
+    expect(sentMessages).toHaveLength(3);
   });
 
   it("reports what an edit has changed", () => {
     const edits: unknown[] = [];
     session.description.edited.on((change) => edits.push(change));
-    receive(changed(1), changed(2, ["left"], ["turn"]));
+    receive(createChange(1), createChange(2, ["left"], ["turn"]));
     expect(edits).toEqual([{ display: "d1", links: ["left"], joints: ["turn"] }]);
   });
 
@@ -110,20 +114,20 @@ describe("the description", () => {
     const { description: texts } = session;
     expect(texts.textOf("d1", "")).toBeUndefined();
     expect(texts.textOf("d1", "")).toBeUndefined();
-    expect(sent).toHaveLength(1);
+    expect(sentMessages).toHaveLength(1);
     receive({ type: "description_text", display: "d1", revision: 1, file: "", text: "<robot/>" });
     expect(texts.textOf("d1", "")).toBe("<robot/>");
     receive({ type: "diagnostics", items: [] });
     expect(texts.textOf("d1", "")).toBeUndefined();
-    expect(sent).toHaveLength(2);
+    expect(sentMessages).toHaveLength(2);
   });
 });
 
 describe("the element that panels show", () => {
   beforeEach(() => {
-    const scene = robot("d1", "base", "left");
+    const scene = createRobotScene("d1", "base", "left");
     scene.links[1]!.parent_joint = "turn";
-    receive(tree(display({ id: "d1", cls: "rviz_default_plugins/RobotModel" })), scene);
+    receive(createTree(createDisplay({ id: "d1", cls: "rviz_default_plugins/RobotModel" })), scene);
   });
 
   it("is a joint until another link is selected; the scene highlights the link that it moves", () => {
@@ -142,43 +146,43 @@ describe("the element that panels show", () => {
 });
 
 describe("the model", () => {
-  const model = new DescriptionModel(description());
+  const model = new DescriptionModel(createDescription());
 
   it("is a tree with depths and positions in the source", () => {
-    expect(model.jointsBelow("base").map((each) => each.name)).toEqual(["lift", "turn"]);
+    expect(model.jointsBelow("base").map((joint) => joint.name)).toEqual(["lift", "turn"]);
     expect([model.depthOf("base"), model.depthOf("tip"), model.maxDepth]).toEqual([0, 2, 2]);
-    expect(model.elementsAt("m.xacro", 4).map((each) => each.name)).toEqual(["left", "right"]);
+    expect(model.elementsAt("m.xacro", 4).map((element) => element.name)).toEqual(["left", "right"]);
     expect(model.elementsAt("m.xacro", 7)).toEqual([]);
     expect(model.elementsAt("other", 4)).toEqual([]);
   });
 
   it("is listed according to folded links and the search text", () => {
     const state = new LinkTreeState();
-    const names = (search = ""): string[] => visibleRows(model, state, search).map((row) => row.link.name);
-    expect(names()).toEqual(["base", "right", "left", "tip"]);
+    const listNames = (search = ""): string[] => listVisibleRows(model, state, search).map((row) => row.link.name);
+    expect(listNames()).toEqual(["base", "right", "left", "tip"]);
     state.toggle("left");
-    expect(names()).toEqual(["base", "right", "left"]);
-    expect(names("FIX")).toEqual(["base", "left", "tip"]);
-    expect(names("no such")).toEqual([]);
+    expect(listNames()).toEqual(["base", "right", "left"]);
+    expect(listNames("FIX")).toEqual(["base", "left", "tip"]);
+    expect(listNames("no such")).toEqual([]);
     state.reveal(model, "tip");
-    expect(names()).toHaveLength(4);
+    expect(listNames()).toHaveLength(4);
   });
 
   it("is drawn as urdf_to_graphviz draws it", () => {
     const { nodes } = layOut(model, true, (text) => text.length * 7);
-    const of = (name: string): (typeof nodes)[number] => nodes.find((node) => node.element.name === name)!;
+    const findNode = (name: string): (typeof nodes)[number] => nodes.find((node) => node.element.name === name)!;
     expect(nodes).toHaveLength(7);
-    expect(of("turn").origin).toEqual(["xyz: 0 0 0.5", "rpy: 0 -0 1.5708"]);
-    expect(of("left").parent).toBe(of("turn"));
-    expect(of("turn").parent).toBe(of("base"));
-    expect(of("lift").x).toBeLessThan(of("turn").x);
-    expect(of("base").y).toBeLessThan(of("turn").y);
-    expect(of("turn").y).toBeLessThan(of("left").y);
+    expect(findNode("turn").origin).toEqual(["xyz: 0 0 0.5", "rpy: 0 -0 1.5708"]);
+    expect(findNode("left").parent).toBe(findNode("turn"));
+    expect(findNode("turn").parent).toBe(findNode("base"));
+    expect(findNode("lift").x).toBeLessThan(findNode("turn").x);
+    expect(findNode("base").y).toBeLessThan(findNode("turn").y);
+    expect(findNode("turn").y).toBeLessThan(findNode("left").y);
   });
 
   it("ignores a second joint that moves the same link, as urdfdom does", () => {
-    const both = description({ joints: [joint("a", "base", "left"), joint("turn", "base", "left")] });
-    expect(new DescriptionModel(both).jointsBelow("base").map((each) => each.name)).toEqual(["turn"]);
+    const descriptionWithBoth = createDescription({ joints: [createJoint("a", "base", "left"), createJoint("turn", "base", "left")] });
+    expect(new DescriptionModel(descriptionWithBoth).jointsBelow("base").map((joint) => joint.name)).toEqual(["turn"]);
   });
 });
 
@@ -192,26 +196,31 @@ describe("numbers", () => {
 });
 
 describe("the joint table", () => {
-  const words = {
+  const texts = {
     kinds: { revolute: "revolute", continuous: "", prismatic: "", fixed: "", floating: "", planar: "" },
     table: { damping: (value: string) => `d ${value}`, friction: (value: string) => `f ${value}` },
   };
 
   it("has units, with degrees on request", () => {
     const angles = new AngleUnits(openBrowserStorage());
-    const one = joint("a", "b", "c", { damping: 0.5, mimic: { joint: "m", multiplier: -1, offset: Math.PI / 2 } });
-    expect(formatJointCells(one, angles, words)).toMatchObject({ lower: "-1 rad", effort: "4 N m", dynamics: "d 0.5", mimic: "−m + 1.571 rad" });
+    const joint = createJoint("a", "b", "c", { damping: 0.5, mimic: { joint: "m", multiplier: -1, offset: Math.PI / 2 } });
+    expect(formatJointCells(joint, angles, texts)).toMatchObject({ lower: "-1 rad", effort: "4 N m", dynamics: "d 0.5", mimic: "−m + 1.571 rad" });
     angles.current = "deg";
-    expect(formatJointCells(one, angles, words)).toMatchObject({ upper: "114.6 deg", velocity: "171.9 deg/s", mimic: "−m + 90 deg" });
-    expect(formatJointCells({ ...one, kind: "prismatic" }, angles, words)).toMatchObject({ lower: "-1 m", effort: "4 N" });
+    expect(formatJointCells(joint, angles, texts)).toMatchObject({ upper: "114.6 deg", velocity: "171.9 deg/s", mimic: "−m + 90 deg" });
+    expect(formatJointCells({ ...joint, kind: "prismatic" }, angles, texts)).toMatchObject({ lower: "-1 m", effort: "4 N" });
   });
 
   it("sorts by number or name, with empty values last", () => {
-    const joints = [joint("j10", "b", "c", { upper: null }), joint("j2", "b", "c", { upper: 1 }), joint("j1", "b", "c", { upper: 10 })];
-    const names = (column: "name" | "upper", down = false): string[] => sortJoints(joints, column, down).map((each) => each.name);
-    expect(names("name")).toEqual(["j1", "j2", "j10"]);
-    expect(names("upper")).toEqual(["j2", "j1", "j10"]);
-    expect(names("upper", true)).toEqual(["j1", "j2", "j10"]);
+    const joints = [
+      createJoint("j10", "b", "c", { upper: null }),
+      createJoint("j2", "b", "c", { upper: 1 }),
+      createJoint("j1", "b", "c", { upper: 10 }),
+    ];
+    const listSortedNames = (column: "name" | "upper", isDescending = false): string[] =>
+      sortJoints(joints, column, isDescending).map((joint) => joint.name);
+    expect(listSortedNames("name")).toEqual(["j1", "j2", "j10"]);
+    expect(listSortedNames("upper")).toEqual(["j2", "j1", "j10"]);
+    expect(listSortedNames("upper", true)).toEqual(["j1", "j2", "j10"]);
   });
 });
 
@@ -230,15 +239,15 @@ describe("the switches of invisible properties", () => {
 });
 
 describe("dragging a link", () => {
-  const towards = (from: Vector3, to: Vector3): Ray => new Ray(from, to.clone().sub(from).normalize());
+  const rayBetween = (start: Vector3, end: Vector3): Ray => new Ray(start, end.clone().sub(start).normalize());
   const z = new Vector3(0, 0, 1);
 
   it("rotates it so that the grabbed point stays under the pointer", () => {
     const eye = new Vector3(0, 0, 5);
-    const grabbed = new Vector3(1, 0, 0);
+    const grabbedPoint = new Vector3(1, 0, 0);
     for (const angle of [0.3, -0.7, 1.2]) {
-      const ray = towards(eye, new Vector3(Math.cos(angle), Math.sin(angle), 0));
-      expect(turnTowards(ray, z, new Vector3(), grabbed, 0)).toBeCloseTo(angle, 4);
+      const ray = rayBetween(eye, new Vector3(Math.cos(angle), Math.sin(angle), 0));
+      expect(turnTowards(ray, z, new Vector3(), grabbedPoint, 0)).toBeCloseTo(angle, 4);
     }
   });
 
@@ -246,19 +255,20 @@ describe("dragging a link", () => {
     const eye = new Vector3(0, 0, 5);
     let angle = 0;
     for (let i = 1; i <= 60; i++) {
-      const at = i * 0.2;
-      angle = turnTowards(towards(eye, new Vector3(Math.cos(at), Math.sin(at), 0)), z, new Vector3(), new Vector3(1, 0, 0), angle);
+      const pointerAngle = i * 0.2;
+      const ray = rayBetween(eye, new Vector3(Math.cos(pointerAngle), Math.sin(pointerAngle), 0));
+      angle = turnTowards(ray, z, new Vector3(), new Vector3(1, 0, 0), angle);
     }
     expect(angle).toBeCloseTo(12, 3);
     const side = new Vector3(0, -5, 0);
-    const near = turnTowards(towards(side, new Vector3(0.5, 0, 0)), z, new Vector3(), new Vector3(0, -1, 0), 0);
-    expect(near).toBeGreaterThan(0.3);
-    expect(near).toBeLessThan(0.7);
+    const edgeOnAngle = turnTowards(rayBetween(side, new Vector3(0.5, 0, 0)), z, new Vector3(), new Vector3(0, -1, 0), 0);
+    expect(edgeOnAngle).toBeGreaterThan(0.3);
+    expect(edgeOnAngle).toBeLessThan(0.7);
   });
 
   it("moves it along its axis, and not at all where the pointer does not determine a position", () => {
     const x = new Vector3(1, 0, 0);
-    const ray = towards(new Vector3(0.4, -3, 2), new Vector3(0.4, 0, 0));
+    const ray = rayBetween(new Vector3(0.4, -3, 2), new Vector3(0.4, 0, 0));
     expect(slideTowards(ray, x, new Vector3(0.1, 0, 0))).toBeCloseTo(0.3, 6);
     expect(slideTowards(new Ray(new Vector3(-5, 0, 0.1), x), x, new Vector3())).toBe(0);
   });

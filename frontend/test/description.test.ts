@@ -2,13 +2,13 @@ import { describe, expect, it } from "vitest";
 import { layOutTree, type TreeNode } from "../src/state/tidy-tree";
 import { computeLineStates, tokenize, type LineState } from "../src/state/xml-tokens";
 
-function kinds(line: string, state: LineState = "text"): string[] {
+function formatTokens(line: string, state: LineState = "text"): string[] {
   return tokenize(line, state).tokens.map((token) => `${token.kind}:${token.text}`);
 }
 
 describe("colors of XML", () => {
   it("distinguish tags, attributes, values and expressions", () => {
-    expect(kinds('<link name="${side}_wheel"/>')).toEqual([
+    expect(formatTokens('<link name="${side}_wheel"/>')).toEqual([
       "punctuation:<",
       "tag:link",
       "punctuation: ",
@@ -20,7 +20,7 @@ describe("colors of XML", () => {
       'value:"',
       "punctuation:/>",
     ]);
-    expect(kinds("</xacro:macro> $(arg x)")).toEqual([
+    expect(formatTokens("</xacro:macro> $(arg x)")).toEqual([
       "punctuation:</",
       "tag:xacro:macro",
       "punctuation:>",
@@ -32,7 +32,7 @@ describe("colors of XML", () => {
   it("continue over line ends", () => {
     const lines = ["<a b='1", "2' c", ' = "x>y"', ">t<!-- a <b> -->", "<!-- c", "d --><e/>", "<![CDATA[ <f> ", "]]><?g", "h?>"];
     expect(computeLineStates(lines)).toEqual(["text", "'", "tag", "tag", "text", "comment", "text", "cdata", "instruction"]);
-    expect(kinds("d --><e/>", "comment")).toEqual(["comment:d -->", "punctuation:<", "tag:e", "punctuation:/>"]);
+    expect(formatTokens("d --><e/>", "comment")).toEqual(["comment:d -->", "punctuation:<", "tag:e", "punctuation:/>"]);
   });
 
   it("lose no character of any text", () => {
@@ -48,12 +48,12 @@ describe("colors of XML", () => {
     const text = '<a b="x > y"\nc="1">\n<!-- <x> --> <d e="\n"/>\n<f g=\'a>b\n\'/>';
     const lines = text.split("\n");
     let state: LineState = "text";
-    const slow = lines.map((line) => {
-      const before = state;
+    const expectedStates = lines.map((line) => {
+      const stateBefore = state;
       state = tokenize(line, state).state;
-      return before;
+      return stateBefore;
     });
-    expect(computeLineStates(lines)).toEqual(slow);
+    expect(computeLineStates(lines)).toEqual(expectedStates);
   });
 
   it("are computed quickly for a megabyte", () => {
@@ -65,10 +65,10 @@ describe("colors of XML", () => {
 });
 
 describe("the diagram's layout", () => {
-  const leaf = (id: string, width = 10): TreeNode => ({ id, width, height: 4, children: [] });
+  const createLeaf = (id: string, width = 10): TreeNode => ({ id, width, height: 4, children: [] });
 
   it("centers parents over their children, level by level", () => {
-    const { nodes, width, height } = layOutTree({ ...leaf("a"), children: [leaf("b"), leaf("c")] }, 2, 6);
+    const { nodes, width, height } = layOutTree({ ...createLeaf("a"), children: [createLeaf("b"), createLeaf("c")] }, 2, 6);
     expect(nodes.map(({ node, x, y, parent }) => [node.id, x, y, parent?.node.id])).toEqual([
       ["a", 11, 2, undefined],
       ["b", 5, 12, "a"],
@@ -78,12 +78,12 @@ describe("the diagram's layout", () => {
   });
 
   it("never lets nodes overlap, and packs subtrees below each other", () => {
-    const deep = { ...leaf("b"), children: [{ ...leaf("c"), children: [leaf("d", 60), leaf("e", 60)] }] };
-    const { nodes, width } = layOutTree({ ...leaf("a"), children: [deep, leaf("f"), leaf("g")] }, 2, 6);
-    for (const one of nodes) {
-      for (const other of nodes) {
-        if (one === other || one.y !== other.y) continue;
-        expect(Math.abs(one.x - other.x)).toBeGreaterThanOrEqual((one.node.width + other.node.width) / 2 + 2);
+    const deepNode = { ...createLeaf("b"), children: [{ ...createLeaf("c"), children: [createLeaf("d", 60), createLeaf("e", 60)] }] };
+    const { nodes, width } = layOutTree({ ...createLeaf("a"), children: [deepNode, createLeaf("f"), createLeaf("g")] }, 2, 6);
+    for (const firstNode of nodes) {
+      for (const secondNode of nodes) {
+        if (firstNode === secondNode || firstNode.y !== secondNode.y) continue;
+        expect(Math.abs(firstNode.x - secondNode.x)).toBeGreaterThanOrEqual((firstNode.node.width + secondNode.node.width) / 2 + 2);
       }
     }
     // f and g are above the wide leaves of c.
@@ -91,8 +91,8 @@ describe("the diagram's layout", () => {
   });
 
   it("handles chains of thousands of nodes", () => {
-    let chain = leaf("end");
-    for (let i = 0; i < 5000; i++) chain = { ...leaf(`${i}`), children: [chain] };
+    let chain = createLeaf("end");
+    for (let i = 0; i < 5000; i++) chain = { ...createLeaf(`${i}`), children: [chain] };
     expect(layOutTree(chain, 2, 6).nodes).toHaveLength(5001);
   });
 });

@@ -1,31 +1,31 @@
 import { describe, expect, it } from "vitest";
 import { dropPart, dropPlace, type DropPart } from "../src/panels/displays/display-drag";
 import { DisplaysState } from "../src/state/displays";
-import { display, tree } from "./messages";
+import { createDisplay, createTree } from "./messages";
 
 const GROUP = "rviz_common/Group";
 
 /** grid, sensors(laser, deep(cloud)), tf */
-function displays(): DisplaysState {
+function createDisplays(): DisplaysState {
   const state = new DisplaysState();
   state.setTree(
-    tree(
-      display({ id: "grid" }),
-      display({ id: "sensors", cls: GROUP }),
-      display({ id: "laser", group: "sensors" }),
-      display({ id: "deep", cls: GROUP, group: "sensors" }),
-      display({ id: "cloud", group: "deep" }),
-      display({ id: "tf" }),
+    createTree(
+      createDisplay({ id: "grid" }),
+      createDisplay({ id: "sensors", cls: GROUP }),
+      createDisplay({ id: "laser", group: "sensors" }),
+      createDisplay({ id: "deep", cls: GROUP, group: "sensors" }),
+      createDisplay({ id: "cloud", group: "deep" }),
+      createDisplay({ id: "tf" }),
     ),
   );
   return state;
 }
 
-function drop(dragged: string, target: string, part: DropPart): unknown {
-  const state = displays();
-  const [from, to] = [state.find(dragged), state.find(target)];
-  if (!from || !to) throw new Error("no such display");
-  return dropPlace(state.displays, from, to, part);
+function drop(draggedId: string, targetId: string, part: DropPart): unknown {
+  const state = createDisplays();
+  const [dragged, target] = [state.find(draggedId), state.find(targetId)];
+  if (!dragged || !target) throw new Error("no such display");
+  return dropPlace(state.displays, dragged, target, part);
 }
 
 describe("a dropped display", () => {
@@ -66,23 +66,23 @@ describe("a dropped display", () => {
 
 describe("groups", () => {
   it("disable the displays in them", () => {
-    const state = displays();
-    const told: string[] = [];
-    state.enabledChanged.on((each) => told.push(each.id));
+    const state = createDisplays();
+    const changedIds: string[] = [];
+    state.enabledChanged.on((display) => changedIds.push(display.id));
     state.setValue("sensors/Enabled", false, null);
-    expect(told).toEqual(["sensors", "laser", "deep", "cloud"]);
-    expect(state.displays.filter((each) => !each.isEnabled).map((each) => each.id)).toEqual(told);
+    expect(changedIds).toEqual(["sensors", "laser", "deep", "cloud"]);
+    expect(state.displays.filter((display) => !display.isEnabled).map((display) => display.id)).toEqual(changedIds);
     expect(state.find("laser")?.isChecked).toBe(true);
-    told.length = 0;
+    changedIds.length = 0;
     state.setValue("deep/Enabled", false, null);
-    expect(told).toEqual(["deep"]);
+    expect(changedIds).toEqual(["deep"]);
     state.setValue("sensors/Enabled", true, null);
-    expect(told).toEqual(["deep", "sensors", "laser"]);
+    expect(changedIds).toEqual(["deep", "sensors", "laser"]);
   });
 
   it("contain displays in their order", () => {
-    const state = displays();
-    expect(state.childrenOf(null).map((each) => each.id)).toEqual(["grid", "sensors", "tf"]);
-    expect(state.childrenOf(state.find("sensors") ?? null).map((each) => each.id)).toEqual(["laser", "deep"]);
+    const state = createDisplays();
+    expect(state.childrenOf(null).map((display) => display.id)).toEqual(["grid", "sensors", "tf"]);
+    expect(state.childrenOf(state.find("sensors") ?? null).map((display) => display.id)).toEqual(["laser", "deep"]);
   });
 });

@@ -1,8 +1,8 @@
 import { describe, expect, it } from "vitest";
 import { DrawingPace } from "../src/state/drawing-pace";
 
-function frames(pace: DrawingPace, count: number, late: boolean): void {
-  for (let i = 0; i < count; i++) pace.countFrame(late);
+function countFrames(pace: DrawingPace, count: number, isLate: boolean): void {
+  for (let i = 0; i < count; i++) pace.countFrame(isLate);
 }
 
 describe("the pace of drawing", () => {
@@ -10,21 +10,21 @@ describe("the pace of drawing", () => {
     const pace = new DrawingPace();
     let changes = 0;
     pace.changed.on(() => changes++);
-    frames(pace, 44, true);
+    countFrames(pace, 44, true);
     expect(pace.isSlow).toBe(false);
     pace.countFrame(true);
     expect([pace.isSlow, changes]).toEqual([true, 1]);
-    frames(pace, 44, false);
+    countFrames(pace, 44, false);
     expect(pace.isSlow).toBe(true);
-    frames(pace, 1, false);
+    countFrames(pace, 1, false);
     expect([pace.isSlow, changes]).toEqual([false, 2]);
   });
 
   it("is not slow if a few frames are late, as while a mesh is read", () => {
     const pace = new DrawingPace();
     for (let i = 0; i < 50; i++) {
-      frames(pace, 1, true);
-      frames(pace, 1, false);
+      countFrames(pace, 1, true);
+      countFrames(pace, 1, false);
     }
     expect(pace.isSlow).toBe(false);
   });

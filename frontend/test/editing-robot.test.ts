@@ -3,101 +3,101 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { EditablePart, PageMessage } from "../src/protocol";
 import { EditingState } from "../src/state/editing/editing";
-import { nearestRpy, quaternionOf } from "../src/state/editing/rotation";
+import { findNearestRpy, quaternionOf } from "../src/state/editing/rotation";
 import { openBrowserStorage } from "../src/storage";
 
-let sent: PageMessage[];
+let sentMessages: PageMessage[];
 let connection: Connection;
 let editing: EditingState;
 const LINK = { display: "d", link: "arm" };
 
-function part(fields: Partial<EditablePart> = {}): EditablePart {
+function createPart(fields: Partial<EditablePart> = {}): EditablePart {
   return { part: "joint", name: "shoulder", index: 0, title: "", xyz: [0, 0, 1], rpy: [0, 0, 0], written: "", file: "/r.urdf", line: 3, ...fields };
 }
 
-function told(...parts: EditablePart[]): void {
+function receiveParts(...parts: EditablePart[]): void {
   connection.message.emit({ type: "editable_parts", ...LINK, why_not: "", parts });
 }
 
-function kinds(): string[] {
-  return sent.map((message) => message.type);
+function listSentTypes(): string[] {
+  return sentMessages.map((message) => message.type);
 }
 
 beforeEach(() => {
   vi.useFakeTimers();
-  sent = [];
+  sentMessages = [];
   connection = new Connection("ws://localhost/ws");
-  vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+  vi.spyOn(connection, "send").mockImplementation((message) => void sentMessages.push(message));
   editing = new EditingState(connection, openBrowserStorage());
 });
 
 describe("rotations", () => {
   it("match those of URDF", () => {
     const [r, p, y] = [0.3, -1.1, 2.2];
-    const three = new Quaternion().setFromEuler(new Euler(r, p, y, "ZYX"));
-    quaternionOf([r, p, y]).forEach((value, i) => expect(value).toBeCloseTo(three.toArray()[i] ?? NaN, 12));
+    const quaternion = new Quaternion().setFromEuler(new Euler(r, p, y, "ZYX"));
+    quaternionOf([r, p, y]).forEach((value, i) => expect(value).toBeCloseTo(quaternion.toArray()[i] ?? NaN, 12));
   });
 
   it.each([[[0.3, -1.1, 2.2]], [[3.1, 0.2, -3.1]], [[0.3, 2.5, 1]], [[0, 0, 0]]])("of %j keep their angles", (rpy) => {
-    nearestRpy(quaternionOf(rpy), rpy).forEach((angle, i) => expect(angle).toBeCloseTo(rpy[i] ?? NaN, 9));
+    findNearestRpy(quaternionOf(rpy), rpy).forEach((angle, i) => expect(angle).toBeCloseTo(rpy[i] ?? NaN, 9));
   });
 
   it.each([Math.PI / 2, -Math.PI / 2])("keep roll at gimbal lock, %d", (pitch) => {
     const rotation = quaternionOf([0.5, pitch, 0.2]);
-    const found = nearestRpy(rotation, [0.4, 0, 0]);
-    expect(found[0]).toBe(0.4);
-    const again = quaternionOf(found);
-    expect(Math.abs(again.reduce((sum, value, i) => sum + value * (rotation[i] ?? 0), 0))).toBeCloseTo(1, 9);
+    const rpy = findNearestRpy(rotation, [0.4, 0, 0]);
+    expect(rpy[0]).toBe(0.4);
+    const quaternion = quaternionOf(rpy);
+    expect(Math.abs(quaternion.reduce((sum, value, i) => sum + value * (rotation[i] ?? 0), 0))).toBeCloseTo(1, 9);
   });
 
   it("continue over full turns", () => {
-    expect(nearestRpy(quaternionOf([0, 0, 3.2]), [0, 0, 3.1])[2]).toBeCloseTo(3.2, 9);
+    expect(findNearestRpy(quaternionOf([0, 0, 3.2]), [0, 0, 3.1])[2]).toBeCloseTo(3.2, 9);
   });
 });
 
 describe("editing", () => {
   it("requests the parts of a link only while an editor is open", () => {
     editing.follow(LINK);
-    expect(sent).toEqual([]);
+    expect(sentMessages).toEqual([]);
     const release = editing.hold();
-    expect(sent).toEqual([{ type: "ask_editable_parts", ...LINK }]);
+    expect(sentMessages).toEqual([{ type: "ask_editable_parts", ...LINK }]);
     release();
     editing.follow({ ...LINK, link: "hand" });
-    expect(sent).toHaveLength(1);
+    expect(sentMessages).toHaveLength(1);
   });
 
   it("requests a preview when dragging pauses, and only for changed values", () => {
     editing.follow(LINK);
     editing.hold();
-    told(part());
+    receiveParts(createPart());
     editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     editing.move({ xyz: [0, 0, 1.2], rpy: [0, 0, 0] });
-    expect(kinds()).toEqual(["ask_editable_parts"]);
+    expect(listSentTypes()).toEqual(["ask_editable_parts"]);
     vi.runAllTimers();
-    expect(sent.at(-1)).toMatchObject({ type: "preview_edit", part: "joint", name: "shoulder", xyz: [0, 0, 1.2], rpy: null, together: false });
+    expect(sentMessages.at(-1)).toMatchObject({ type: "preview_edit", part: "joint", name: "shoulder", xyz: [0, 0, 1.2], rpy: null, together: false });
   });
 
   it("ignores the preview of an older request, and writes the one that is shown", () => {
     editing.follow(LINK);
     editing.hold();
-    told(part());
+    receiveParts(createPart());
     editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     vi.runAllTimers();
-    const { number } = sent.at(-1) as { number: number };
+    const { number } = sentMessages.at(-1) as { number: number };
     const files = [{ file: "/r.urdf", diff: ["+x"] }];
     connection.message.emit({ type: "edit_preview", number: number - 1, files, also: [], refusal: null });
     expect(editing.preview).toBeNull();
     editing.apply();
-    expect(kinds()).not.toContain("apply_edit");
+    expect(listSentTypes()).not.toContain("apply_edit");
     connection.message.emit({ type: "edit_preview", number, files, also: [], refusal: null });
     editing.apply();
-    expect(sent.at(-1)).toEqual({ type: "apply_edit", number });
+    expect(sentMessages.at(-1)).toEqual({ type: "apply_edit", number });
   });
 
   it("shows the requested robot until the new one arrives", () => {
     editing.follow(LINK);
     editing.hold();
-    told(part());
+    receiveParts(createPart());
     editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     connection.message.emit({ type: "edit_written", files: ["/r.urdf"], refusal: null, is_saved: true });
     expect(editing.draft).not.toBeNull();
@@ -110,18 +110,18 @@ describe("editing", () => {
   it("keeps a draft when other parts of the robot change, and drops it when its own values do", () => {
     editing.follow(LINK);
     editing.hold();
-    told(part());
+    receiveParts(createPart());
     editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
-    told(part({ line: 4 }));
+    receiveParts(createPart({ line: 4 }));
     expect(editing.draft?.xyz).toEqual([0, 0, 1.1]);
-    told(part({ xyz: [0, 0, 2] }));
+    receiveParts(createPart({ xyz: [0, 0, 2] }));
     expect(editing.draft).toBeNull();
   });
 
   it("keeps a draft whose writing failed", () => {
     editing.follow(LINK);
     editing.hold();
-    told(part());
+    receiveParts(createPart());
     editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     const refusal = { code: "EDIT107", severity: "error" as const, message: "changed", file: null, line: null, column: null, end_line: null, end_column: null, excerpt: "", notes: [], hints: [] };
     connection.message.emit({ type: "edit_written", files: [], refusal, is_saved: false });
@@ -132,7 +132,7 @@ describe("editing", () => {
   it("moves nothing if writing is not allowed", () => {
     editing.follow(LINK);
     editing.hold();
-    connection.message.emit({ type: "editable_parts", ...LINK, why_not: "elsewhere", parts: [part()] });
+    connection.message.emit({ type: "editable_parts", ...LINK, why_not: "elsewhere", parts: [createPart()] });
     editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     expect(editing.draft).toBeNull();
   });

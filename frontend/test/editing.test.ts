@@ -9,7 +9,7 @@ vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/
 describe("numbers in rows", () => {
   it("show the requested digits, and an exponent if they would fill the row", () => {
     const positions = [0.12345, -0.00004, 999999.5, -1e16, Infinity];
-    expect(positions.map((each) => formatFixed(each, 3))).toEqual(["0.123", "0.000", "999999.500", "-1.00e+16", "Infinity"]);
+    expect(positions.map((position) => formatFixed(position, 3))).toEqual(["0.123", "0.000", "999999.500", "-1.00e+16", "Infinity"]);
   });
 
   it("show six significant digits", () => {

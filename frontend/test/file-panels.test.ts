@@ -9,49 +9,49 @@ import { Signal } from "../src/signal";
 /** A dock without a scene: the browser stores a list of panels for each file. */
 class BareDock implements Arrangement {
   readonly changed = new Signal();
-  readonly kept = new Map<string, readonly PanelId[]>();
+  readonly storedPanels = new Map<string, readonly PanelId[]>();
   file: string | null = null;
   panelsOfFile: readonly PanelName[] | null = null;
   isClassroom = false;
-  resets = 0;
-  shown: readonly PanelId[] = ["displays", "views", "time", "links"];
+  resetCount = 0;
+  shownPanels: readonly PanelId[] = ["displays", "views", "time", "links"];
 
   open(id: PanelId): void {
-    this.use([...this.shown, id]);
+    this.changePanels([...this.shownPanels, id]);
   }
 
   isOpen(id: PanelId): boolean {
-    return this.shown.includes(id);
+    return this.shownPanels.includes(id);
   }
 
   arrange(file: string): boolean {
-    const found = this.kept.get(file);
-    if (found) this.shown = found;
-    return found !== undefined;
+    const panels = this.storedPanels.get(file);
+    if (panels) this.shownPanels = panels;
+    return panels !== undefined;
   }
 
   storeFor(file: string): void {
     this.file = file;
-    this.kept.set(file, this.shown);
+    this.storedPanels.set(file, this.shownPanels);
   }
 
   reset(): void {
-    this.resets += 1;
+    this.resetCount += 1;
   }
 
   showOnly(panels: readonly PanelName[]): void {
-    this.shown = [...panels, "links"];
+    this.shownPanels = [...panels, "links"];
   }
 
   /** An action of the user. */
-  use(open: readonly PanelId[]): void {
-    this.shown = open;
-    if (this.file !== null) this.kept.set(this.file, open);
+  changePanels(openPanels: readonly PanelId[]): void {
+    this.shownPanels = openPanels;
+    if (this.file !== null) this.storedPanels.set(this.file, openPanels);
     this.changed.emit();
   }
 }
 
-let sent: PageMessage[];
+let sentMessages: PageMessage[];
 let connection: Connection;
 let dock: BareDock;
 
@@ -59,64 +59,64 @@ function receive(...messages: ServerMessage[]): void {
   for (const message of messages) connection.message.emit(message);
 }
 
-function hello(): void {
+function receiveHello(): void {
   receive({ type: "hello", protocol: 0, version: "", title: "", run: "1" });
 }
 
-function configuration(part: Partial<Configuration>): Configuration {
+function createConfiguration(part: Partial<Configuration>): Configuration {
   return { type: "configuration", path: null, opened: 1, unsaved: false, undo: null, redo: null, own: false, recent: [], ...part };
 }
 
 /** The messages that a page receives when it connects, or when another configuration is opened. */
-function tell(opened: number, path: string | null, shown: PanelName[] | null, origin = "<default>"): void {
-  receive({ type: "panels", opened, origin, shown }, configuration({ opened, path }));
+function receivePanels(opened: number, path: string | null, shownPanels: PanelName[] | null, origin = "<default>"): void {
+  receive({ type: "panels", opened, origin, shown: shownPanels }, createConfiguration({ opened, path }));
 }
 
 beforeEach(() => {
-  sent = [];
+  sentMessages = [];
   connection = new Connection("ws://localhost/ws");
-  vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+  vi.spyOn(connection, "send").mockImplementation((message) => void sentMessages.push(message));
   dock = new BareDock();
   new FilePanels(connection, dock);
-  hello();
+  receiveHello();
 });
 
 describe("the panels of a file", () => {
   it("are opened when the browser sees the file for the first time", () => {
-    tell(1, "/a.rviz", ["displays", "views"]);
-    expect(dock.shown).toEqual(["displays", "views", "links"]);
+    receivePanels(1, "/a.rviz", ["displays", "views"]);
+    expect(dock.shownPanels).toEqual(["displays", "views", "links"]);
     expect([dock.file, dock.panelsOfFile]).toEqual(["/a.rviz", ["displays", "views"]]);
-    expect(sent).toEqual([]);
+    expect(sentMessages).toEqual([]);
   });
 
   it("stay unchanged if the file does not specify any", () => {
-    tell(1, "/a.rviz", null);
-    expect(dock.shown).toEqual(["displays", "views", "time", "links"]);
+    receivePanels(1, "/a.rviz", null);
+    expect(dock.shownPanels).toEqual(["displays", "views", "time", "links"]);
   });
 
   it("are the user's if the browser knows the file", () => {
-    dock.kept.set("/a.rviz", ["time", "plot"]);
-    tell(1, "/a.rviz", ["displays", "views"]);
-    expect(dock.shown).toEqual(["time", "plot"]);
-    expect(sent).toEqual([]);
+    dock.storedPanels.set("/a.rviz", ["time", "plot"]);
+    receivePanels(1, "/a.rviz", ["displays", "views"]);
+    expect(dock.shownPanels).toEqual(["time", "plot"]);
+    expect(sentMessages).toEqual([]);
   });
 
   it("are the file's again when it is opened from the menu", () => {
-    dock.kept.set("/b.rviz", ["time", "plot"]);
-    tell(1, "/a.rviz", ["displays"]);
-    tell(2, "/b.rviz", ["views"]);
-    expect(dock.shown).toEqual(["views", "links"]);
-    dock.use(["plot"]);
-    tell(3, "/b.rviz", ["views"]);
-    expect(dock.shown).toEqual(["views", "links"]);
+    dock.storedPanels.set("/b.rviz", ["time", "plot"]);
+    receivePanels(1, "/a.rviz", ["displays"]);
+    receivePanels(2, "/b.rviz", ["views"]);
+    expect(dock.shownPanels).toEqual(["views", "links"]);
+    dock.changePanels(["plot"]);
+    receivePanels(3, "/b.rviz", ["views"]);
+    expect(dock.shownPanels).toEqual(["views", "links"]);
   });
 
   it("are known once both messages about a configuration have arrived, in either order", () => {
-    tell(1, "/a.rviz", ["displays"]);
-    receive(configuration({ opened: 2, path: "/b.rviz" }));
+    receivePanels(1, "/a.rviz", ["displays"]);
+    receive(createConfiguration({ opened: 2, path: "/b.rviz" }));
     expect(dock.file).toBe("/a.rviz");
     receive({ type: "panels", opened: 2, origin: "", shown: ["time"] });
-    expect([dock.file, dock.shown]).toEqual(["/b.rviz", ["time", "links"]]);
+    expect([dock.file, dock.shownPanels]).toEqual(["/b.rviz", ["time", "links"]]);
   });
 });
 
@@ -125,80 +125,80 @@ describe("a course", () => {
 
   it("arranges the panels when it is shown for the first time", () => {
     receive(course);
-    tell(1, null, ["displays"], "/ws");
-    expect([dock.isClassroom, dock.resets]).toEqual([true, 1]);
+    receivePanels(1, null, ["displays"], "/ws");
+    expect([dock.isClassroom, dock.resetCount]).toEqual([true, 1]);
     receive(course);
-    expect(dock.resets).toBe(1);
+    expect(dock.resetCount).toBe(1);
   });
 
   it("leaves the panels as the user arranged them", () => {
-    dock.kept.set("/ws", ["lesson", "plot"]);
-    tell(1, null, ["displays"], "/ws");
+    dock.storedPanels.set("/ws", ["lesson", "plot"]);
+    receivePanels(1, null, ["displays"], "/ws");
     receive(course);
-    expect([dock.isClassroom, dock.resets, dock.shown]).toEqual([true, 0, ["lesson", "plot"]]);
+    expect([dock.isClassroom, dock.resetCount, dock.shownPanels]).toEqual([true, 0, ["lesson", "plot"]]);
   });
 });
 
 describe("changes by the user", () => {
   it("are sent once, and only for panels that files can name", () => {
-    tell(1, "/a.rviz", ["displays", "views"]);
-    dock.use(["displays", "views", "links", "plot"]);
-    expect(sent).toEqual([]);
-    dock.use(["displays", "plot"]);
-    dock.use(["displays", "log"]);
-    expect(sent).toEqual([{ type: "show_panels", shown: ["displays"] }]);
+    receivePanels(1, "/a.rviz", ["displays", "views"]);
+    dock.changePanels(["displays", "views", "links", "plot"]);
+    expect(sentMessages).toEqual([]);
+    dock.changePanels(["displays", "plot"]);
+    dock.changePanels(["displays", "log"]);
+    expect(sentMessages).toEqual([{ type: "show_panels", shown: ["displays"] }]);
   });
 
   it("are not sent before the file is known", () => {
-    dock.use(["displays"]);
-    expect(sent).toEqual([]);
+    dock.changePanels(["displays"]);
+    expect(sentMessages).toEqual([]);
   });
 
   it("continue under the name that the file is saved under", () => {
-    tell(1, null, ["displays"]);
+    receivePanels(1, null, ["displays"]);
     expect(dock.file).toBe("<default>");
-    dock.use(["displays", "time"]);
-    receive(configuration({ opened: 1, path: "/new.rviz" }));
-    expect([dock.file, dock.shown]).toEqual(["/new.rviz", ["displays", "time"]]);
-    expect(dock.kept.get("/new.rviz")).toEqual(["displays", "time"]);
+    dock.changePanels(["displays", "time"]);
+    receive(createConfiguration({ opened: 1, path: "/new.rviz" }));
+    expect([dock.file, dock.shownPanels]).toEqual(["/new.rviz", ["displays", "time"]]);
+    expect(dock.storedPanels.get("/new.rviz")).toEqual(["displays", "time"]);
   });
 
   it("survive a reconnection", () => {
-    tell(1, "/a.rviz", ["displays", "views"]);
-    dock.use(["time"]);
-    hello();
-    tell(1, "/a.rviz", ["time"]);
-    expect(dock.shown).toEqual(["time"]);
-    hello(); // another program
-    tell(1, "/c.rviz", ["views"]);
-    expect(dock.shown).toEqual(["views", "links"]);
-    expect(sent).toHaveLength(1);
+    receivePanels(1, "/a.rviz", ["displays", "views"]);
+    dock.changePanels(["time"]);
+    receiveHello();
+    receivePanels(1, "/a.rviz", ["time"]);
+    expect(dock.shownPanels).toEqual(["time"]);
+    receiveHello(); // another program
+    receivePanels(1, "/c.rviz", ["views"]);
+    expect(dock.shownPanels).toEqual(["views", "links"]);
+    expect(sentMessages).toHaveLength(1);
   });
 });
 
 describe("the arrangements stored in the browser", () => {
   const texts = new Map<string, string>();
   const layouts = new Layouts({ getItem: (key) => texts.get(key) ?? null, setItem: (key, text) => void texts.set(key, text) });
-  const layout = (file: string, form: Layout["form"] = "wide"): Layout => ({ file, form, arrangement: { panels: {} } as Layout["arrangement"] });
+  const createLayout = (file: string, form: Layout["form"] = "wide"): Layout => ({ file, form, arrangement: { panels: {} } as Layout["arrangement"] });
 
   beforeEach(() => texts.clear());
 
   it("are those of the last files, newest first", () => {
     expect([layouts.findLatest("wide"), layouts.find("/0.rviz", "wide")]).toEqual([null, null]);
-    for (let i = 0; i < 20; i++) layouts.store(layout(`/${i}.rviz`));
+    for (let i = 0; i < 20; i++) layouts.store(createLayout(`/${i}.rviz`));
     expect(layouts.findLatest("wide")?.file).toBe("/19.rviz");
     expect(layouts.find("/8.rviz", "wide")?.file).toBe("/8.rviz");
     expect(layouts.find("/7.rviz", "wide")).toBeNull();
-    layouts.store(layout("/8.rviz"));
+    layouts.store(createLayout("/8.rviz"));
     expect(layouts.findLatest("wide")?.file).toBe("/8.rviz");
   });
 
   it("differ by the form of the window", () => {
-    layouts.store(layout("/a.rviz", "narrow"));
-    layouts.store(layout("/b.rviz"));
+    layouts.store(createLayout("/a.rviz", "narrow"));
+    layouts.store(createLayout("/b.rviz"));
     expect(layouts.findLatest("narrow")?.file).toBe("/a.rviz");
     expect(layouts.find("/a.rviz", "wide")).toBeNull();
-    layouts.store(layout("/a.rviz"));
+    layouts.store(createLayout("/a.rviz"));
     expect(layouts.find("/a.rviz", "narrow")?.form).toBe("narrow");
     expect(layouts.find("/a.rviz", "wide")?.form).toBe("wide");
     expect(layouts.find("/a.rviz", "low")).toBeNull();
@@ -213,58 +213,58 @@ describe("the arrangements stored in the browser", () => {
 });
 
 describe("the voice panel", () => {
-  const node = (present: boolean): ServerMessage => ({ type: "voice_node", present });
+  const createVoiceNode = (isPresent: boolean): ServerMessage => ({ type: "voice_node", present: isPresent });
 
   it("opens for a robot that listens, even if a file names its open panels, in either order", () => {
-    receive(node(false));
-    tell(1, "/a.rviz", ["displays"]);
+    receive(createVoiceNode(false));
+    receivePanels(1, "/a.rviz", ["displays"]);
     expect(dock.isOpen("voice")).toBe(false);
-    receive(node(true));
+    receive(createVoiceNode(true));
     expect(dock.isOpen("voice")).toBe(true);
   });
 
   it("stays closed after the user has closed it", () => {
-    receive(node(true));
-    tell(1, "/a.rviz", ["displays"]);
+    receive(createVoiceNode(true));
+    receivePanels(1, "/a.rviz", ["displays"]);
     expect(dock.isOpen("voice")).toBe(true);
-    dock.use(["displays"]);
-    receive(node(true));
-    hello();
-    tell(1, "/a.rviz", ["displays"]);
-    receive(node(true));
+    dock.changePanels(["displays"]);
+    receive(createVoiceNode(true));
+    receiveHello();
+    receivePanels(1, "/a.rviz", ["displays"]);
+    receive(createVoiceNode(true));
     expect(dock.isOpen("voice")).toBe(false);
   });
 });
 
 describe("the teleop pad", () => {
-  const simulation = (drivable: boolean): ServerMessage => ({
-    type: "simulation_status", present: true, drivable, paused: false, time: null, real_time_factor: null,
+  const createSimulation = (isDrivable: boolean): ServerMessage => ({
+    type: "simulation_status", present: true, drivable: isDrivable, paused: false, time: null, real_time_factor: null,
   });
 
   it("opens for a simulated robot that drives, in either order", () => {
-    tell(1, null, ["displays"], "robot.urdf");
-    receive(simulation(false));
+    receivePanels(1, null, ["displays"], "robot.urdf");
+    receive(createSimulation(false));
     expect(dock.isOpen("teleop")).toBe(false);
-    receive(simulation(true));
+    receive(createSimulation(true));
     expect(dock.isOpen("teleop")).toBe(true);
-    tell(2, null, ["displays"], "other.urdf");
+    receivePanels(2, null, ["displays"], "other.urdf");
     expect(dock.isOpen("teleop")).toBe(true);
   });
 
   it("stays closed after the user has closed it", () => {
-    tell(1, null, ["displays"], "robot.urdf");
-    receive(simulation(true));
-    dock.use(["displays"]);
-    receive(simulation(false), simulation(true));
-    hello();
-    tell(1, null, ["displays"], "robot.urdf");
-    receive(simulation(true));
+    receivePanels(1, null, ["displays"], "robot.urdf");
+    receive(createSimulation(true));
+    dock.changePanels(["displays"]);
+    receive(createSimulation(false), createSimulation(true));
+    receiveHello();
+    receivePanels(1, null, ["displays"], "robot.urdf");
+    receive(createSimulation(true));
     expect(dock.isOpen("teleop")).toBe(false);
   });
 
   it("stays closed if a file names its open panels", () => {
-    tell(1, "/a.rviz", ["displays"]);
-    receive(simulation(true));
+    receivePanels(1, "/a.rviz", ["displays"]);
+    receive(createSimulation(true));
     expect(dock.isOpen("teleop")).toBe(false);
   });
 });

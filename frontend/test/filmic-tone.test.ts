@@ -15,11 +15,11 @@ test("the tone mapping is inserted into the shader at three.js's own", () => {
 
 test("only the studio has it: the light of cameras and worlds shows colors unchanged", () => {
   const pool = new MaterialPool();
-  const toned = new Map(
+  const filmicByLighting = new Map(
     (["Camera", "Studio", "World"] as const).map((lighting) => {
       pool.lighting = lighting;
       return [lighting, pool.get(LOOK).customProgramCacheKey() === "filmic"];
     }),
   );
-  expect(Object.fromEntries(toned)).toEqual({ Camera: false, Studio: true, World: false });
+  expect(Object.fromEntries(filmicByLighting)).toEqual({ Camera: false, Studio: true, World: false });
 });

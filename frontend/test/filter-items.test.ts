@@ -2,15 +2,18 @@ import { expect, it } from "vitest";
 import { filterItems } from "../src/tree/filter-items";
 import type { TreeItem } from "../src/tree/tree-item";
 
-function item(name: string, ...children: TreeItem[]): TreeItem {
+function createItem(name: string, ...children: TreeItem[]): TreeItem {
   const base = { key: name, name, kind: "group" as const, value: null, description: "" };
   return children.length > 0 ? { ...base, children: () => children } : base;
 }
 
-const ITEMS = [item("Grid", item("Alpha"), item("Offset", item("X"))), item("Laser", item("Topic", item("Depth")))];
+const ITEMS = [
+  createItem("Grid", createItem("Alpha"), createItem("Offset", createItem("X"))),
+  createItem("Laser", createItem("Topic", createItem("Depth"))),
+];
 
-function names(items: readonly TreeItem[]): unknown {
-  return items.map((each) => (each.children ? [each.name, each.isForcedOpen ?? false, names(each.children())] : each.name));
+function listNames(items: readonly TreeItem[]): unknown {
+  return items.map((item) => (item.children ? [item.name, item.isForcedOpen ?? false, listNames(item.children())] : item.name));
 }
 
 it("shows everything for an empty text", () => {
@@ -18,11 +21,11 @@ it("shows everything for an empty text", () => {
 });
 
 it("unfolds the ancestors of items whose name has the text", () => {
-  expect(names(filterItems(ITEMS, "dep"))).toEqual([["Laser", true, [["Topic", true, ["Depth"]]]]]);
+  expect(listNames(filterItems(ITEMS, "dep"))).toEqual([["Laser", true, [["Topic", true, ["Depth"]]]]]);
 });
 
 it("keeps items below a match, folded as they were", () => {
-  expect(names(filterItems(ITEMS, "OFF"))).toEqual([["Grid", true, [["Offset", false, ["X"]]]]]);
+  expect(listNames(filterItems(ITEMS, "OFF"))).toEqual([["Grid", true, [["Offset", false, ["X"]]]]]);
 });
 
 it("shows nothing if nothing matches", () => {
@@ -30,9 +33,9 @@ it("shows nothing if nothing matches", () => {
 });
 
 it("keeps values live that are read when shown", () => {
-  let now = 1;
-  const frame: TreeItem = { ...item("Position", item("X")), get value() { return now; } };
-  const [shown] = filterItems([frame], "x");
-  now = 2;
-  expect(shown?.value).toBe(2);
+  let value = 1;
+  const frame: TreeItem = { ...createItem("Position", createItem("X")), get value() { return value; } };
+  const [filteredFrame] = filterItems([frame], "x");
+  value = 2;
+  expect(filteredFrame?.value).toBe(2);
 });

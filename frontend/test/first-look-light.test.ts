@@ -2,7 +2,7 @@ import { BoxGeometry, ColorManagement, Mesh, Vector3, type Color, type DataTextu
 import { describe, expect, it } from "vitest";
 import { Backdrop } from "../src/scene/backdrop";
 import { ContactShadow } from "../src/scene/contact-shadow";
-import { fadedColors } from "../src/scene/displays/grid-lines";
+import { createFadedColors } from "../src/scene/displays/grid-lines";
 import { samplePoints, samplesOf } from "../src/scene/robot/surface-samples";
 
 function boxAt(x: number, z: number): Mesh {
@@ -16,7 +16,7 @@ function boxAt(x: number, z: number): Mesh {
 function shadeAt(shadow: ContactShadow, x: number, y: number): number {
   const { position, scale, material } = shadow.ground;
   const { data, width } = (material.map as DataTexture).image as { data: Uint8Array; width: number };
-  const [column, row] = [(x - position.x) / scale.x, (y - position.y) / scale.y].map((each) => Math.floor((each + 0.5) * width)) as [number, number];
+  const [column, row] = [(x - position.x) / scale.x, (y - position.y) / scale.y].map((share) => Math.floor((share + 0.5) * width)) as [number, number];
   return data[4 * (row * width + column) + 3] ?? 0;
 }
 
@@ -26,10 +26,10 @@ describe("sample points of a surface", () => {
     const half = [0.5, 1, 1.5];
     const sides = new Set<string>();
     for (let i = 0; i < points.length; i += 3) {
-      const at = [...points.subarray(i, i + 3)];
-      const parts = at.map((each, axis) => each / (half[axis] ?? 1));
+      const point = [...points.subarray(i, i + 3)];
+      const parts = point.map((value, axis) => value / (half[axis] ?? 1));
       expect(Math.max(...parts.map(Math.abs))).toBeCloseTo(1, 5);
-      const axis = parts.findIndex((each) => Math.abs(Math.abs(each) - 1) < 1e-5);
+      const axis = parts.findIndex((part) => Math.abs(Math.abs(part) - 1) < 1e-5);
       sides.add(`${axis}${Math.sign(parts[axis] ?? 0)}`);
     }
     expect(sides.size).toBe(6);
@@ -46,20 +46,20 @@ describe("the shadow on the ground", () => {
     const shadow = new ContactShadow();
     shadow.update([boxAt(3, 0.5)], 0);
     expect(shadow.ground.position).toEqual(new Vector3(3, 0, 0));
-    const [below, beside, far] = [3, 3.61, 3.8].map((x) => shadeAt(shadow, x, 0)) as [number, number, number];
-    expect(below).toBeGreaterThan(100);
-    expect(beside).toBeLessThan(0.8 * below);
-    expect(far).toBe(0);
+    const [shadeBelow, shadeBeside, shadeFar] = [3, 3.61, 3.8].map((x) => shadeAt(shadow, x, 0)) as [number, number, number];
+    expect(shadeBelow).toBeGreaterThan(100);
+    expect(shadeBeside).toBeLessThan(0.8 * shadeBelow);
+    expect(shadeFar).toBe(0);
   });
 
   it("is fainter below floating objects", () => {
-    const [standing, hovering] = [0.5, 1.5].map((z) => {
+    const [standingShade, hoveringShade] = [0.5, 1.5].map((z) => {
       const shadow = new ContactShadow();
       shadow.update([boxAt(0, z)], 0);
       return shadeAt(shadow, 0, 0);
     }) as [number, number];
-    expect(hovering).toBeLessThan(standing * 0.8);
-    expect(hovering).toBeGreaterThan(0);
+    expect(hoveringShade).toBeLessThan(standingShade * 0.8);
+    expect(hoveringShade).toBeGreaterThan(0);
   });
 
   it("follows moving objects", () => {
@@ -76,7 +76,7 @@ describe("the shadow on the ground", () => {
 });
 
 it("lines of a grid fade out towards its edge", () => {
-  const shades = fadedColors(new Float32Array([0, 0, 0, 1, 0, 0, 2, 0, 0, 4, 0, 0]));
+  const shades = createFadedColors(new Float32Array([0, 0, 0, 1, 0, 0, 2, 0, 0, 4, 0, 0]));
   expect([shades[3], shades[7], shades[11], shades[15]]).toEqual([1, 1 - 1 / 16, 0.75, 0]);
 });
 
@@ -85,12 +85,12 @@ it("the ground of both themes is darker than white robots and brighter than blac
     ColorManagement.enabled = false; // as in the page
     const backdrop = new Backdrop();
     backdrop.theme = theme;
-    const gray = (name: string): number => {
+    const grayOf = (name: string): number => {
       const { r, g, b } = backdrop.root.material.uniforms[name]?.value as Color;
       return (r + g + b) / 3;
     };
-    expect(gray("ground")).toBeGreaterThan(0.3);
-    expect(gray("ground")).toBeLessThan(0.8);
-    expect(gray("horizon")).toBeGreaterThan(gray("ground"));
+    expect(grayOf("ground")).toBeGreaterThan(0.3);
+    expect(grayOf("ground")).toBeLessThan(0.8);
+    expect(grayOf("horizon")).toBeGreaterThan(grayOf("ground"));
   }
 });

@@ -2,27 +2,27 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { FINEST, FrameLoop } from "../src/scene/frame-loop";
 
 let now = 0;
-let waiting: (() => void)[] = [];
+let scheduledCallbacks: (() => void)[] = [];
 
-/** Simulates a screen of 60 Hz for a while; each animation frame is `lag` late. */
-function run(ms: number, each: () => void = () => undefined, lag = 0): void {
+/** Simulates a screen of 60 Hz for a while; each animation frame is late by `lag` milliseconds. */
+function runScreen(ms: number, onFrame: () => void = () => undefined, lag = 0): void {
   const end = now + ms;
   while (now < end) {
     now += 1000 / 60 + lag;
-    const due = waiting;
-    waiting = [];
-    for (const callback of due) callback();
-    each();
+    const dueCallbacks = scheduledCallbacks;
+    scheduledCallbacks = [];
+    for (const callback of dueCallbacks) callback();
+    onFrame();
     vi.advanceTimersByTime(1000 / 60 + lag);
   }
 }
 
 beforeEach(() => {
   vi.useFakeTimers({ toFake: ["setTimeout", "clearTimeout"] });
-  [now, waiting] = [0, []];
+  [now, scheduledCallbacks] = [0, []];
   vi.stubGlobal("performance", { now: () => now });
   vi.stubGlobal("window", { setTimeout });
-  vi.stubGlobal("requestAnimationFrame", (callback: () => void) => waiting.push(callback));
+  vi.stubGlobal("requestAnimationFrame", (callback: () => void) => scheduledCallbacks.push(callback));
 });
 afterEach(() => {
   vi.useRealTimers();
@@ -33,13 +33,13 @@ describe("the frame loop", () => {
   it("draws nothing while nothing changes", () => {
     const draw = vi.fn();
     const loop = new FrameLoop(draw);
-    run(1000);
+    runScreen(1000);
     expect(draw).not.toHaveBeenCalled();
     loop.invalidate();
-    run(1000);
-    const drawn = loop.framesDrawn;
-    run(5000);
-    expect(loop.framesDrawn).toBe(drawn);
+    runScreen(1000);
+    const drawnCount = loop.framesDrawn;
+    runScreen(5000);
+    expect(loop.framesDrawn).toBe(drawnCount);
     expect(loop.framesPerSecond(now)).toBeNull();
   });
 
@@ -48,11 +48,11 @@ describe("the frame loop", () => {
     const loop = new FrameLoop(draw, true);
     loop.invalidate();
     loop.redraw(FINEST);
-    run(1000);
+    runScreen(1000);
     expect(draw).not.toHaveBeenCalled();
     expect(loop.isSettled).toBe(false);
     loop.release();
-    run(100);
+    runScreen(100);
     expect(draw).toHaveBeenCalledTimes(1);
     loop.redraw(FINEST);
     expect(draw).toHaveBeenCalledTimes(2);
@@ -62,7 +62,7 @@ describe("the frame loop", () => {
     const loop = new FrameLoop(() => undefined, true);
     const show = vi.fn();
     loop.schedule(show);
-    run(100);
+    runScreen(100);
     expect(show).toHaveBeenCalledTimes(1);
   });
 
@@ -72,14 +72,14 @@ describe("the frame loop", () => {
       details.push(share);
       if (details.length <= 6) now += 300;
     });
-    run(6000, () => loop.invalidate());
+    runScreen(6000, () => loop.invalidate());
     expect(new Set(details)).toEqual(new Set([1]));
   });
 
   it("keeps to the frame rate", () => {
     const loop = new FrameLoop(() => undefined);
     loop.rate = 30;
-    run(2000, () => loop.invalidate());
+    runScreen(2000, () => loop.invalidate());
     expect(loop.framesDrawn).toBeGreaterThan(55);
     expect(loop.framesDrawn).toBeLessThan(62);
   });
@@ -87,59 +87,59 @@ describe("the frame loop", () => {
   it("draws as many frames as requested even if some are late", () => {
     const loop = new FrameLoop(() => undefined);
     loop.rate = 30;
-    run(1000, () => loop.invalidate());
-    const [before, began] = [loop.framesDrawn, now];
+    runScreen(1000, () => loop.invalidate());
+    const [countBefore, startTime] = [loop.framesDrawn, now];
     for (let round = 0; round < 10; round++) {
-      run(17, () => loop.invalidate(), 17);
-      run(300, () => loop.invalidate());
+      runScreen(17, () => loop.invalidate(), 17);
+      runScreen(300, () => loop.invalidate());
     }
-    const possible = (30 * (now - began)) / 1000;
-    expect(loop.framesDrawn - before).toBeGreaterThan(possible - 2);
-    expect(loop.framesDrawn - before).toBeLessThan(possible + 2);
+    const expectedCount = (30 * (now - startTime)) / 1000;
+    expect(loop.framesDrawn - countBefore).toBeGreaterThan(expectedCount - 2);
+    expect(loop.framesDrawn - countBefore).toBeLessThan(expectedCount + 2);
   });
 
   it("draws the first frame coarsely, for speed, and a fine one soon afterwards", () => {
-    const fine: boolean[] = [];
-    const loop = new FrameLoop(({ smooth }) => fine.push(smooth));
+    const smoothFrames: boolean[] = [];
+    const loop = new FrameLoop(({ smooth }) => smoothFrames.push(smooth));
     loop.invalidate();
-    run(100);
+    runScreen(100);
     expect(loop.isSettled).toBe(false);
-    run(900);
-    expect(fine).toEqual([false, true]);
+    runScreen(900);
+    expect(smoothFrames).toEqual([false, true]);
     expect(loop.isSettled).toBe(true);
     loop.invalidate();
     expect(loop.isSettled).toBe(false);
   });
 
   it("draws coarsely during motion on a slow machine, and finely at rest", () => {
-    const fine: boolean[] = [];
-    const loop = new FrameLoop(({ smooth }) => fine.push(smooth));
-    run(3000, () => loop.invalidate(), 100);
-    expect(fine.at(-1)).toBe(false);
-    run(1000);
-    expect(fine.at(-1)).toBe(true);
+    const smoothFrames: boolean[] = [];
+    const loop = new FrameLoop(({ smooth }) => smoothFrames.push(smooth));
+    runScreen(3000, () => loop.invalidate(), 100);
+    expect(smoothFrames.at(-1)).toBe(false);
+    runScreen(1000);
+    expect(smoothFrames.at(-1)).toBe(true);
   });
 
   it("draws motion coarsely from the start on a machine known to be slow", () => {
-    const moving: boolean[] = [];
-    const loop = new FrameLoop((detail) => moving.push(detail.moving));
+    const movingFrames: boolean[] = [];
+    const loop = new FrameLoop((detail) => movingFrames.push(detail.moving));
     loop.expectSlow();
-    run(1000, () => loop.invalidate());
-    expect(moving).not.toContain(false);
-    run(500);
-    expect(moving.at(-1)).toBe(false);
-    run(12_000, () => loop.invalidate());
-    expect(moving.at(-1)).toBe(false);
+    runScreen(1000, () => loop.invalidate());
+    expect(movingFrames).not.toContain(false);
+    runScreen(500);
+    expect(movingFrames.at(-1)).toBe(false);
+    runScreen(12_000, () => loop.invalidate());
+    expect(movingFrames.at(-1)).toBe(false);
   });
 
   it("lowers the resolution during motion, and restores it once the machine has kept up for a while", () => {
     const shares: number[] = [];
     const loop = new FrameLoop(({ share }) => shares.push(share));
-    run(5000, () => loop.invalidate(), 30);
+    runScreen(5000, () => loop.invalidate(), 30);
     expect(shares.at(-1)).toBe(0.5);
-    run(15_000, () => loop.invalidate());
+    runScreen(15_000, () => loop.invalidate());
     expect(shares.at(-1)).toBe(0.7);
-    run(1000);
+    runScreen(1000);
     expect(shares.at(-1)).toBe(1);
   });
 
@@ -148,23 +148,23 @@ describe("the frame loop", () => {
     const show = vi.fn();
     const loop = new FrameLoop(draw);
     loop.invalidate();
-    run(1000);
+    runScreen(1000);
     draw.mockClear();
-    run(1000, () => loop.schedule(show));
+    runScreen(1000, () => loop.schedule(show));
     expect(draw).not.toHaveBeenCalled();
     expect(show.mock.calls.length).toBeGreaterThan(27);
     expect(show.mock.calls.length).toBeLessThan(32);
     loop.schedule(show);
     expect(loop.isSettled).toBe(false);
-    run(100);
+    runScreen(100);
     expect(loop.isSettled).toBe(true);
     const times: number[] = [];
-    const [shown, drawn] = [show.mock.calls.length, loop.framesDrawn];
-    run(1000, () => {
+    const [shownCount, drawnCount] = [show.mock.calls.length, loop.framesDrawn];
+    runScreen(1000, () => {
       loop.schedule(() => times.push(now));
       loop.invalidate();
     });
-    expect(new Set(times).size).toBe(loop.framesDrawn - drawn);
-    expect(show.mock.calls.length).toBe(shown);
+    expect(new Set(times).size).toBe(loop.framesDrawn - drawnCount);
+    expect(show.mock.calls.length).toBe(shownCount);
   });
 });

@@ -3,54 +3,54 @@ import type { ImageFrame } from "../src/protocol";
 import { ImageCanvas } from "../src/scene/images/image-canvas";
 
 /** A decoder that finishes when the test tells it to. */
-let unpacking: ((bitmap: ImageBitmap) => void)[] = [];
-let open = 0;
-let most = 0;
+let pendingDecodes: ((createBitmap: ImageBitmap) => void)[] = [];
+let openCount = 0;
+let maxOpenCount = 0;
 
-function bitmap(): ImageBitmap {
-  most = Math.max(most, ++open);
-  return { width: 3840, height: 2160, close: () => (open -= 1) };
+function createBitmap(): ImageBitmap {
+  maxOpenCount = Math.max(maxOpenCount, ++openCount);
+  return { width: 3840, height: 2160, close: () => (openCount -= 1) };
 }
 
-function file(): ImageFrame {
+function createFileFrame(): ImageFrame {
   return { kind: "image_frame", width: 0, height: 0, columns: 0, rows: 0, encoding: "file", data: new Uint8Array(4), camera: null, quality: 0 };
 }
 
-async function unpacked(): Promise<void> {
-  unpacking.shift()?.(bitmap());
+async function finishDecoding(): Promise<void> {
+  pendingDecodes.shift()?.(createBitmap());
   await Promise.resolve();
   await Promise.resolve();
 }
 
 beforeEach(() => {
-  [unpacking, open, most] = [[], 0, 0];
+  [pendingDecodes, openCount, maxOpenCount] = [[], 0, 0];
   const context = { drawImage: () => undefined };
   vi.stubGlobal("document", { createElement: () => ({ width: 0, height: 0, getContext: () => context }) });
-  vi.stubGlobal("createImageBitmap", () => new Promise<ImageBitmap>((resolve) => unpacking.push(resolve)));
+  vi.stubGlobal("createImageBitmap", () => new Promise<ImageBitmap>((resolve) => pendingDecodes.push(resolve)));
 });
 afterEach(() => vi.unstubAllGlobals());
 
 describe("image files", () => {
   it("are decoded one at a time; of those that arrive meanwhile only the newest is", async () => {
-    const shown: number[] = [];
+    const shownIndexes: number[] = [];
     const image = new ImageCanvas();
-    for (let i = 0; i < 30; i++) image.show(file(), () => shown.push(i));
-    expect(unpacking).toHaveLength(1);
-    await unpacked();
-    expect(unpacking).toHaveLength(1);
-    await unpacked();
-    expect(unpacking).toHaveLength(0);
-    expect(shown).toEqual([0, 29]);
-    expect([open, most]).toEqual([0, 1]);
+    for (let i = 0; i < 30; i++) image.show(createFileFrame(), () => shownIndexes.push(i));
+    expect(pendingDecodes).toHaveLength(1);
+    await finishDecoding();
+    expect(pendingDecodes).toHaveLength(1);
+    await finishDecoding();
+    expect(pendingDecodes).toHaveLength(0);
+    expect(shownIndexes).toEqual([0, 29]);
+    expect([openCount, maxOpenCount]).toEqual([0, 1]);
   });
 
   it("are not shown after they were removed", async () => {
     const image = new ImageCanvas();
-    image.show(file(), () => undefined);
-    image.show(file(), () => undefined);
+    image.show(createFileFrame(), () => undefined);
+    image.show(createFileFrame(), () => undefined);
     image.clear();
-    await unpacked();
-    expect(unpacking).toHaveLength(0);
-    expect([image.isEmpty, image.count, open]).toEqual([true, 0, 0]);
+    await finishDecoding();
+    expect(pendingDecodes).toHaveLength(0);
+    expect([image.isEmpty, image.count, openCount]).toEqual([true, 0, 0]);
   });
 });

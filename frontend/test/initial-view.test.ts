@@ -16,8 +16,8 @@ function viewOf(isFree: boolean): ViewState {
   const connection = new Connection("ws://localhost/ws");
   vi.spyOn(connection, "send").mockImplementation(() => true);
   const { view } = new Session(connection);
-  const said = { cls: "rviz_default_plugins/Orbit", name: "Current View", values: { ...VALUES } };
-  connection.message.emit({ type: "view_state", view: said, revision: 1, whole_robot: isFree });
+  const state = { cls: "rviz_default_plugins/Orbit", name: "Current View", values: { ...VALUES } };
+  connection.message.emit({ type: "view_state", view: state, revision: 1, whole_robot: isFree });
   return view;
 }
 
@@ -39,20 +39,20 @@ class Hall implements InitialViewWorld {
     private readonly walls: readonly (readonly [x: number, height: number])[] = [],
   ) {}
 
-  fallen = false;
+  hasFallen = false;
 
-  boundsByKind(): { robots: Box3; world: Box3 } {
-    return { robots: this.hasRobots && !this.fallen ? ROBOT : new Box3(), world: HALL };
+  computeBoundsByKind(): { robots: Box3; world: Box3 } {
+    return { robots: this.hasRobots && !this.hasFallen ? ROBOT : new Box3(), world: HALL };
   }
 
-  cameraOfFile(): Matrix4 | null {
+  readCameraOfFile(): Matrix4 | null {
     return this.camera;
   }
 
   isClear({ ray: { origin, direction }, far }: Raycaster): boolean {
     return !this.walls.some(([x, height]) => {
-      const along = (x - origin.x) / direction.x;
-      return along > 0 && along < far && origin.z + along * direction.z < height;
+      const distance = (x - origin.x) / direction.x;
+      return distance > 0 && distance < far && origin.z + distance * direction.z < height;
     });
   }
 
@@ -82,38 +82,38 @@ describe("the initial view of a world", () => {
   it("shows the whole world, once, if the robot has fallen out of it", () => {
     const view = viewOf(true);
     const hall = new Hall(true);
-    hall.fallen = true;
+    hall.hasFallen = true;
     setInitialView(hall, view, SIZE);
     expect(view.camera.focal).toEqual([0, 0, 1.5]);
-    hall.fallen = false;
+    hall.hasFallen = false;
     setInitialView(hall, view, SIZE);
     expect(view.camera.focal).toEqual([0, 0, 1.5]);
   });
 
   it("does not move a camera that a file or user has placed", () => {
-    const chosen = viewOf(false);
-    setInitialView(new Hall(true), chosen, SIZE);
-    expect(chosen.values).toEqual(VALUES);
-    const moved = viewOf(true);
-    moved.update({ Yaw: 3 });
-    setInitialView(new Hall(true), moved, SIZE);
-    expect(moved.values).toEqual({ ...VALUES, Yaw: 3 });
+    const fileView = viewOf(false);
+    setInitialView(new Hall(true), fileView, SIZE);
+    expect(fileView.values).toEqual(VALUES);
+    const userView = viewOf(true);
+    userView.update({ Yaw: 3 });
+    setInitialView(new Hall(true), userView, SIZE);
+    expect(userView.values).toEqual({ ...VALUES, Yaw: 3 });
   });
 
   it("chooses another side, a higher or a nearer viewpoint if walls hide the robot", () => {
-    const from = (walls: readonly (readonly [number, number])[]): Vector => {
+    const chooseViewpoint = (walls: readonly (readonly [number, number])[]): Vector => {
       const view = viewOf(true);
       setInitialView(new Hall(true, walls), view, SIZE);
       return view.camera.position;
     };
-    const free = from([]);
-    expect(free[0]).toBeGreaterThan(5);
-    expect(from([[5.5, 9]])[0]).toBeLessThan(4.2);
-    expect(from([[5.5, 2], [3, 2]])[2]).toBeGreaterThan(free[2] + 1);
-    const between = from([[4.7, 99], [3.7, 99]]);
-    expect(distanceBetween(between, [4.2, 0, 0.15])).toBeLessThan(distanceBetween(free, [4.2, 0, 0.15]));
-    expect(between[0]).toBeGreaterThan(3.7);
-    expect(between[0]).toBeLessThan(4.7);
+    const freePosition = chooseViewpoint([]);
+    expect(freePosition[0]).toBeGreaterThan(5);
+    expect(chooseViewpoint([[5.5, 9]])[0]).toBeLessThan(4.2);
+    expect(chooseViewpoint([[5.5, 2], [3, 2]])[2]).toBeGreaterThan(freePosition[2] + 1);
+    const positionBetween = chooseViewpoint([[4.7, 99], [3.7, 99]]);
+    expect(distanceBetween(positionBetween, [4.2, 0, 0.15])).toBeLessThan(distanceBetween(freePosition, [4.2, 0, 0.15]));
+    expect(positionBetween[0]).toBeGreaterThan(3.7);
+    expect(positionBetween[0]).toBeLessThan(4.7);
   });
 
   it("is the camera of the world's file, with or without robots", () => {
@@ -121,7 +121,7 @@ describe("the initial view of a world", () => {
     const hall = new Hall(true);
     hall.camera = new Matrix4().setPosition(1, 2, 3);
     setInitialView(hall, view, SIZE);
-    expect(view.camera.position.map((each) => Math.round(each * 1e6) / 1e6)).toEqual([1, 2, 3]);
-    expect(view.camera.focal?.map((each) => Math.round(each * 1e6) / 1e6)).toEqual([4, 2, 3]);
+    expect(view.camera.position.map((value) => Math.round(value * 1e6) / 1e6)).toEqual([1, 2, 3]);
+    expect(view.camera.focal?.map((value) => Math.round(value * 1e6) / 1e6)).toEqual([4, 2, 3]);
   });
 });

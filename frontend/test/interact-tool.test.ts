@@ -10,24 +10,24 @@ import { OrbitController } from "../src/state/views/orbit";
 // The page's texts read the browser's language when they are imported.
 vi.mock("../src/strings", () => ({ strings: { views: { mouse: {} } } }));
 
-let told: ScenePointer["type"][];
-let under: string | null;
-let takes: boolean;
+let pointerTypes: ScenePointer["type"][];
+let hoveredKey: string | null;
+let acceptsPress: boolean;
 let interaction: object;
-let dragged: number;
+let dragCount: number;
 let tool: InteractTool;
 
-function event(part: Partial<ToolEvent> & Pick<ToolEvent, "type">): ToolEvent {
+function createEvent(part: Partial<ToolEvent> & Pick<ToolEvent, "type">): ToolEvent {
   const buttons = { left: false, middle: false, right: false, button: null };
   return { x: 1, y: 2, dx: 1, dy: 0, wheel: 0, shift: false, ctrl: false, alt: false, click: false, ...buttons, ...part };
 }
 
 beforeEach(() => {
-  [told, under, takes, dragged] = [[], null, true, 0];
+  [pointerTypes, hoveredKey, acceptsPress, dragCount] = [[], null, true, 0];
   const drawing = {
     onPointer: ({ type }: ScenePointer) => {
-      told.push(type);
-      return takes;
+      pointerTypes.push(type);
+      return acceptsPress;
     },
   } as unknown as Drawing;
   const stage = {
@@ -35,7 +35,7 @@ beforeEach(() => {
     isFocalShapeVisible: false,
     viewport: { size: { width: 100, height: 100 } },
     picker: {
-      objectAt: () => under && { display: "d", drawing, hit: { key: under, distance: 1, point: new Vector3() } },
+      objectAt: () => hoveredKey && { display: "d", drawing, hit: { key: hoveredKey, distance: 1, point: new Vector3() } },
       rayAt: () => new Raycaster(),
       selectAt: () => undefined,
     },
@@ -43,49 +43,49 @@ beforeEach(() => {
       interaction = next;
     },
   } as unknown as Stage;
-  const view = { controller: new OrbitController(), drag: () => (dragged += 1), wheel: () => undefined };
+  const view = { controller: new OrbitController(), drag: () => (dragCount += 1), wheel: () => undefined };
   const state = { rows: { bool: () => true } };
-  const nothing = (): void => undefined;
-  tool = new InteractTool({ stage, session: { view }, state, setHint: nothing, setCursor: nothing, finish: nothing } as unknown as ToolContext);
+  const doNothing = (): void => undefined;
+  tool = new InteractTool({ stage, session: { view }, state, setHint: doNothing, setCursor: doNothing, finish: doNothing } as unknown as ToolContext);
   tool.activate();
 });
 
 describe("the Interact tool", () => {
   it("notifies drawings when the pointer enters and leaves their objects", () => {
-    tool.onPointer(event({ type: "move" }));
-    under = "a";
-    tool.onPointer(event({ type: "move" }));
-    under = "b";
-    tool.onPointer(event({ type: "move" }));
-    under = null;
-    tool.onPointer(event({ type: "move" }));
-    expect(told).toEqual(["enter", "move", "leave", "enter", "move", "leave"]);
+    tool.onPointer(createEvent({ type: "move" }));
+    hoveredKey = "a";
+    tool.onPointer(createEvent({ type: "move" }));
+    hoveredKey = "b";
+    tool.onPointer(createEvent({ type: "move" }));
+    hoveredKey = null;
+    tool.onPointer(createEvent({ type: "move" }));
+    expect(pointerTypes).toEqual(["enter", "move", "leave", "enter", "move", "leave"]);
   });
 
   it("keeps an object that accepts the press until the button is released, and hides the others", () => {
-    under = "a";
-    tool.onPointer(event({ type: "down", button: "left", left: true }));
+    hoveredKey = "a";
+    tool.onPointer(createEvent({ type: "down", button: "left", left: true }));
     expect(interaction).toEqual({ isEnabled: true, hidesOthers: true });
-    under = null;
-    tool.onPointer(event({ type: "move", left: true }));
-    tool.onPointer(event({ type: "up", button: "left" }));
-    expect(told).toEqual(["enter", "down", "move", "up", "leave"]);
+    hoveredKey = null;
+    tool.onPointer(createEvent({ type: "move", left: true }));
+    tool.onPointer(createEvent({ type: "up", button: "left" }));
+    expect(pointerTypes).toEqual(["enter", "down", "move", "up", "leave"]);
     expect(interaction).toEqual({ isEnabled: true, hidesOthers: false });
-    expect(dragged).toBe(0);
+    expect(dragCount).toBe(0);
   });
 
   it("moves the camera if the press was not on an object, even while the pointer is over one", () => {
-    tool.onPointer(event({ type: "down", button: "left", left: true }));
-    under = "a";
-    tool.onPointer(event({ type: "move", left: true }));
-    expect([told, dragged]).toEqual([[], 1]);
+    tool.onPointer(createEvent({ type: "down", button: "left", left: true }));
+    hoveredKey = "a";
+    tool.onPointer(createEvent({ type: "move", left: true }));
+    expect([pointerTypes, dragCount]).toEqual([[], 1]);
   });
 
   it("moves the camera if the drawing refuses the press", () => {
-    [under, takes] = ["a", false];
-    tool.onPointer(event({ type: "down", button: "left", left: true }));
-    tool.onPointer(event({ type: "move", left: true }));
-    expect(dragged).toBe(1);
+    [hoveredKey, acceptsPress] = ["a", false];
+    tool.onPointer(createEvent({ type: "down", button: "left", left: true }));
+    tool.onPointer(createEvent({ type: "move", left: true }));
+    expect(dragCount).toBe(1);
     expect(interaction).toEqual({ isEnabled: true, hidesOthers: false });
   });
 

@@ -9,29 +9,29 @@ import { openBrowserStorage } from "../src/storage";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
 
-function control(name: string, part: Partial<JointControl> = {}): JointControl {
+function createControl(name: string, part: Partial<JointControl> = {}): JointControl {
   return { name, kind: "revolute", lower: -1, upper: 2, zero: 0, mimic: null, multiplier: 1, offset: 0, ...part };
 }
 
 describe("moving joints", () => {
-  let sent: PageMessage[];
-  let frames: (() => void)[];
+  let sentMessages: PageMessage[];
+  let frameCallbacks: (() => void)[];
   let joints: JointsState;
   let emit: (message: ServerMessage) => void;
 
   beforeEach(() => {
-    sent = [];
-    frames = [];
+    sentMessages = [];
+    frameCallbacks = [];
     const connection = new Connection("ws://localhost/ws");
-    vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+    vi.spyOn(connection, "send").mockImplementation((message) => void sentMessages.push(message));
     emit = (message) => connection.message.emit(message);
-    joints = new JointsState(connection, (work) => frames.push(work));
-    const controls = [control("grip"), control("claw", { mimic: "grip", multiplier: -2, offset: 0.5 })];
-    connection.message.emit({ type: "joints", controls: [...controls, control("tip", { mimic: "claw" })] });
+    joints = new JointsState(connection, (callback) => frameCallbacks.push(callback));
+    const controls = [createControl("grip"), createControl("claw", { mimic: "grip", multiplier: -2, offset: 0.5 })];
+    connection.message.emit({ type: "joints", controls: [...controls, createControl("tip", { mimic: "claw" })] });
   });
 
-  function frame(): void {
-    for (const work of frames.splice(0)) work();
+  function runFrame(): void {
+    for (const callback of frameCallbacks.splice(0)) callback();
   }
 
   describe("of a program that was started again", () => {
@@ -44,43 +44,43 @@ describe("moving joints", () => {
       joints.onProgramRestarted(true);
       emit({ type: "joints", controls: null });
       emit({ type: "joints", controls: [] });
-      expect(sent).toEqual([]);
-      emit({ type: "joints", controls: [control("grip"), control("claw"), control("lift")] });
-      emit({ type: "joints", controls: [control("grip")] });
-      expect(sent).toEqual([{ type: "set_joint", name: "grip", position: 0.7 }]);
+      expect(sentMessages).toEqual([]);
+      emit({ type: "joints", controls: [createControl("grip"), createControl("claw"), createControl("lift")] });
+      emit({ type: "joints", controls: [createControl("grip")] });
+      expect(sentMessages).toEqual([{ type: "set_joint", name: "grip", position: 0.7 }]);
     });
 
     it("does not move joints that were at zero, are gone, or belong to another robot that is shown now", () => {
       joints.onProgramRestarted(true);
-      emit({ type: "joints", controls: [control("other")] });
+      emit({ type: "joints", controls: [createControl("other")] });
       emit({ type: "joint_positions", positions: { other: 0 } });
       joints.onProgramRestarted(true);
-      emit({ type: "joints", controls: [control("other")] });
+      emit({ type: "joints", controls: [createControl("other")] });
       emit({ type: "joint_positions", positions: { other: 1 } });
       joints.onProgramRestarted(false);
-      emit({ type: "joints", controls: [control("other")] });
-      expect(sent).toEqual([]);
+      emit({ type: "joints", controls: [createControl("other")] });
+      expect(sentMessages).toEqual([]);
     });
   });
 
   it("sends the first move immediately and the others of a frame as one", () => {
     for (const position of [0.1, 0.2, 0.3]) joints.move({ grip: position });
     joints.move({ lift: 1 });
-    expect(sent).toEqual([{ type: "set_joint", name: "grip", position: 0.1 }]);
-    frame();
-    expect(sent[1]).toEqual({ type: "set_joints", positions: { grip: 0.3, lift: 1 } });
-    frame();
-    frame();
-    expect(sent).toHaveLength(2);
+    expect(sentMessages).toEqual([{ type: "set_joint", name: "grip", position: 0.1 }]);
+    runFrame();
+    expect(sentMessages[1]).toEqual({ type: "set_joints", positions: { grip: 0.3, lift: 1 } });
+    runFrame();
+    runFrame();
+    expect(sentMessages).toHaveLength(2);
     joints.move({ grip: 0.4 });
-    expect(sent).toHaveLength(3);
+    expect(sentMessages).toHaveLength(3);
   });
 
   it("finds the joint that moves a mimic joint, and its required position", () => {
     expect(joints.leaderOf("grip", 0.7)?.position).toBe(0.7);
-    const found = joints.leaderOf("tip", 1.5);
-    expect(found?.control.name).toBe("grip");
-    expect(found?.position).toBe(-0.5);
+    const leader = joints.leaderOf("tip", 1.5);
+    expect(leader?.control.name).toBe("grip");
+    expect(leader?.position).toBe(-0.5);
     expect(joints.leaderOf("fixed", 0)).toBeNull();
   });
 });
@@ -141,13 +141,13 @@ describe("a sweep", () => {
   });
 
   it("moves joints one after another, each back to its start, or all at once", () => {
-    const controls = [control("a"), control("b", { lower: 0, upper: 1 }), control("c", { mimic: "a" })];
+    const controls = [createControl("a"), createControl("b", { lower: 0, upper: 1 }), createControl("c", { mimic: "a" })];
     const start = { a: 0.5, b: 0.25 };
-    const one = new Sweep(controls, start, "one");
-    expect(one.positionsAt(1)).toEqual({ a: 2, b: 0.25 });
-    expect(one.positionsAt(5)).toEqual({ a: 0.5, b: 0.75 });
-    const all = new Sweep(controls, start, "all").positionsAt(1);
-    expect(all).toEqual({ a: 2, b: 0.75 });
+    const sequentialSweep = new Sweep(controls, start, "one");
+    expect(sequentialSweep.positionsAt(1)).toEqual({ a: 2, b: 0.25 });
+    expect(sequentialSweep.positionsAt(5)).toEqual({ a: 0.5, b: 0.75 });
+    const positions = new Sweep(controls, start, "all").positionsAt(1);
+    expect(positions).toEqual({ a: 2, b: 0.75 });
     expect(new Sweep([], {}, "one").positionsAt(3)).toEqual({});
   });
 });

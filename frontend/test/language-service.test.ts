@@ -12,24 +12,24 @@ afterEach(() => {
   vi.useRealTimers();
 });
 
-interface Sent {
+interface SentMessage {
   readonly id?: number;
   readonly method: string;
 }
 
-function begin() {
-  const sent: Sent[] = [];
+function startService() {
+  const sentMessages: SentMessage[] = [];
   let receive: (message: { content: string }) => void = () => undefined;
   const connection = {
-    send: ({ content }: { content: string }) => sent.push(JSON.parse(content) as Sent),
+    send: ({ content }: { content: string }) => sentMessages.push(JSON.parse(content) as SentMessage),
     on: (_: string, listener: typeof receive) => (receive = listener),
   };
   const { client } = connect(connection as unknown as Connection);
   return {
     client,
-    methods: () => sent.map(({ method }) => method),
+    methods: () => sentMessages.map(({ method }) => method),
     answer: (method: string, result: unknown) => {
-      const id = sent.find((candidate) => candidate.method === method)?.id;
+      const id = sentMessages.find((candidate) => candidate.method === method)?.id;
       receive({ content: JSON.stringify({ jsonrpc: "2.0", id, result }) });
     },
   };
@@ -42,7 +42,7 @@ function connect(connection: Connection): LanguageService {
 }
 
 it("requests wait for a server that starts slowly", async () => {
-  const { client, methods, answer } = begin();
+  const { client, methods, answer } = startService();
   const symbols = client.request<object, string[]>("workspace/symbol", {});
   await vi.advanceTimersByTimeAsync(120_000);
   expect(methods()).toEqual(["initialize"]);
@@ -53,7 +53,7 @@ it("requests wait for a server that starts slowly", async () => {
 });
 
 it("a request without an answer ends, with none if the next key repeats it", async () => {
-  const { client, answer } = begin();
+  const { client, answer } = startService();
   answer("initialize", { capabilities: {} });
   const hover = client.request("textDocument/hover", {});
   const symbols = client.request("workspace/symbol", {}).catch((error: unknown) => String(error));

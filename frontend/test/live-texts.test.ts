@@ -14,7 +14,7 @@ afterEach(() => {
   vi.useRealTimers();
 });
 
-function begin() {
+function openDocument() {
   const document = new SourceDocument(PATH, `file://${PATH}`, 1, EditorState.create({ doc: "<robot/>" }));
   const sentTexts: (string | null)[] = [];
   let answer: (message: UnsavedTextShown) => void = () => undefined;
@@ -43,7 +43,7 @@ function begin() {
 }
 
 it("a saved text is removed from the server, also if the answer about it arrives between saving and the next request", () => {
-  const { liveTexts, sentTexts, type, save, answer } = begin();
+  const { liveTexts, sentTexts, type, save, answer } = openDocument();
   type("\n");
   vi.runAllTimers();
   expect(sentTexts).toEqual(["<robot/>\n"]);
@@ -57,7 +57,7 @@ it("a saved text is removed from the server, also if the answer about it arrives
 });
 
 it("a text is removed from the server once, and sent again after a new change", () => {
-  const { liveTexts, sentTexts, type, save, answer } = begin();
+  const { liveTexts, sentTexts, type, save, answer } = openDocument();
   type("\n");
   vi.runAllTimers();
   save();

@@ -3,20 +3,20 @@ import type { Connection } from "../src/connection/connection";
 import type { LogLine } from "../src/protocol";
 import { LogState } from "../src/state/monitor/log";
 
-const line = (message: string, time: number): LogLine => ({ level: 20, node: "talker", message, time, file: "", function: "", line: 0 });
+const createLine = (message: string, time: number): LogLine => ({ level: 20, node: "talker", message, time, file: "", function: "", line: 0 });
 
 describe("the log of a page that reconnects", () => {
   it("has each record once, although the server sends the history first", () => {
-    const on = new Map<string, (message: unknown) => void>();
-    const connection = { on: (type: string, take: (message: unknown) => void) => on.set(type, take), send: () => undefined };
+    const listeners = new Map<string, (message: unknown) => void>();
+    const connection = { on: (type: string, listener: (message: unknown) => void) => listeners.set(type, listener), send: () => undefined };
     const log = new LogState(connection as unknown as Connection, { getItem: () => null, setItem: () => undefined });
-    const tell = (...lines: LogLine[]): void => on.get("log_lines")?.({ lines, missed: 0 });
-    on.get("hello")?.({});
-    tell(line("a", 1), line("b", 2));
-    tell(line("b", 2));
+    const receiveLines = (...lines: LogLine[]): void => listeners.get("log_lines")?.({ lines, missed: 0 });
+    listeners.get("hello")?.({});
+    receiveLines(createLine("a", 1), createLine("b", 2));
+    receiveLines(createLine("b", 2));
     expect(log.lines.map(({ message }) => message)).toEqual(["a", "b", "b"]);
-    on.get("hello")?.({});
-    tell(line("a", 1), line("b", 2), line("c", 3));
+    listeners.get("hello")?.({});
+    receiveLines(createLine("a", 1), createLine("b", 2), createLine("c", 3));
     expect(log.lines.map(({ message }) => message)).toEqual(["a", "b", "b", "c"]);
   });
 });

@@ -1,7 +1,7 @@
 import type { Display, Property, RobotScene, Tree } from "../src/protocol";
 
 /** Messages of the server, with defaults for the fields that a test does not need. */
-export function property(part: Partial<Property> & Pick<Property, "id" | "name">): Property {
+export function createProperty(part: Partial<Property> & Pick<Property, "id" | "name">): Property {
   return {
     kind: "float",
     value: null,
@@ -18,7 +18,7 @@ export function property(part: Partial<Property> & Pick<Property, "id" | "name">
   };
 }
 
-export function display(part: Partial<Display> & Pick<Display, "id">): Display {
+export function createDisplay(part: Partial<Display> & Pick<Display, "id">): Display {
   return {
     cls: "rviz_default_plugins/Grid",
     drawing: part.cls ?? "rviz_default_plugins/Grid",
@@ -33,12 +33,12 @@ export function display(part: Partial<Display> & Pick<Display, "id">): Display {
   };
 }
 
-export function tree(...displays: Display[]): Tree {
+export function createTree(...displays: Display[]): Tree {
   return {
     type: "tree",
     global_options: [
-      property({ id: "global/Fixed Frame", name: "Fixed Frame", kind: "frame", value: "base_link" }),
-      property({ id: "global/Frame Rate", name: "Frame Rate", kind: "int", value: 30 }),
+      createProperty({ id: "global/Fixed Frame", name: "Fixed Frame", kind: "frame", value: "base_link" }),
+      createProperty({ id: "global/Frame Rate", name: "Frame Rate", kind: "int", value: 30 }),
     ],
     global_status: [],
     global_level: "ok",
@@ -46,7 +46,7 @@ export function tree(...displays: Display[]): Tree {
   };
 }
 
-export function robot(displayId: string, ...links: string[]): RobotScene {
+export function createRobotScene(displayId: string, ...links: string[]): RobotScene {
   return {
     type: "robot_scene",
     display: displayId,
@@ -66,7 +66,7 @@ export function robot(displayId: string, ...links: string[]): RobotScene {
 }
 
 /** Packs a binary frame like `pack_transforms` of page/protocol/message.py. */
-export function packed(revision: number, poses: readonly (readonly number[])[], ages: readonly number[]): ArrayBuffer {
+export function packTransforms(revision: number, poses: readonly (readonly number[])[], ages: readonly number[]): ArrayBuffer {
   const buffer = new ArrayBuffer(24 + poses.length * 32);
   const view = new DataView(buffer);
   view.setUint32(0, 1, true);

@@ -9,7 +9,7 @@ import { TeleopState } from "../src/state/monitor/teleop";
 import { motionOfKey, STILL, computeDeflection, sumOf } from "../src/state/monitor/teleop-keys";
 import { TopicsState } from "../src/state/monitor/topics";
 
-let sent: PageMessage[];
+let sentMessages: PageMessage[];
 let connection: Connection;
 let texts: Map<string, string>;
 const storage = {
@@ -18,12 +18,12 @@ const storage = {
 };
 
 beforeEach(() => {
-  sent = [];
+  sentMessages = [];
   texts = new Map();
   vi.useFakeTimers();
   vi.stubGlobal("window", { setTimeout });
   connection = new Connection("ws://localhost/ws");
-  vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+  vi.spyOn(connection, "send").mockImplementation((message) => void sentMessages.push(message));
 });
 
 afterEach(() => {
@@ -34,13 +34,13 @@ afterEach(() => {
 describe("topics", () => {
   it("are listed while a list of topics is visible", () => {
     const topics = new TopicsState(connection);
-    const [one, two] = [{}, {}];
-    topics.watchList(one, true);
-    topics.watchList(two, true);
-    topics.watchList(one, false);
-    expect(sent).toEqual([{ type: "watch_topics", listed: true, measured: [], opened: [] }]);
-    topics.watchList(two, false);
-    expect(sent.at(-1)).toMatchObject({ listed: false });
+    const [firstPanel, secondPanel] = [{}, {}];
+    topics.watchList(firstPanel, true);
+    topics.watchList(secondPanel, true);
+    topics.watchList(firstPanel, false);
+    expect(sentMessages).toEqual([{ type: "watch_topics", listed: true, measured: [], opened: [] }]);
+    topics.watchList(secondPanel, false);
+    expect(sentMessages.at(-1)).toMatchObject({ listed: false });
   });
 
   it("are dropped when they are no longer measured", () => {
@@ -92,20 +92,20 @@ describe("parameters", () => {
     connection.message.emit({ type: "node_parameters", node: "/a", parameters: [], error: null });
     expect(parameters.parameters?.node).toBe("/a");
     parameters.watch(false);
-    expect(sent.at(-1)).toEqual({ type: "watch_parameters", listed: false, node: null });
+    expect(sentMessages.at(-1)).toEqual({ type: "watch_parameters", listed: false, node: null });
   });
 });
 
-function line(part: Partial<LogLine>): LogLine {
+function createLine(part: Partial<LogLine>): LogLine {
   return { level: 20, node: "talker", message: "hello", time: 1.5, file: "", function: "", line: 0, ...part };
 }
 
 describe("the log", () => {
-  const receive = (lines: LogLine[], missed = 0): void => connection.message.emit({ type: "log_lines", lines, missed });
+  const receive = (lines: LogLine[], missedCount = 0): void => connection.message.emit({ type: "log_lines", lines, missed: missedCount });
 
   it("shows the records that pass the filters", () => {
     const log = new LogState(connection, storage);
-    receive([line({ level: 10 }), line({ level: 40, node: "base", message: "Hot" }), line({})]);
+    receive([createLine({ level: 10 }), createLine({ level: 40, node: "base", message: "Hot" }), createLine({})]);
     log.setLevel(10, false);
     expect(log.shownLines.map(({ level }) => level)).toEqual([40, 20]);
     log.setNode("base");
@@ -120,7 +120,7 @@ describe("the log", () => {
   it("is frozen while paused, and then shows all that arrived", () => {
     const log = new LogState(connection, storage);
     log.setPaused(true);
-    receive([line({})]);
+    receive([createLine({})]);
     expect(log.lines).toHaveLength(0);
     log.setPaused(false);
     expect(log.shownLines).toHaveLength(1);
@@ -129,7 +129,7 @@ describe("the log", () => {
   it("keeps a limited number of records", () => {
     const log = new LogState(connection, storage);
     for (let block = 0; block < 45; block++) {
-      receive(Array.from({ length: 1000 }, (_, index) => line({ message: String(block * 1000 + index) })), 1);
+      receive(Array.from({ length: 1000 }, (_, index) => createLine({ message: String(block * 1000 + index) })), 1);
     }
     expect(log.lines.length).toBeLessThanOrEqual(MAX_LINES);
     expect(log.shownLines).toHaveLength(log.lines.length);
@@ -138,15 +138,15 @@ describe("the log", () => {
   });
 
   it("is copied in the format of the console", () => {
-    const text = formatLine(line({ level: 30, file: "/x/talker.py", line: 7 }), "WARN");
+    const text = formatLine(createLine({ level: 30, file: "/x/talker.py", line: 7 }), "WARN");
     expect(text).toBe("[WARN] [1.500000000] [talker]: hello (/x/talker.py:7)");
     expect([5, 10, 25, 50, 99].map((level) => levelOf({ level }))).toEqual([10, 10, 20, 50, 50]);
   });
 });
 
 describe("driving", () => {
-  const drives = (): number[][] =>
-    sent.flatMap((message) => (message.type === "drive" ? [[message.linear[0] ?? 0, message.angular[2] ?? 0]] : []));
+  const listDrives = (): number[][] =>
+    sentMessages.flatMap((message) => (message.type === "drive" ? [[message.linear[0] ?? 0, message.angular[2] ?? 0]] : []));
 
   it("by keys works as in teleop_twist_keyboard", () => {
     expect(motionOfKey("i", false)).toEqual({ ...STILL, x: 1 });
@@ -167,20 +167,20 @@ describe("driving", () => {
   it("repeats the command while a key is held and ends with a single zero", () => {
     const teleop = new TeleopState(connection, storage);
     teleop.setOpen(true);
-    expect(sent.at(-1)).toEqual({ type: "aim_teleop", target: { topic: "/cmd_vel", kind: "auto", frame_id: "base_link" } });
+    expect(sentMessages.at(-1)).toEqual({ type: "aim_teleop", target: { topic: "/cmd_vel", kind: "auto", frame_id: "base_link" } });
     teleop.configure({ linear: 2, angular: 3 });
     teleop.move("keys", { ...STILL, x: 1 });
     vi.advanceTimersByTime(500);
-    expect(drives()).toHaveLength(11);
-    expect(drives()[0]).toEqual([2, 0]);
+    expect(listDrives()).toHaveLength(11);
+    expect(listDrives()[0]).toEqual([2, 0]);
     teleop.move("pad", { ...STILL, turn: -0.5 });
     vi.advanceTimersByTime(50);
-    expect(drives().at(-1)).toEqual([2, -1.5]);
+    expect(listDrives().at(-1)).toEqual([2, -1.5]);
     teleop.move("keys", STILL);
     teleop.move("pad", STILL);
     vi.advanceTimersByTime(500);
-    expect(drives().filter(([x, turn]) => x === 0 && turn === 0)).toHaveLength(1);
-    expect(drives().at(-1)).toEqual([0, 0]);
+    expect(listDrives().filter(([x, turn]) => x === 0 && turn === 0)).toHaveLength(1);
+    expect(listDrives().at(-1)).toEqual([0, 0]);
   });
 
   it("stops when the panel is closed or the connection is lost", () => {
@@ -188,14 +188,14 @@ describe("driving", () => {
     teleop.setOpen(true);
     teleop.move("keys", { ...STILL, x: 1 });
     teleop.setOpen(false);
-    expect(sent.slice(-2).map(({ type }) => type)).toEqual(["drive", "aim_teleop"]);
+    expect(sentMessages.slice(-2).map(({ type }) => type)).toEqual(["drive", "aim_teleop"]);
     teleop.setOpen(true);
     teleop.move("keys", { ...STILL, x: 1 });
     connection.stateChanged.emit("reconnecting");
     expect(teleop.motion).toEqual(STILL);
-    const count = drives().length;
+    const count = listDrives().length;
     vi.advanceTimersByTime(500);
-    expect(drives()).toHaveLength(count);
+    expect(listDrives()).toHaveLength(count);
   });
 
   it("stores its settings", () => {

@@ -12,45 +12,45 @@ import {
   type ShaderMaterial,
 } from "three";
 import { describe, expect, it } from "vitest";
-import { rainbow } from "../src/scene/displays/effort";
-import { alongX, ArrowBatch } from "../src/scene/objects/arrow-batch";
+import { rainbowColorOf } from "../src/scene/displays/effort";
+import { poseAlongX, ArrowBatch } from "../src/scene/objects/arrow-batch";
 import { AxesBatch } from "../src/scene/objects/axes-batch";
 import { CopyBatch } from "../src/scene/objects/copy-batch";
 import { CovarianceBatch, type CovarianceStyle } from "../src/scene/objects/covariance-batch";
 import { computePrincipalAxes } from "../src/scene/objects/eigen";
-import { sphereGeometry, coneGeometry, cubeGeometry, rodGeometry } from "../src/scene/objects/geometries";
+import { createSphere, createCone, createCube, createRod } from "../src/scene/objects/geometries";
 import { createRibbons, segmentsOf, stripsOf } from "../src/scene/objects/ribbons";
 
-interface Boxed {
+interface BoundedBatch {
   expandBox(box: Box3): void;
 }
 
 /** Returns bounds with two decimals. */
-function bounds(...batches: Boxed[]): { min: number[]; max: number[] } {
+function computeBounds(...batches: BoundedBatch[]): { min: number[]; max: number[] } {
   const box = new Box3();
   for (const batch of batches) batch.expandBox(box);
-  const round = (vector: Vector3): number[] => vector.toArray().map((each) => Math.round(each * 100) / 100 + 0);
+  const round = (vector: Vector3): number[] => vector.toArray().map((value) => Math.round(value * 100) / 100 + 0);
   return { min: round(box.min), max: round(box.max) };
 }
 
 describe("geometries", () => {
   it("have the sizes that batches rely on", () => {
-    const box = (geometry: { computeBoundingBox(): void; boundingBox: Box3 | null }): Box3 => {
+    const boundingBoxOf = (geometry: { computeBoundingBox(): void; boundingBox: Box3 | null }): Box3 => {
       geometry.computeBoundingBox();
       return geometry.boundingBox!;
     };
-    expect(box(rodGeometry(16)).min.toArray().map(Math.fround)).toEqual([0, -0.5, -0.5]);
-    expect(box(rodGeometry(16)).max.toArray().map(Math.fround)).toEqual([1, 0.5, 0.5]);
-    expect(box(coneGeometry(16)).max.x).toBeCloseTo(1);
-    expect(box(sphereGeometry(16)).getSize(new Vector3()).z).toBeCloseTo(1);
-    expect(box(cubeGeometry()).getSize(new Vector3()).toArray()).toEqual([1, 1, 1]);
+    expect(boundingBoxOf(createRod(16)).min.toArray().map(Math.fround)).toEqual([0, -0.5, -0.5]);
+    expect(boundingBoxOf(createRod(16)).max.toArray().map(Math.fround)).toEqual([1, 0.5, 0.5]);
+    expect(boundingBoxOf(createCone(16)).max.x).toBeCloseTo(1);
+    expect(boundingBoxOf(createSphere(16)).getSize(new Vector3()).z).toBeCloseTo(1);
+    expect(boundingBoxOf(createCube()).getSize(new Vector3()).toArray()).toEqual([1, 1, 1]);
   });
 });
 
 describe("CopyBatch", () => {
   it("draws translucent copies from the farthest to the nearest, and still identifies them", () => {
     const parent = new Group();
-    const batch = new CopyBatch(parent, cubeGeometry());
+    const batch = new CopyBatch(parent, createCube());
     batch.begin(3);
     for (const x of [3, 1, 2]) batch.add(new Matrix4().makeTranslation(x, 0, 0), 0, 0.5);
     batch.end();
@@ -70,41 +70,41 @@ describe("CopyBatch", () => {
 
   it("draws what is visible to each camera, and still identifies all copies", () => {
     const parent = new Group();
-    const batch = new CopyBatch(parent, cubeGeometry());
+    const batch = new CopyBatch(parent, createCube());
     batch.begin(3);
     for (const x of [5, -5, 7]) batch.add(new Matrix4().makeTranslation(x, 0, 0));
     batch.end();
     const mesh = parent.children[0] as Mesh<BufferGeometry, ShaderMaterial>;
     const { slots } = mesh.material.uniforms as { slots: { value: DataTexture } };
-    const drawn = (towards: number): number[] => {
+    const drawToward = (targetX: number): number[] => {
       const camera = new PerspectiveCamera();
-      camera.lookAt(towards, 0, 0);
+      camera.lookAt(targetX, 0, 0);
       camera.updateMatrixWorld();
       (mesh as unknown as { onBeforeRender(...args: unknown[]): void }).onBeforeRender(null, null, camera);
-      const count = mesh.geometry.drawRange.count / cubeGeometry().index!.count;
+      const count = mesh.geometry.drawRange.count / createCube().index!.count;
       return Array.from({ length: count }, (_, slot) => (slots.value.image.data as Float32Array)[slot * 16 + 3]!);
     };
-    expect(drawn(1)).toEqual([5, 7]);
-    expect(drawn(-1)).toEqual([-5]);
+    expect(drawToward(1)).toEqual([5, 7]);
+    expect(drawToward(-1)).toEqual([-5]);
     expect(batch.size).toBe(3);
-    expect(bounds(batch).max[0]).toBe(7.5);
+    expect(computeBounds(batch).max[0]).toBe(7.5);
     expect(batch.pick(new Raycaster(new Vector3(-10, 0, 0), new Vector3(1, 0, 0)))?.copy).toBe(1);
     batch.begin(1);
     batch.add(new Matrix4().makeTranslation(6, 0, 0));
     batch.end();
-    expect(drawn(1)).toEqual([6]);
+    expect(drawToward(1)).toEqual([6]);
     batch.dispose();
   });
 
   it("places copies according to their matrices", () => {
     const parent = new Group();
-    const batch = new CopyBatch(parent, cubeGeometry());
+    const batch = new CopyBatch(parent, createCube());
     batch.begin(3);
     batch.add(new Matrix4().makeTranslation(5, 0, 0));
     batch.add(new Matrix4().makeRotationZ(Math.PI / 2).multiply(new Matrix4().makeScale(4, 1, 1)), 0, 0.5, 0x123456);
     batch.end();
     expect(batch.size).toBe(2);
-    expect(bounds(batch)).toEqual({ min: [-0.5, -2, -0.5], max: [5.5, 2, 0.5] });
+    expect(computeBounds(batch)).toEqual({ min: [-0.5, -2, -0.5], max: [5.5, 2, 0.5] });
     batch.begin(1);
     batch.end();
     expect(parent.children[0]!.visible).toBe(false);
@@ -120,14 +120,14 @@ describe("ArrowBatch", () => {
     const shape = { shaftLength: 1, shaftDiameter: 0.1, headLength: 0.3, headDiameter: 0.2 };
     arrows.add(new Matrix4().makeTranslation(0, 0, 2), shape, { color: 0xff0000 });
     arrows.end();
-    expect(bounds(arrows)).toEqual({ min: [0, -0.1, 1.9], max: [1.3, 0.1, 2.1] });
+    expect(computeBounds(arrows)).toEqual({ min: [0, -0.1, 1.9], max: [1.3, 0.1, 2.1] });
   });
 
   it("points in any direction", () => {
-    const pose = alongX(new Vector3(1, 2, 3), new Vector3(0, 0, -7), new Matrix4());
+    const pose = poseAlongX(new Vector3(1, 2, 3), new Vector3(0, 0, -7), new Matrix4());
     expect(new Vector3(1, 0, 0).applyMatrix4(pose).distanceTo(new Vector3(1, 2, 2))).toBeLessThan(1e-6);
-    const back = alongX(new Vector3(), new Vector3(-1, 0, 0), new Matrix4());
-    expect(new Vector3(1, 0, 0).applyMatrix4(back).x).toBeCloseTo(-1);
+    const backwardPose = poseAlongX(new Vector3(), new Vector3(-1, 0, 0), new Matrix4());
+    expect(new Vector3(1, 0, 0).applyMatrix4(backwardPose).x).toBeCloseTo(-1);
   });
 });
 
@@ -138,31 +138,31 @@ describe("AxesBatch", () => {
     axes.begin(1);
     axes.add(new Matrix4());
     axes.end();
-    expect(bounds(axes)).toEqual({ min: [-0.25, -0.25, -0.25], max: [2, 2, 2] });
+    expect(computeBounds(axes)).toEqual({ min: [-0.25, -0.25, -0.25], max: [2, 2, 2] });
   });
 });
 
 describe("ribbons", () => {
   it("share the vertices of a corner, along the bisector of both directions", () => {
-    const made = createRibbons([new Float32Array([0, 0, 0, 1, 0, 0, 1, 3, 0])]);
-    expect(made.positions).toHaveLength(18);
-    expect([...made.sides]).toEqual([-0.5, 0.5, -0.5, 0.5, -0.5, 0.5]);
-    expect([...made.directions.subarray(6, 9)]).toEqual([1, 1, 0]);
-    expect([...made.directions.subarray(12, 15)]).toEqual([0, 1, 0]);
-    expect([...made.indices]).toEqual([0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4]);
+    const ribbons = createRibbons([new Float32Array([0, 0, 0, 1, 0, 0, 1, 3, 0])]);
+    expect(ribbons.positions).toHaveLength(18);
+    expect([...ribbons.sides]).toEqual([-0.5, 0.5, -0.5, 0.5, -0.5, 0.5]);
+    expect([...ribbons.directions.subarray(6, 9)]).toEqual([1, 1, 0]);
+    expect([...ribbons.directions.subarray(12, 15)]).toEqual([0, 1, 0]);
+    expect([...ribbons.indices]).toEqual([0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4]);
   });
 
   it("do not connect strips", () => {
     const line = new Float32Array([0, 0, 0, 1, 0, 0]);
-    const made = createRibbons([line, line], [new Float32Array(8).fill(1), new Float32Array(8).fill(0.5)]);
-    expect([...made.indices]).toEqual([0, 1, 3, 0, 3, 2, 4, 5, 7, 4, 7, 6]);
-    expect([...made.colors!.subarray(16, 20)]).toEqual([0.5, 0.5, 0.5, 0.5]);
+    const ribbons = createRibbons([line, line], [new Float32Array(8).fill(1), new Float32Array(8).fill(0.5)]);
+    expect([...ribbons.indices]).toEqual([0, 1, 3, 0, 3, 2, 4, 5, 7, 4, 7, 6]);
+    expect([...ribbons.colors!.subarray(16, 20)]).toEqual([0.5, 0.5, 0.5, 0.5]);
   });
 
   it("handle lines that reverse, and strips of one point", () => {
-    const made = createRibbons([new Float32Array([0, 0, 0, 1, 0, 0, 0, 0, 0]), new Float32Array([5, 5, 5])]);
-    expect([...made.directions.subarray(6, 9)]).toEqual([-1, 0, 0]);
-    expect(made.indices).toHaveLength(12);
+    const ribbons = createRibbons([new Float32Array([0, 0, 0, 1, 0, 0, 0, 0, 0]), new Float32Array([5, 5, 5])]);
+    expect([...ribbons.directions.subarray(6, 9)]).toEqual([-1, 0, 0]);
+    expect(ribbons.indices).toHaveLength(12);
   });
 
   it("convert from segments and back", () => {
@@ -197,33 +197,33 @@ describe("CovarianceBatch", () => {
     orientation: { isLocal: true, colors: [1, 2, 3], alpha: 1, offset: 2, scale: 1 },
   };
 
-  function drawn(diagonal: number[], style: CovarianceStyle, pose = [0, 0, 0, 0, 0, 0, 1]): ReturnType<typeof bounds> {
+  function drawCovariance(diagonal: number[], style: CovarianceStyle, pose = [0, 0, 0, 0, 0, 0, 1]): ReturnType<typeof computeBounds> {
     const covariance = new Float32Array(36);
     diagonal.forEach((value, i) => (covariance[i * 7] = value));
     const batch = new CovarianceBatch(new Group());
     batch.begin(1);
     batch.add(new Matrix4(), new Float32Array(pose), covariance, style);
     batch.end();
-    return bounds(batch);
+    return computeBounds(batch);
   }
 
   it("draws one standard deviation of the position in each direction", () => {
-    expect(drawn([4, 1, 0.25, 1, 1, 1], POSITION)).toEqual({ min: [-2, -1, -0.5], max: [2, 1, 0.5] });
+    expect(drawCovariance([4, 1, 0.25, 1, 1, 1], POSITION)).toEqual({ min: [-2, -1, -0.5], max: [2, 1, 0.5] });
   });
 
   it("does not rotate the position with the pose", () => {
-    const turned = new Quaternion().setFromAxisAngle(new Vector3(0, 0, 1), Math.PI / 2).toArray();
-    expect(drawn([4, 1, 0.25, 1, 1, 1], POSITION, [1, 0, 0, ...turned]).max).toEqual([3, 1, 0.5]);
+    const quarterTurn = new Quaternion().setFromAxisAngle(new Vector3(0, 0, 1), Math.PI / 2).toArray();
+    expect(drawCovariance([4, 1, 0.25, 1, 1, 1], POSITION, [1, 0, 0, ...quarterTurn]).max).toEqual([3, 1, 0.5]);
   });
 
   it("draws an ellipse and a triangle for a planar pose", () => {
-    expect(drawn([4, 1, 0, 0, 0, 0.01], POSITION)).toEqual({ min: [-2, -1, 0], max: [2, 1, 0] });
-    const { min, max } = drawn([4, 1, 0, 0, 0, 0.01], ORIENTATION);
+    expect(drawCovariance([4, 1, 0, 0, 0, 0.01], POSITION)).toEqual({ min: [-2, -1, 0], max: [2, 1, 0] });
+    const { min, max } = drawCovariance([4, 1, 0, 0, 0, 0.01], ORIENTATION);
     expect([min[0], max[0], max[1]]).toEqual([0, 2, 0.2]);
   });
 
   it("tilts each axis by the rotations about the others", () => {
-    const { min, max } = drawn([1, 1, 1, 0.01, 0.04, 0.0001], ORIENTATION);
+    const { min, max } = drawCovariance([1, 1, 1, 0.01, 0.04, 0.0001], ORIENTATION);
     // Pitch moves x along z and z along x, roll moves y along z and z along y, yaw has almost no effect.
     expect(max).toEqual([2, 2, 2]);
     expect(min[2]).toBeCloseTo(-0.41, 1);
@@ -232,13 +232,13 @@ describe("CovarianceBatch", () => {
   });
 
   it("draws nothing for an invalid covariance", () => {
-    expect(drawn([-1, 1, 1, 1, 1, 1], POSITION).min).toEqual([Infinity, Infinity, Infinity]);
+    expect(drawCovariance([-1, 1, 1, 1, 1, 1], POSITION).min).toEqual([Infinity, Infinity, Infinity]);
   });
 });
 
 describe("colors of efforts", () => {
   it("range from violet to red", () => {
-    expect([0, 0.2, 0.4, 0.6, 0.8, 1].map((value) => rainbow(value).map((part) => Math.round(part)))).toEqual([
+    expect([0, 0.2, 0.4, 0.6, 0.8, 1].map((value) => rainbowColorOf(value).map((part) => Math.round(part)))).toEqual([
       [1, 0, 1],
       [0, 0, 1],
       [0, 1, 1],
@@ -250,19 +250,19 @@ describe("colors of efforts", () => {
 });
 
 describe("picking", () => {
-  const ray = (x: number, y: number): Raycaster => new Raycaster(new Vector3(x, y, 10), new Vector3(0, 0, -1));
+  const createRay = (x: number, y: number): Raycaster => new Raycaster(new Vector3(x, y, 10), new Vector3(0, 0, -1));
 
   it("finds the nearest copy, and three.js the bounds of all", () => {
     const parent = new Group();
-    const batch = new CopyBatch(parent, cubeGeometry());
+    const batch = new CopyBatch(parent, createCube());
     batch.begin(3);
     batch.add(new Matrix4());
     batch.add(new Matrix4().makeTranslation(0, 0, 2));
     batch.add(new Matrix4().makeTranslation(5, 0, 0));
     batch.end();
-    expect(batch.pick(ray(0, 0))).toMatchObject({ copy: 1, distance: 7.5 });
-    expect(batch.pick(ray(5, 0.2))?.copy).toBe(2);
-    expect(batch.pick(ray(2, 0))).toBeNull();
+    expect(batch.pick(createRay(0, 0))).toMatchObject({ copy: 1, distance: 7.5 });
+    expect(batch.pick(createRay(5, 0.2))?.copy).toBe(2);
+    expect(batch.pick(createRay(2, 0))).toBeNull();
     expect(new Box3().setFromObject(parent).max.toArray()).toEqual([5.5, 0.5, 2.5]);
   });
 
@@ -273,6 +273,6 @@ describe("picking", () => {
     arrows.add(new Matrix4(), { ...shape, shaftLength: 0 }, { color: 0 });
     arrows.add(new Matrix4().makeTranslation(0, 3, 0), shape, { color: 0 });
     arrows.end();
-    expect([ray(0.1, 0.01), ray(0.5, 3), ray(1.1, 3.01)].map((each) => arrows.pick(each)?.copy)).toEqual([0, 1, 1]);
+    expect([createRay(0.1, 0.01), createRay(0.5, 3), createRay(1.1, 3.01)].map((ray) => arrows.pick(ray)?.copy)).toEqual([0, 1, 1]);
   });
 });

@@ -2,13 +2,13 @@ import { expect, test } from "vitest";
 import { describePoint } from "../src/scene/displays/cloud-description";
 import { mapPalette } from "../src/scene/displays/map-palette";
 import { findNearestPoint } from "../src/scene/objects/nearest-point";
-import { cameraInImageFrame, computeZoom, createProjection } from "../src/scene/images/camera-projection";
+import { createCameraPose, computeZoom, createProjection } from "../src/scene/images/camera-projection";
 import { rgbaOf } from "../src/scene/images/image-canvas";
 import { isShownInCamera } from "../src/scene/images/shown-in-camera";
 import { DisplayState } from "../src/state/displays";
 import { PropertyNode, PropertyRows } from "../src/state/properties";
 import { Vector3 } from "three";
-import { display, property } from "./messages";
+import { createDisplay, createProperty } from "./messages";
 
 const ALONG_X = [1, 0, 0] as const;
 const ORIGIN = [0, 0, 0] as const;
@@ -29,7 +29,7 @@ test("a point is described as in RViz", () => {
   const fields = { intensity: 0.5, rgb: "#102030ff", bad: "nan" };
   const { name, children } = describePoint(7, "", new Float32Array([1, 2, 3.5]), fields);
   expect(name).toBe("Point 7");
-  expect(children?.map((each) => [each.name, each.value])).toEqual([
+  expect(children?.map((item) => [item.name, item.value])).toEqual([
     ["Position", "1; 2; 3.5"],
     ["3: intensity", "0.5"],
     ["4: rgb", "16; 32; 48"],
@@ -39,44 +39,44 @@ test("a point is described as in RViz", () => {
   expect(describePoint(0, "12", new Float32Array(3), null).name).toBe("Point 0 [cloud 12]");
 });
 
-function color(palette: Uint8Array, value: number): number[] {
+function readColor(palette: Uint8Array, value: number): number[] {
   return [...palette.subarray(value * 4, value * 4 + 4)];
 }
 
 test("maps have RViz's shades of gray", () => {
   const map = mapPalette("map", null);
-  expect([0, 50, 100].map((value) => color(map, value)[0])).toEqual([255, 128, 0]);
-  expect(color(map, 101)).toEqual([0, 255, 0, 255]);
-  expect(color(map, 128)).toEqual([255, 0, 0, 255]);
-  expect(color(map, 254)).toEqual([255, 255, 0, 255]);
-  expect(color(map, 255)).toEqual([0x70, 0x89, 0x86, 255]);
+  expect([0, 50, 100].map((value) => readColor(map, value)[0])).toEqual([255, 128, 0]);
+  expect(readColor(map, 101)).toEqual([0, 255, 0, 255]);
+  expect(readColor(map, 128)).toEqual([255, 0, 0, 255]);
+  expect(readColor(map, 254)).toEqual([255, 255, 0, 255]);
+  expect(readColor(map, 255)).toEqual([0x70, 0x89, 0x86, 255]);
 });
 
 test("costmaps range from blue to red, with transparent free cells and marked obstacles", () => {
   const costmap = mapPalette("costmap", null);
-  expect(color(costmap, 0)).toEqual([0, 0, 0, 0]);
-  expect(color(costmap, 1)).toEqual([2, 0, 253, 255]);
-  expect(color(costmap, 98)).toEqual([249, 0, 6, 255]);
-  expect(color(costmap, 99)).toEqual([0, 255, 255, 255]);
-  expect(color(costmap, 100)).toEqual([255, 0, 255, 255]);
+  expect(readColor(costmap, 0)).toEqual([0, 0, 0, 0]);
+  expect(readColor(costmap, 1)).toEqual([2, 0, 253, 255]);
+  expect(readColor(costmap, 98)).toEqual([249, 0, 6, 255]);
+  expect(readColor(costmap, 99)).toEqual([0, 255, 255, 255]);
+  expect(readColor(costmap, 100)).toEqual([255, 0, 255, 255]);
 });
 
 test("a threshold makes cells free or occupied", () => {
-  expect([49, 50].map((value) => color(mapPalette("map", 50), value)[0])).toEqual([255, 0]);
-  expect(color(mapPalette("costmap", 50), 0)).toEqual([0, 0, 255, 255]);
-  expect(color(mapPalette("costmap", 50), 50)).toEqual([255, 0, 0, 255]);
-  expect([49, 50, 255].map((value) => color(mapPalette("raw", 50), value)[0])).toEqual([0, 255, 255]);
-  expect(color(mapPalette("raw", null), 200)).toEqual([200, 200, 200, 255]);
+  expect([49, 50].map((value) => readColor(mapPalette("map", 50), value)[0])).toEqual([255, 0]);
+  expect(readColor(mapPalette("costmap", 50), 0)).toEqual([0, 0, 255, 255]);
+  expect(readColor(mapPalette("costmap", 50), 50)).toEqual([255, 0, 0, 255]);
+  expect([49, 50, 255].map((value) => readColor(mapPalette("raw", 50), value)[0])).toEqual([0, 255, 255]);
+  expect(readColor(mapPalette("raw", null), 200)).toEqual([200, 200, 200, 255]);
 });
 
 test("pixels of all encodings are converted to red, green, blue and alpha", () => {
   const frame = { width: 1, height: 1, columns: 1, rows: 1, camera: null, quality: 0, kind: "image_frame" } as const;
-  const of = (encoding: "gray" | "rgb" | "rgba", data: number[]): number[] => [
+  const convert = (encoding: "gray" | "rgb" | "rgba", data: number[]): number[] => [
     ...rgbaOf({ ...frame, encoding, data: new Uint8Array(data) }),
   ];
-  expect(of("gray", [7])).toEqual([7, 7, 7, 255]);
-  expect(of("rgb", [1, 2, 3])).toEqual([1, 2, 3, 255]);
-  expect(of("rgba", [1, 2, 3, 4])).toEqual([1, 2, 3, 4]);
+  expect(convert("gray", [7])).toEqual([7, 7, 7, 255]);
+  expect(convert("rgb", [1, 2, 3])).toEqual([1, 2, 3, 255]);
+  expect(convert("rgba", [1, 2, 3, 4])).toEqual([1, 2, 3, 4]);
 });
 
 const CAMERA = {
@@ -101,31 +101,31 @@ test("an image keeps its aspect ratio in any window", () => {
 test("the camera projects according to its matrix", () => {
   const matrix = createProjection(CAMERA, [1, 1], 100);
   // One meter to the right at a distance of two: 160 pixels of the 320 from the center to the edge.
-  const at = new Vector3(1, 0, -2).applyMatrix4(matrix);
-  expect(at.x).toBeCloseTo(0.5);
-  expect(at.y).toBeCloseTo(0);
+  const position = new Vector3(1, 0, -2).applyMatrix4(matrix);
+  expect(position.x).toBeCloseTo(0.5);
+  expect(position.y).toBeCloseTo(0);
   const shifted = createProjection({ ...CAMERA, center_x: 480 }, [1, 1], 100);
   expect(new Vector3(0, 0, -1).applyMatrix4(shifted).x).toBeCloseTo(0.5);
   expect(new Vector3(0, 0, -100).applyMatrix4(matrix).z).toBeCloseTo(1);
 });
 
 test("the camera looks along z of its image, offset from its frame", () => {
-  const pose = cameraInImageFrame(CAMERA);
+  const pose = createCameraPose(CAMERA);
   expect(new Vector3(0, 0, -1).applyMatrix4(pose).toArray()).toEqual([0.1, expect.closeTo(0), expect.closeTo(1)]);
 });
 
 test("a display is shown in a camera if its box and those of its groups are ticked", () => {
-  const box = (path: string, name: string, value: boolean, children: ReturnType<typeof property>[] = []) =>
-    property({ id: path, name, kind: "bool", value, children });
-  const rows = (inside: boolean, group: boolean): PropertyRows =>
+  const createBox = (path: string, name: string, isTicked: boolean, children: ReturnType<typeof createProperty>[] = []) =>
+    createProperty({ id: path, name, kind: "bool", value: isTicked, children });
+  const createRows = (isCloudTicked: boolean, isGroupTicked: boolean): PropertyRows =>
     new PropertyRows([
-      new PropertyNode(box("v", "Visibility", true, [box("g", "Sensors", group, [box("c", "Cloud", inside)])])),
+      new PropertyNode(createBox("v", "Visibility", true, [createBox("g", "Sensors", isGroupTicked, [createBox("c", "Cloud", isCloudTicked)])])),
     ]);
-  const group = new DisplayState(display({ id: "1", cls: "rviz_common/Group", name: "Sensors" }));
-  const cloud = new DisplayState(display({ id: "2", name: "Cloud" }));
+  const group = new DisplayState(createDisplay({ id: "1", cls: "rviz_common/Group", name: "Sensors" }));
+  const cloud = new DisplayState(createDisplay({ id: "2", name: "Cloud" }));
   cloud.group = group;
-  expect(isShownInCamera(rows(true, true), cloud)).toBe(true);
-  expect(isShownInCamera(rows(false, true), cloud)).toBe(false);
-  expect(isShownInCamera(rows(true, false), cloud)).toBe(false);
+  expect(isShownInCamera(createRows(true, true), cloud)).toBe(true);
+  expect(isShownInCamera(createRows(false, true), cloud)).toBe(false);
+  expect(isShownInCamera(createRows(true, false), cloud)).toBe(false);
   expect(isShownInCamera(new PropertyRows([]), cloud)).toBe(true);
 });

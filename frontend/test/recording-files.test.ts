@@ -5,26 +5,26 @@ import { findRecording } from "../src/shell/recording-files";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en, language: "en" }));
 
-function named(...names: string[]): { name: string; file: Blob }[] {
+function createFiles(...names: string[]): { name: string; file: Blob }[] {
   return names.map((name) => ({ name, file: new Blob(["x"]) }));
 }
 
 describe("dropped files", () => {
   it("are recognized as a recording by their names", () => {
-    const { name, files } = findRecording("drive", named("notes.txt", "metadata.yaml", "drive_0.db3", "drive_1.db3.zstd", ".DS_Store"));
+    const { name, files } = findRecording("drive", createFiles("notes.txt", "metadata.yaml", "drive_0.db3", "drive_1.db3.zstd", ".DS_Store"));
     expect(name).toBe("drive");
-    expect(files.map((each) => each.name)).toEqual(["metadata.yaml", "drive_0.db3", "drive_1.db3.zstd"]);
+    expect(files.map((item) => item.name)).toEqual(["metadata.yaml", "drive_0.db3", "drive_1.db3.zstd"]);
   });
 
   it("are a single recording file if only one has messages", () => {
-    const { name, files } = findRecording("drive", named("metadata.yaml", "drive_0.mcap"));
+    const { name, files } = findRecording("drive", createFiles("metadata.yaml", "drive_0.mcap"));
     expect([name, files.length, files[0]?.name]).toEqual(["drive_0.mcap", 1, "drive_0.mcap"]);
   });
 
   it("are no recording if none has messages", () => {
-    expect(findRecording("images", named("a.png", "mcap")).files).toEqual([]);
-    expect(findRecording("drive", named("metadata.yaml")).files).toEqual([]);
-    expect(findRecording("robot.urdf", named("robot.urdf")).files).toEqual([]);
+    expect(findRecording("images", createFiles("a.png", "mcap")).files).toEqual([]);
+    expect(findRecording("drive", createFiles("metadata.yaml")).files).toEqual([]);
+    expect(findRecording("robot.urdf", createFiles("robot.urdf")).files).toEqual([]);
   });
 });
 

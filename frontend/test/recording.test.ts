@@ -5,57 +5,57 @@ import type { PageMessage, RecordedFile, RecordingState } from "../src/protocol"
 import { RecordingControl } from "../src/state/recording";
 import { TimelineState } from "../src/state/timeline";
 
-function told(part: Partial<RecordingState> = {}): RecordingState {
+function createState(part: Partial<RecordingState> = {}): RecordingState {
   return { type: "recording_state", possible: true, path: "", length: 0, size: 0, saved: null, problem: "", files: [], ...part };
 }
 
 const FILE: RecordedFile = { name: "rosbag2_1", path: "/home/me/rosbag2_1", size: 1e6, length: 3, url: "/export/a/b.mcap", simulated: null };
 
 describe("recording", () => {
-  let sent: PageMessage[];
+  let sentMessages: PageMessage[];
   let connection: Connection;
   let recording: RecordingControl;
 
   beforeEach(() => {
-    sent = [];
+    sentMessages = [];
     connection = new Connection("ws://localhost/ws");
-    vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+    vi.spyOn(connection, "send").mockImplementation((message) => void sentMessages.push(message));
     recording = new RecordingControl(connection);
-    connection.message.emit(told());
+    connection.message.emit(createState());
   });
 
   it("offers the file only to the page that requested it", () => {
-    const made: RecordedFile[] = [];
-    const others: RecordedFile[] = [];
-    const other = new RecordingControl(connection);
-    connection.message.emit(told());
-    recording.finished.on((file) => made.push(file));
-    other.finished.on((file) => others.push(file));
+    const offeredFiles: RecordedFile[] = [];
+    const otherOfferedFiles: RecordedFile[] = [];
+    const otherRecording = new RecordingControl(connection);
+    connection.message.emit(createState());
+    recording.finished.on((file) => offeredFiles.push(file));
+    otherRecording.finished.on((file) => otherOfferedFiles.push(file));
     recording.record([]);
-    connection.message.emit(told({ path: FILE.path, length: 1, size: 10 }));
-    expect([recording.isRecording, other.isRecording, other.size]).toEqual([true, true, 10]);
+    connection.message.emit(createState({ path: FILE.path, length: 1, size: 10 }));
+    expect([recording.isRecording, otherRecording.isRecording, otherRecording.size]).toEqual([true, true, 10]);
     recording.stop();
-    connection.message.emit(told({ files: [FILE] }));
-    expect(made).toEqual([FILE]);
-    expect(others).toEqual([]);
-    expect(sent.map(({ type }) => type)).toEqual(["record_topics", "stop_recording"]);
+    connection.message.emit(createState({ files: [FILE] }));
+    expect(offeredFiles).toEqual([FILE]);
+    expect(otherOfferedFiles).toEqual([]);
+    expect(sentMessages.map(({ type }) => type)).toEqual(["record_topics", "stop_recording"]);
   });
 
   it("reports once why it ended early", () => {
-    const why: string[] = [];
-    recording.refused.on((text) => why.push(text));
+    const reasons: string[] = [];
+    recording.refused.on((text) => reasons.push(text));
     recording.record(["/tf"]);
-    connection.message.emit(told({ path: FILE.path }));
-    connection.message.emit(told({ problem: "the disk is full", files: [FILE] }));
-    connection.message.emit(told({ problem: "the disk is full", files: [FILE] }));
-    expect(why).toEqual(["the disk is full"]);
+    connection.message.emit(createState({ path: FILE.path }));
+    connection.message.emit(createState({ problem: "the disk is full", files: [FILE] }));
+    connection.message.emit(createState({ problem: "the disk is full", files: [FILE] }));
+    expect(reasons).toEqual(["the disk is full"]);
     expect(recording.files).toEqual([FILE]);
   });
 
   it("is impossible before the program allows it, or during another recording", () => {
     connection.message.emit({ type: "hello", protocol: 0, version: "", title: "", run: "1" });
     expect(recording.isPossible).toBe(false);
-    connection.message.emit(told({ possible: false }));
+    connection.message.emit(createState({ possible: false }));
     expect(recording.isPossible).toBe(false);
   });
 

@@ -3,11 +3,11 @@ import { Connection } from "../src/connection/connection";
 import { createDetailRows } from "../src/panels/displays/detail-rows";
 import { createDisplayRows, linkOfKey, linkRowPath } from "../src/panels/displays/robot-rows";
 import type { JointScene, Property, ServerMessage } from "../src/protocol";
-import { compose, computeRelativePose } from "../src/state/pose-numbers";
+import { composePoses, computeRelativePose } from "../src/state/pose-numbers";
 import { Session } from "../src/state/session";
 import { formatPoint } from "../src/tree/numbers";
 import type { TreeItem } from "../src/tree/tree-item";
-import { display, property, robot, tree } from "./messages";
+import { createDisplay, createProperty, createRobotScene, createTree } from "./messages";
 
 // The page's texts read the browser's language when they are imported.
 vi.hoisted(() => vi.stubGlobal("localStorage", { getItem: () => "en" }));
@@ -20,7 +20,7 @@ function receive(...messages: ServerMessage[]): void {
   for (const message of messages) session.connection.message.emit(message);
 }
 
-function frames(poses: Record<string, { parent: string | null; pose: number[] }>): void {
+function receiveFrames(poses: Record<string, { parent: string | null; pose: number[] }>): void {
   const names = Object.keys(poses);
   const parents = names.map((name) => names.indexOf(poses[name]!.parent ?? ""));
   receive({ type: "frame_table", revision: 1, names, parents });
@@ -32,7 +32,7 @@ function frames(poses: Record<string, { parent: string | null; pose: number[] }>
   });
 }
 
-function joint(name: string, parent: string, child: string, part: Partial<JointScene> = {}): JointScene {
+function createJoint(name: string, parent: string, child: string, part: Partial<JointScene> = {}): JointScene {
   return {
     name,
     kind: "revolute",
@@ -47,37 +47,37 @@ function joint(name: string, parent: string, child: string, part: Partial<JointS
   };
 }
 
-function row(group: string, name: string, details: "link" | "joint"): Property {
-  const extras = [property({ id: `d0/${group}/${name}/Show Axes`, name: "Show Axes", kind: "bool", value: false })];
-  return property({ id: `d0/${group}/${name}`, name, kind: "bool", value: true, details, children: extras });
+function createRow(group: string, name: string, details: "link" | "joint"): Property {
+  const extras = [createProperty({ id: `d0/${group}/${name}/Show Axes`, name: "Show Axes", kind: "bool", value: false })];
+  return createProperty({ id: `d0/${group}/${name}`, name, kind: "bool", value: true, details, children: extras });
 }
 
 /** A robot of three links in a row: the root base, arm, and hand. */
-function show(style: string, open: readonly string[] = []): void {
-  const option = (name: string, value: string | boolean): Property =>
-    property({ id: `d0/Links/${name}`, name, kind: typeof value === "string" ? "enum" : "bool", value });
-  const links = property({
+function showRobot(style: string, open: readonly string[] = []): void {
+  const createOption = (name: string, value: string | boolean): Property =>
+    createProperty({ id: `d0/Links/${name}`, name, kind: typeof value === "string" ? "enum" : "bool", value });
+  const links = createProperty({
     id: "d0/Links",
     name: "Links",
     kind: "group",
     children: [
-      option("Link Tree Style", style),
-      ...["Expand Tree", "Expand Link Details", "Expand Joint Details"].map((name) => option(name, open.includes(name))),
-      option("All Links Enabled", true),
-      ...["arm", "base", "hand"].map((name) => row("Links", name, "link")),
+      createOption("Link Tree Style", style),
+      ...["Expand Tree", "Expand Link Details", "Expand Joint Details"].map((name) => createOption(name, open.includes(name))),
+      createOption("All Links Enabled", true),
+      ...["arm", "base", "hand"].map((name) => createRow("Links", name, "link")),
     ],
   });
-  const joints = property({
+  const joints = createProperty({
     id: "d0/Joints",
     name: "Joints",
     kind: "group",
-    children: ["elbow", "grip"].map((name) => row("Joints", name, "joint")),
+    children: ["elbow", "grip"].map((name) => createRow("Joints", name, "joint")),
   });
   const scene = {
-    ...robot("d0", "base", "arm", "hand"),
-    joints: [joint("elbow", "base", "arm", { position: [1, 0, 0], lower: -1 }), joint("grip", "arm", "hand", { kind: "fixed" })],
+    ...createRobotScene("d0", "base", "arm", "hand"),
+    joints: [createJoint("elbow", "base", "arm", { position: [1, 0, 0], lower: -1 }), createJoint("grip", "arm", "hand", { kind: "fixed" })],
   };
-  receive(tree(display({ id: "d0", cls: "rviz_default_plugins/RobotModel", properties: [links, joints] })), scene);
+  receive(createTree(createDisplay({ id: "d0", cls: "rviz_default_plugins/RobotModel", properties: [links, joints] })), scene);
 }
 
 function outline(items: readonly TreeItem[], depth = 0): string[] {
@@ -88,9 +88,9 @@ function outline(items: readonly TreeItem[], depth = 0): string[] {
 }
 
 /** Returns the rows without options and details of links. */
-function arranged(): string[] {
-  const known = /Show|Position|Orientation|^ *[XYZW]$|Type|Limit|Axis|Style|Expand|All/;
-  return outline(createDisplayRows(session.displays.displays[0]!, session, () => undefined)).filter((line) => !known.test(line));
+function outlineArrangement(): string[] {
+  const detailPattern = /Show|Position|Orientation|^ *[XYZW]$|Type|Limit|Axis|Style|Expand|All/;
+  return outline(createDisplayRows(session.displays.displays[0]!, session, () => undefined)).filter((line) => !detailPattern.test(line));
 }
 
 beforeEach(() => {
@@ -102,18 +102,18 @@ afterEach(() => vi.unstubAllGlobals());
 
 describe("a robot's rows", () => {
   it("list its links", () => {
-    show("Links in Alphabetic Order");
-    expect(arranged()).toEqual(["Links", "  arm", "  base", "  hand"]);
+    showRobot("Links in Alphabetic Order");
+    expect(outlineArrangement()).toEqual(["Links", "  arm", "  base", "  hand"]);
   });
 
   it("list its joints", () => {
-    show("Joints in Alphabetic Order", ["Expand Joint Details"]);
-    expect(arranged()).toEqual(["Joints", "  elbow*", "  grip*"]);
+    showRobot("Joints in Alphabetic Order", ["Expand Joint Details"]);
+    expect(outlineArrangement()).toEqual(["Joints", "  elbow*", "  grip*"]);
   });
 
   it("form a tree of links", () => {
-    show("Tree of links", ["Expand Tree"]);
-    expect(arranged()).toEqual([
+    showRobot("Tree of links", ["Expand Tree"]);
+    expect(outlineArrangement()).toEqual([
       "Link Tree",
       "  base*",
       "    Details",
@@ -125,8 +125,8 @@ describe("a robot's rows", () => {
   });
 
   it("form a tree of links and joints", () => {
-    show("Tree of links and joints", ["Expand Link Details"]);
-    expect(arranged()).toEqual([
+    showRobot("Tree of links and joints", ["Expand Link Details"]);
+    expect(outlineArrangement()).toEqual([
       "Link/Joint Tree",
       "  base",
       "    Details*",
@@ -142,84 +142,84 @@ describe("a robot's rows", () => {
   });
 
   it("can be unfolded if they have children", () => {
-    const offered = (): string[] =>
+    const outlineExpandOptions = (): string[] =>
       outline(createDisplayRows(session.displays.displays[0]!, session, () => undefined)).filter((line) => /Expand/.test(line));
-    show("Links in Alphabetic Order");
-    expect(offered()).toEqual(["  Expand Link Details"]);
-    show("Joints in Alphabetic Order");
-    expect(offered()).toEqual(["  Expand Joint Details"]);
-    show("Tree of links");
-    expect(offered()).toEqual(["  Expand Tree", "  Expand Link Details"]);
+    showRobot("Links in Alphabetic Order");
+    expect(outlineExpandOptions()).toEqual(["  Expand Link Details"]);
+    showRobot("Joints in Alphabetic Order");
+    expect(outlineExpandOptions()).toEqual(["  Expand Joint Details"]);
+    showRobot("Tree of links");
+    expect(outlineExpandOptions()).toEqual(["  Expand Tree", "  Expand Link Details"]);
   });
 
   it("are found by their link", () => {
-    show("Tree of links and joints");
+    showRobot("Tree of links and joints");
     const [model] = session.displays.displays;
     expect(linkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/base", "d0/Joints/elbow", "d0/Links/arm"]);
     expect(linkOfKey(session, "d0/Links/arm")).toEqual({ display: model, link: "arm" });
     expect(linkOfKey(session, "d0/Links/All Links Enabled")).toBeNull();
-    show("Joints in Alphabetic Order");
+    showRobot("Joints in Alphabetic Order");
     expect(linkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Joints/elbow"]);
     expect(linkRowPath(model!, session, "base")).toBeNull();
-    show("Links in Alphabetic Order");
+    showRobot("Links in Alphabetic Order");
     expect(linkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/arm"]);
   });
 });
 
 describe("rows of details", () => {
-  const values = (items: readonly TreeItem[]): Record<string, unknown> =>
+  const valuesByName = (items: readonly TreeItem[]): Record<string, unknown> =>
     Object.fromEntries(items.map((item) => [item.name, item.value]));
 
   it("show the position and properties of a joint", () => {
-    show("Joints in Alphabetic Order");
-    frames({ base: { parent: null, pose: [0, 0, 2, 0, 0, HALF, HALF] } });
+    showRobot("Joints in Alphabetic Order");
+    receiveFrames({ base: { parent: null, pose: [0, 0, 2, 0, 0, HALF, HALF] } });
     const [model] = session.displays.displays;
     const [elbow, grip] = model!.rows.find("Joints")!.children;
     const rows = createDetailRows(elbow!, model!, session);
-    expect(values(rows)).toEqual({
+    expect(valuesByName(rows)).toEqual({
       Position: "0; 1; 2",
       Orientation: "0; 0; 0.707107; 0.707107",
       Type: "revolute",
       "Lower Limit": "-1",
       "Joint Axis": "0; 0; 1",
     });
-    expect(values(createDetailRows(grip!, model!, session))["Type"]).toBe("fixed");
-    expect(values(rows[0]!.children!())).toEqual({ X: "0", Y: "1", Z: "2" });
+    expect(valuesByName(createDetailRows(grip!, model!, session))["Type"]).toBe("fixed");
+    expect(valuesByName(rows[0]!.children!())).toEqual({ X: "0", Y: "1", Z: "2" });
   });
 
   it("show the pose of a frame, also relative to its parent, and follow it", () => {
-    const box = property({ id: "d1/Frames/tip", name: "tip", kind: "bool", value: true, details: "frame" });
-    receive(tree(display({ id: "d1", properties: [box] })));
-    const place = (x: number): void =>
-      frames({
+    const box = createProperty({ id: "d1/Frames/tip", name: "tip", kind: "bool", value: true, details: "frame" });
+    receive(createTree(createDisplay({ id: "d1", properties: [box] })));
+    const placeTip = (x: number): void =>
+      receiveFrames({
         base: { parent: null, pose: [1, 0, 0, 0, 0, HALF, HALF] },
         tip: { parent: "base", pose: [x, 0, 0, 0, 0, 0, 1] },
       });
-    place(3);
+    placeTip(3);
     const [tf] = session.displays.displays;
     const rows = createDetailRows(tf!.rows.nodes[0]!, tf!, session);
-    expect(values(rows)).toEqual({
+    expect(valuesByName(rows)).toEqual({
       Parent: "base",
       Position: "3; 0; 0",
       Orientation: "0; 0; 0; 1",
       "Relative Position": "0; -2; 0",
       "Relative Orientation": "0; 0; -0.707107; 0.707107",
     });
-    place(5);
+    placeTip(5);
     expect(rows[1]!.value).toBe("5; 0; 0");
   });
 
   it("are empty for a frame without a pose", () => {
-    const box = property({ id: "d1/Frames/gone", name: "gone", kind: "bool", value: true, details: "frame" });
-    receive(tree(display({ id: "d1", properties: [box] })));
+    const box = createProperty({ id: "d1/Frames/gone", name: "gone", kind: "bool", value: true, details: "frame" });
+    receive(createTree(createDisplay({ id: "d1", properties: [box] })));
     const [tf] = session.displays.displays;
-    expect(Object.values(values(createDetailRows(tf!.rows.nodes[0]!, tf!, session)))).toEqual(["", "", "", "", ""]);
+    expect(Object.values(valuesByName(createDetailRows(tf!.rows.nodes[0]!, tf!, session)))).toEqual(["", "", "", "", ""]);
   });
 
   it("show a joint's last effort", () => {
-    const box = property({ id: "d2/Joints/elbow", name: "elbow", kind: "bool", value: true, details: "effort" });
-    receive(tree(display({ id: "d2", properties: [box] })));
-    const rings = (effort: number, stamp: number): void =>
+    const box = createProperty({ id: "d2/Joints/elbow", name: "elbow", kind: "bool", value: true, details: "effort" });
+    receive(createTree(createDisplay({ id: "d2", properties: [box] })));
+    const receiveRings = (effort: number, stamp: number): void =>
       session.connection.data.emit({
         display: "d2",
         key: String(stamp % 2),
@@ -234,11 +234,11 @@ describe("rows of details", () => {
           limits: new Float32Array([10]),
         },
       });
-    rings(1, 1);
-    rings(2, 2);
-    rings(3, 3);
+    receiveRings(1, 1);
+    receiveRings(2, 2);
+    receiveRings(3, 3);
     const [effort] = session.displays.displays;
-    expect(values(createDetailRows(effort!.rows.nodes[0]!, effort!, session))).toEqual({ Effort: "3", "Max Effort": "10" });
+    expect(valuesByName(createDetailRows(effort!.rows.nodes[0]!, effort!, session))).toEqual({ Effort: "3", "Max Effort": "10" });
   });
 });
 
@@ -246,7 +246,7 @@ describe("poses", () => {
   it("are the same after composing and decomposing", () => {
     const a = [1, 2, 3, 0, HALF, 0, HALF] as const;
     const b = [-1, 0.5, 2, HALF, 0, 0, HALF] as const;
-    computeRelativePose(a, compose(a, b)).forEach((part, i) => expect(part).toBeCloseTo(b[i]!));
+    computeRelativePose(a, composePoses(a, b)).forEach((part, i) => expect(part).toBeCloseTo(b[i]!));
   });
 });
 

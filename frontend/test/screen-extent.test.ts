@@ -5,7 +5,7 @@ import { extentOf } from "../src/scene/screen-extent";
 const CANVAS = { width: 800, height: 400 };
 const BOX = { min: [-1, -1, -1], max: [1, 1, 1] } as const;
 
-function from(distance: number): PerspectiveCamera {
+function cameraAt(distance: number): PerspectiveCamera {
   const camera = new PerspectiveCamera(90, 2, 0.1, 100);
   camera.position.z = distance;
   camera.updateMatrixWorld();
@@ -14,23 +14,23 @@ function from(distance: number): PerspectiveCamera {
 
 test("the nearest corners determine the extent", () => {
   // The front is at 1 m, where the canvas is 4 m wide.
-  expect(extentOf(BOX, from(2), CANVAS).right).toBeCloseTo(600);
-  expect(extentOf(BOX, from(5), CANVAS).right).toBeCloseTo(450);
+  expect(extentOf(BOX, cameraAt(2), CANVAS).right).toBeCloseTo(600);
+  expect(extentOf(BOX, cameraAt(5), CANVAS).right).toBeCloseTo(450);
 });
 
 test("the extent is computed from where a box is visible", () => {
-  expect(extentOf(BOX, from(2), CANVAS).left).toBeCloseTo(200);
-  expect(extentOf(BOX, from(0.5), CANVAS).left).toBe(-Infinity);
+  expect(extentOf(BOX, cameraAt(2), CANVAS).left).toBeCloseTo(200);
+  expect(extentOf(BOX, cameraAt(0.5), CANVAS).left).toBe(-Infinity);
 });
 
 test("shifting the canvas reduces the extent", () => {
-  const camera = from(2);
+  const camera = cameraAt(2);
   camera.setViewOffset(800, 400, 100, 0, 800, 400);
   expect(extentOf(BOX, camera, CANVAS).right).toBeCloseTo(500);
 });
 
 test("an object that is partly behind the camera extends everywhere", () => {
-  expect(extentOf(BOX, from(0.5), CANVAS).right).toBe(Infinity);
+  expect(extentOf(BOX, cameraAt(0.5), CANVAS).right).toBe(Infinity);
 });
 
 test("without perspective only the box matters", () => {
@@ -41,10 +41,10 @@ test("without perspective only the box matters", () => {
 });
 
 test("the vertical extent is computed", () => {
-  const { top, bottom } = extentOf(BOX, from(2), CANVAS);
+  const { top, bottom } = extentOf(BOX, cameraAt(2), CANVAS);
   expect([top, bottom]).toEqual([expect.closeTo(0), expect.closeTo(400)]);
-  const camera = from(5);
-  const above = extentOf(BOX, camera, CANVAS).top;
+  const camera = cameraAt(5);
+  const topAbove = extentOf(BOX, camera, CANVAS).top;
   camera.setViewOffset(800, 400, 0, -50, 800, 400);
-  expect(extentOf(BOX, camera, CANVAS).top).toBeCloseTo(above + 50);
+  expect(extentOf(BOX, camera, CANVAS).top).toBeCloseTo(topAbove + 50);
 });

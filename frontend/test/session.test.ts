@@ -2,9 +2,9 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { PageMessage, ServerMessage, TerminalItem } from "../src/protocol";
 import { Session } from "../src/state/session";
-import { display, property, robot, tree } from "./messages";
+import { createDisplay, createProperty, createRobotScene, createTree } from "./messages";
 
-let sent: PageMessage[];
+let sentMessages: PageMessage[];
 let session: Session;
 
 function receive(...messages: ServerMessage[]): void {
@@ -12,11 +12,11 @@ function receive(...messages: ServerMessage[]): void {
 }
 
 beforeEach(() => {
-  sent = [];
+  sentMessages = [];
   vi.useFakeTimers();
   vi.stubGlobal("window", { setTimeout });
   const connection = new Connection("ws://localhost/ws");
-  vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+  vi.spyOn(connection, "send").mockImplementation((message) => void sentMessages.push(message));
   session = new Session(connection);
 });
 
@@ -27,14 +27,14 @@ afterEach(() => {
 
 describe("properties", () => {
   it("are found by their names and changed by their IDs", () => {
-    const style = property({
+    const style = createProperty({
       id: "d0/Line Style",
       name: "Line Style",
       kind: "enum",
       value: "Lines",
-      children: [property({ id: "d0/Line Style/Line Width", name: "Line Width", value: 0.03 })],
+      children: [createProperty({ id: "d0/Line Style/Line Width", name: "Line Width", value: 0.03 })],
     });
-    receive(tree(display({ id: "d0", properties: [style] })));
+    receive(createTree(createDisplay({ id: "d0", properties: [style] })));
     const { rows } = session.displays.displays[0]!;
     expect(rows.text("", "Line Style")).toBe("Lines");
     receive({ type: "property_changed", id: "d0/Line Style/Line Width", value: 0.1, options: null });
@@ -43,15 +43,15 @@ describe("properties", () => {
   });
 
   it("set by the user are shown at once and sent to the server", () => {
-    receive(tree(display({ id: "d0", properties: [property({ id: "d0/Alpha", name: "Alpha", value: 0.5 })] })));
+    receive(createTree(createDisplay({ id: "d0", properties: [createProperty({ id: "d0/Alpha", name: "Alpha", value: 0.5 })] })));
     session.setProperty("d0/Alpha", 0.9);
     expect(session.displays.displays[0]!.rows.number(0, "Alpha")).toBe(0.9);
-    expect(sent).toEqual([{ type: "set_property", id: "d0/Alpha", value: 0.9 }]);
+    expect(sentMessages).toEqual([{ type: "set_property", id: "d0/Alpha", value: 0.9 }]);
   });
 
   it("do not include Enabled, which is the display's box", () => {
-    const enabled = property({ id: "d0/Enabled", name: "Enabled", kind: "bool", value: true });
-    receive(tree(display({ id: "d0", properties: [enabled] })));
+    const enabledProperty = createProperty({ id: "d0/Enabled", name: "Enabled", kind: "bool", value: true });
+    receive(createTree(createDisplay({ id: "d0", properties: [enabledProperty] })));
     const [grid] = session.displays.displays;
     expect(grid!.rows.nodes).toHaveLength(0);
     receive({ type: "property_changed", id: "d0/Enabled", value: false, options: null });
@@ -59,87 +59,87 @@ describe("properties", () => {
   });
 
   it("survive a new tree in the same display object, so that its drawing continues", () => {
-    receive(tree(display({ id: "d0" }), display({ id: "d1" })));
+    receive(createTree(createDisplay({ id: "d0" }), createDisplay({ id: "d1" })));
     const [first] = session.displays.displays;
-    receive(tree(display({ id: "d0", name: "Floor" })));
+    receive(createTree(createDisplay({ id: "d0", name: "Floor" })));
     expect(session.displays.displays).toEqual([first]);
     expect(first!.name).toBe("Floor");
   });
 });
 
 describe("the selection", () => {
-  const model = display({ id: "d1", cls: "rviz_default_plugins/RobotModel" });
+  const model = createDisplay({ id: "d1", cls: "rviz_default_plugins/RobotModel" });
 
   it("survives a reload of the robot and ends with its link", () => {
-    receive(tree(model), robot("d1", "base_link", "wheel"));
+    receive(createTree(model), createRobotScene("d1", "base_link", "wheel"));
     const link = session.robots.get("d1")!.links[1]!;
     session.selection.select({ display: "d1", link });
-    receive(robot("d1", "base_link", "wheel"));
+    receive(createRobotScene("d1", "base_link", "wheel"));
     expect(session.selection.selectedLink?.link.name).toBe("wheel");
     expect(session.selection.selectedLink?.link).not.toBe(link);
-    receive(robot("d1", "base_link"));
+    receive(createRobotScene("d1", "base_link"));
     expect(session.selection.selectedLink).toBeNull();
   });
 });
 
 describe("the view", () => {
-  const view = (yaw: number, revision = 1, wholeRobot = false): ServerMessage => ({
+  const createViewState = (yaw: number, revision = 1, isWholeRobot = false): ServerMessage => ({
     type: "view_state",
     view: { ...session.view.current, values: { ...session.view.values, Yaw: yaw, Distance: 1.7 } },
     revision,
-    whole_robot: wholeRobot,
+    whole_robot: isWholeRobot,
   });
   const size = { width: 800, height: 600 };
   const box = { min: [-1, -1, 0], max: [1, 1, 2] } as const;
 
   it("is taken from the server once; a reconnection does not move the user's camera", () => {
-    receive(view(1));
+    receive(createViewState(1));
     expect(session.view.values).toMatchObject({ Yaw: 1, Distance: 1.7 });
     session.view.update({ Yaw: 2 });
-    receive(view(1));
+    receive(createViewState(1));
     expect(session.view.values["Yaw"]).toBe(2);
     session.view.reset();
     expect(session.view.values["Yaw"]).toBe(1);
   });
 
   describe("of a program that was started again", () => {
-    const hello = (run: string, title = "robot.urdf"): ServerMessage => ({ type: "hello", protocol: 1, version: "1", title, run });
-    const sizes = (): unknown[] => sent.filter(({ type }) => type === "robot_measured");
+    const createHello = (run: string, title = "robot.urdf"): ServerMessage => ({ type: "hello", protocol: 1, version: "1", title, run });
+    const listSizes = (): unknown[] => sentMessages.filter(({ type }) => type === "robot_measured");
 
     it("keeps the camera, and reports the robot's size again", () => {
-      receive(hello("first"));
-      receive(view(1));
+      receive(createHello("first"));
+      receive(createViewState(1));
       session.view.update({ Yaw: 2 });
       session.view.reportSize(box, 0);
-      expect(sizes()).toHaveLength(0);
-      receive(hello("second"));
-      receive(view(1));
+      expect(listSizes()).toHaveLength(0);
+      receive(createHello("second"));
+      receive(createViewState(1));
       expect(session.view.values["Yaw"]).toBe(2);
       expect(session.view.awaitsSize).toBe(true);
       session.view.reportSize(box, 0);
       session.view.reportSize(box, 0);
-      expect(sizes()).toHaveLength(1);
+      expect(listSizes()).toHaveLength(1);
     });
 
     it("is the program's if that shows another file", () => {
-      receive(hello("first"));
-      receive(view(1));
+      receive(createHello("first"));
+      receive(createViewState(1));
       session.view.update({ Yaw: 2 });
-      receive(hello("second", "other.urdf"));
-      receive(view(3));
+      receive(createHello("second", "other.urdf"));
+      receive(createViewState(3));
       expect(session.view.values["Yaw"]).toBe(3);
     });
   });
 
   it("of another file moves the camera", () => {
-    receive(view(1));
+    receive(createViewState(1));
     session.view.update({ Yaw: 2 });
-    receive(view(3, 2));
+    receive(createViewState(3, 2));
     expect(session.view.values["Yaw"]).toBe(3);
   });
 
   it("that no user has chosen fits the whole robot, again when more of it becomes visible", () => {
-    receive(view(1, 1, true));
+    receive(createViewState(1, 1, true));
     expect(session.view.awaitsFit("")).toBe(false);
     expect(session.view.awaitsFit("2 links")).toBe(true);
     session.view.fitFirst(box, size, "2 links");
@@ -157,24 +157,24 @@ describe("the view", () => {
   });
 
   it("that no user has chosen measures the robot once for each configuration", () => {
-    const measured = (): unknown[] => sent.filter(({ type }) => type === "robot_measured");
-    receive(view(1, 1, true));
+    const listSizes = (): unknown[] => sentMessages.filter(({ type }) => type === "robot_measured");
+    receive(createViewState(1, 1, true));
     session.view.reportSize({ min: [0, 0, 0], max: [2, 3, 6] }, -0.5);
     session.view.reportSize({ min: [0, 0, 0], max: [4, 6, 12] }, 0);
-    expect(measured()).toEqual([{ type: "robot_measured", diagonal: 7, ground: -0.5 }]);
-    receive(view(1, 2, true));
+    expect(listSizes()).toEqual([{ type: "robot_measured", diagonal: 7, ground: -0.5 }]);
+    receive(createViewState(1, 2, true));
     session.view.update({ Yaw: 2 });
     session.view.reportSize({ min: [0, 0, 0], max: [2, 3, 6] }, 0);
-    expect(measured()).toHaveLength(1);
+    expect(listSizes()).toHaveLength(1);
   });
 
   it("stays where the user or the file has put it", () => {
-    receive(view(1));
+    receive(createViewState(1));
     expect(session.view.awaitsFit("3 links")).toBe(false);
-    receive(view(1, 2, true));
+    receive(createViewState(1, 2, true));
     session.view.update({ Yaw: 2 });
     expect(session.view.awaitsFit("3 links")).toBe(false);
-    receive(view(1, 2, true));
+    receive(createViewState(1, 2, true));
     expect(session.view.awaitsFit("3 links")).toBe(false);
     session.view.reset();
     session.view.setClass("rviz_default_plugins/FPS");
@@ -182,21 +182,21 @@ describe("the view", () => {
   });
 
   it("is sent to the server when the user moves it, a few times per second", () => {
-    receive(view(1));
+    receive(createViewState(1));
     for (let i = 0; i < 20; i++) session.view.update({ Yaw: 2 + i / 100 });
     vi.advanceTimersByTime(1000);
-    expect(sent).toHaveLength(1);
-    expect(sent[0]).toMatchObject({ type: "view_changed", view: { values: { Yaw: 2.19 } } });
+    expect(sentMessages).toHaveLength(1);
+    expect(sentMessages[0]).toMatchObject({ type: "view_changed", view: { values: { Yaw: 2.19 } } });
   });
 
   it("does not jump when its target frame changes", () => {
     receive({ type: "frame_table", revision: 1, names: ["base", "arm"], parents: [-1, 0] });
     session.frames.poses.set([5, 6, 7, 0, 0, 0, 1], 7);
-    const before = session.view.camera.position;
+    const positionBefore = session.view.camera.position;
     session.view.setTargetFrame("arm");
     expect(session.view.values).toMatchObject({ "Focal Point/X": -5, "Focal Point/Y": -6, "Focal Point/Z": -7 });
     expect(session.view.target.position).toEqual([5, 6, 7]);
-    session.view.camera.position.forEach((value, i) => expect(value).toBeCloseTo(before[i] ?? 0));
+    session.view.camera.position.forEach((value, i) => expect(value).toBeCloseTo(positionBefore[i] ?? 0));
   });
 });
 
@@ -204,40 +204,40 @@ describe("a text editor", () => {
   const base = { display: "d0", kind: "link", name: "base" } as const;
 
   beforeEach(() => {
-    receive(tree(display({ id: "d0" })), robot("d0", "base", "arm"));
-    sent.length = 0;
+    receive(createTree(createDisplay({ id: "d0" })), createRobotScene("d0", "base", "arm"));
+    sentMessages.length = 0;
   });
 
   it("hears of what the user selects, and not of what it has selected itself", () => {
     session.focus.select(base);
-    expect(sent).toEqual([]);
+    expect(sentMessages).toEqual([]);
     session.focus.select(null);
     receive({ type: "editor_attached" }, { type: "show_element", ...base });
     expect(session.focus.current).toEqual(base);
-    expect(sent).toEqual([]);
+    expect(sentMessages).toEqual([]);
     session.focus.select({ ...base, name: "arm" });
-    expect(sent).toEqual([{ type: "element_selected", ...base, name: "arm" }]);
+    expect(sentMessages).toEqual([{ type: "element_selected", ...base, name: "arm" }]);
   });
 });
 
 describe("terminals", () => {
-  const opened = (run: string, ...items: TerminalItem[]): void =>
+  const receiveTerminals = (run: string, ...items: TerminalItem[]): void =>
     receive({ type: "hello", protocol: 0, version: "", title: "", run }, { type: "terminals", folder: "/ws", terminals: items, why_not: "" });
-  const terminal = (id: number, shown: TerminalItem["shown"]): TerminalItem => ({ id, shown, status: null });
+  const createTerminal = (id: number, place: TerminalItem["shown"]): TerminalItem => ({ id, shown: place, status: null });
 
   it("that the page showed on a lost connection are not those of another page", () => {
-    opened("first");
-    receive({ type: "terminals", folder: "/ws", terminals: [terminal(1, "here"), terminal(2, "elsewhere")], why_not: "" });
-    opened("first", terminal(1, "elsewhere"), terminal(2, "elsewhere"));
-    expect(session.terminals.items.map(({ shown }) => shown)).toEqual(["nowhere", "elsewhere"]);
-    receive({ type: "terminals", folder: "/ws", terminals: [terminal(1, "elsewhere")], why_not: "" });
-    expect(session.terminals.items.map(({ shown }) => shown)).toEqual(["elsewhere"]);
+    receiveTerminals("first");
+    receive({ type: "terminals", folder: "/ws", terminals: [createTerminal(1, "here"), createTerminal(2, "elsewhere")], why_not: "" });
+    receiveTerminals("first", createTerminal(1, "elsewhere"), createTerminal(2, "elsewhere"));
+    expect(session.terminals.items.map(({ shown: place }) => place)).toEqual(["nowhere", "elsewhere"]);
+    receive({ type: "terminals", folder: "/ws", terminals: [createTerminal(1, "elsewhere")], why_not: "" });
+    expect(session.terminals.items.map(({ shown: place }) => place)).toEqual(["elsewhere"]);
   });
 
   it("of a program that was started again are others", () => {
-    opened("first");
-    receive({ type: "terminals", folder: "/ws", terminals: [terminal(1, "here")], why_not: "" });
-    opened("second", terminal(1, "elsewhere"));
-    expect(session.terminals.items.map(({ shown }) => shown)).toEqual(["elsewhere"]);
+    receiveTerminals("first");
+    receive({ type: "terminals", folder: "/ws", terminals: [createTerminal(1, "here")], why_not: "" });
+    receiveTerminals("second", createTerminal(1, "elsewhere"));
+    expect(session.terminals.items.map(({ shown: place }) => place)).toEqual(["elsewhere"]);
   });
 });

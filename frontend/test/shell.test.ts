@@ -5,26 +5,26 @@ import { chooseSaved } from "../src/shell/file-keys";
 import { ThemeState } from "../src/state/theme";
 import { formatShortcut, matches, SHORTCUTS } from "../src/widgets/shortcuts";
 
-function storage(): { getItem(key: string): string | null; setItem(key: string, text: string): void } {
+function createStorage(): { getItem(key: string): string | null; setItem(key: string, text: string): void } {
   const texts = new Map<string, string>();
   return { getItem: (key) => texts.get(key) ?? null, setItem: (key, text) => void texts.set(key, text) };
 }
 
 describe("own displays of a page", () => {
   it("are requested in the page's address", () => {
-    const own = addressFor("http://localhost:7447/?token=abc", true);
-    expect(own).toBe("http://localhost:7447/?token=abc&displays=own");
-    expect(hasOwnDisplays(own)).toBe(true);
-    expect(addressFor(own, false)).toBe("http://localhost:7447/?token=abc");
+    const ownAddress = addressFor("http://localhost:7447/?token=abc", true);
+    expect(ownAddress).toBe("http://localhost:7447/?token=abc&displays=own");
+    expect(hasOwnDisplays(ownAddress)).toBe(true);
+    expect(addressFor(ownAddress, false)).toBe("http://localhost:7447/?token=abc");
     expect(hasOwnDisplays("http://localhost:7447/?displays=shared")).toBe(false);
   });
 
   it("have a name that is stable for the tab", () => {
-    const tab = storage();
+    const tab = createStorage();
     const key = ensureOwnKey(tab);
     expect(key).toMatch(/^[0-9a-f]{32}$/);
     expect(ensureOwnKey(tab)).toBe(key);
-    expect(ensureOwnKey(storage())).not.toBe(key);
+    expect(ensureOwnKey(createStorage())).not.toBe(key);
     expect(createSocketUrl("http://localhost:7447/?token=abc&displays=own", key)).toBe(
       `ws://localhost:7447/ws?own=${key}`,
     );
@@ -32,64 +32,64 @@ describe("own displays of a page", () => {
 });
 
 describe("shortcuts", () => {
-  const event = (part: Partial<KeyboardEvent>): KeyboardEvent =>
+  const createEvent = (part: Partial<KeyboardEvent>): KeyboardEvent =>
     ({ key: "", code: "", ctrlKey: false, metaKey: false, shiftKey: false, altKey: false, ...part }) as KeyboardEvent;
 
   it("match exactly the modifiers that are pressed", () => {
-    expect(matches(event({ key: "s", ctrlKey: true }), SHORTCUTS.save)).toBe(true);
-    expect(matches(event({ key: "S", ctrlKey: true, shiftKey: true }), SHORTCUTS.save)).toBe(false);
-    expect(matches(event({ key: "S", ctrlKey: true, shiftKey: true }), SHORTCUTS.saveAs)).toBe(true);
-    expect(matches(event({ key: "s" }), SHORTCUTS.save)).toBe(false);
-    expect(matches(event({ key: "å", code: "KeyA", altKey: true }), SHORTCUTS.add)).toBe(true);
-    expect(matches(event({ key: "Delete" }), SHORTCUTS.remove)).toBe(true);
-    expect(matches(event({ key: "Delete", ctrlKey: true }), SHORTCUTS.remove)).toBe(false);
+    expect(matches(createEvent({ key: "s", ctrlKey: true }), SHORTCUTS.save)).toBe(true);
+    expect(matches(createEvent({ key: "S", ctrlKey: true, shiftKey: true }), SHORTCUTS.save)).toBe(false);
+    expect(matches(createEvent({ key: "S", ctrlKey: true, shiftKey: true }), SHORTCUTS.saveAs)).toBe(true);
+    expect(matches(createEvent({ key: "s" }), SHORTCUTS.save)).toBe(false);
+    expect(matches(createEvent({ key: "å", code: "KeyA", altKey: true }), SHORTCUTS.add)).toBe(true);
+    expect(matches(createEvent({ key: "Delete" }), SHORTCUTS.remove)).toBe(true);
+    expect(matches(createEvent({ key: "Delete", ctrlKey: true }), SHORTCUTS.remove)).toBe(false);
   });
 
   it("do not include those reserved by browsers", () => {
-    const taken = ["Ctrl+N", "Ctrl+T", "Ctrl+W", "Ctrl+R", "Ctrl+Shift+N", "Ctrl+Shift+T", "Ctrl+Shift+W", "F5", "Ctrl+D"];
-    const ours = Object.values(SHORTCUTS).map(formatShortcut);
-    expect(ours.filter((key) => taken.includes(key))).toEqual([]);
-    expect(new Set(ours).size).toBe(ours.length);
+    const browserShortcuts = ["Ctrl+N", "Ctrl+T", "Ctrl+W", "Ctrl+R", "Ctrl+Shift+N", "Ctrl+Shift+T", "Ctrl+Shift+W", "F5", "Ctrl+D"];
+    const shortcuts = Object.values(SHORTCUTS).map(formatShortcut);
+    expect(shortcuts.filter((key) => browserShortcuts.includes(key))).toEqual([]);
+    expect(new Set(shortcuts).size).toBe(shortcuts.length);
     expect(formatShortcut(SHORTCUTS.moveUp)).toBe("Alt+↑");
   });
 });
 
 describe("the theme", () => {
-  function made(light: boolean, texts = storage()): { theme: ThemeState; root: HTMLElement; change: (light: boolean) => void } {
+  function createTheme(isLight: boolean, texts = createStorage()): { theme: ThemeState; root: HTMLElement; changeSystemTheme: (isLight: boolean) => void } {
     const listeners: (() => void)[] = [];
-    const query = { matches: light, addEventListener: (_: string, run: () => void) => listeners.push(run) };
+    const query = { matches: isLight, addEventListener: (_: string, run: () => void) => listeners.push(run) };
     const root = { dataset: {} } as HTMLElement;
     const theme = new ThemeState(root, texts, query as unknown as MediaQueryList);
-    const change = (next: boolean): void => {
-      query.matches = next;
+    const changeSystemTheme = (isLight: boolean): void => {
+      query.matches = isLight;
       for (const run of listeners) run();
     };
-    return { theme, root, change };
+    return { theme, root, changeSystemTheme };
   }
 
   it("follows the system until the user chooses one, which is stored", () => {
-    const texts = storage();
-    const { theme, root, change } = made(false, texts);
+    const texts = createStorage();
+    const { theme, root, changeSystemTheme } = createTheme(false, texts);
     expect(root.dataset["theme"]).toBe("dark");
-    change(true);
+    changeSystemTheme(true);
     expect(root.dataset["theme"]).toBe("light");
     theme.choose("dark");
     expect(root.dataset["theme"]).toBe("dark");
-    change(true);
+    changeSystemTheme(true);
     expect(root.dataset["theme"]).toBe("dark");
-    expect(made(true, texts).root.dataset["theme"]).toBe("dark");
+    expect(createTheme(true, texts).root.dataset["theme"]).toBe("dark");
   });
 });
 
 describe("the key of Save", () => {
-  const none = { focus: "elsewhere", isEditing: false, hasUnsavedSources: false, isConfigurationUnsaved: false } as const;
+  const UNCHANGED = { focus: "elsewhere", isEditing: false, hasUnsavedSources: false, isConfigurationUnsaved: false } as const;
 
   it("saves the configuration, as in RViz, where no source files are edited", () => {
-    expect(chooseSaved(none)).toBe("configuration");
+    expect(chooseSaved(UNCHANGED)).toBe("configuration");
   });
 
   it("saves changed source files, wherever the focus is but in panels of the configuration", () => {
-    const changed = { ...none, isEditing: true, hasUnsavedSources: true, isConfigurationUnsaved: true };
+    const changed = { ...UNCHANGED, isEditing: true, hasUnsavedSources: true, isConfigurationUnsaved: true };
     expect(chooseSaved(changed)).toBe("sources");
     expect(chooseSaved({ ...changed, focus: "configuration" })).toBe("configuration");
     expect(chooseSaved({ ...changed, hasUnsavedSources: false })).toBe("configuration");
@@ -97,7 +97,7 @@ describe("the key of Save", () => {
   });
 
   it("asks for no name of an unchanged configuration while source files are edited", () => {
-    expect(chooseSaved({ ...none, isEditing: true })).toBe("sources");
-    expect(chooseSaved({ ...none, isEditing: true, focus: "configuration" })).toBe("configuration");
+    expect(chooseSaved({ ...UNCHANGED, isEditing: true })).toBe("sources");
+    expect(chooseSaved({ ...UNCHANGED, isEditing: true, focus: "configuration" })).toBe("configuration");
   });
 });

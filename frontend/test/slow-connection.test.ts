@@ -7,49 +7,49 @@ import { SlowConnection } from "../src/state/slow-connection";
 
 vi.mock("../src/strings", () => ({ strings: {} }));
 
-function store() {
+function createStore() {
   return { received: new Signal<DisplayData>(), removed: new Signal<{ display: string; key: string | null }>() };
 }
 
-function cloud(step: number): DisplayData {
+function createCloud(step: number): DisplayData {
   const content = { kind: "cloud_points", positions: new Float32Array(3), colors: new Uint8Array(4), translucent: false, pixel: 0, step } as const;
   return { display: "cloud", key: "", frame: "", stamp: 0, pose: null, content };
 }
 
 it("reports reduced content and its rate until complete content arrives", () => {
-  const data = store();
+  const data = createStore();
   let now = 0;
-  const line = new SlowConnection(data as unknown as DisplayDataStore, () => now);
-  const changed = vi.fn();
-  line.changed.on(changed);
-  data.received.emit(cloud(1));
-  expect(line.reduced).toEqual([]);
-  expect(changed).not.toHaveBeenCalled();
-  for (now = 0; now <= 1000; now += 250) data.received.emit(cloud(8));
-  expect(line.reduced).toEqual([{ display: "cloud", reduction: { kind: "points", step: 8 }, rate: 4 }]);
-  data.received.emit(cloud(1));
-  expect(line.reduced).toEqual([]);
+  const connection = new SlowConnection(data as unknown as DisplayDataStore, () => now);
+  const onChanged = vi.fn();
+  connection.changed.on(onChanged);
+  data.received.emit(createCloud(1));
+  expect(connection.reduced).toEqual([]);
+  expect(onChanged).not.toHaveBeenCalled();
+  for (now = 0; now <= 1000; now += 250) data.received.emit(createCloud(8));
+  expect(connection.reduced).toEqual([{ display: "cloud", reduction: { kind: "points", step: 8 }, rate: 4 }]);
+  data.received.emit(createCloud(1));
+  expect(connection.reduced).toEqual([]);
 });
 
 it("drops displays that are no longer drawn", () => {
-  const data = store();
-  const line = new SlowConnection(data as unknown as DisplayDataStore, () => 0);
-  data.received.emit(cloud(2));
-  expect(line.reduced[0]?.rate).toBeNull();
+  const data = createStore();
+  const connection = new SlowConnection(data as unknown as DisplayDataStore, () => 0);
+  data.received.emit(createCloud(2));
+  expect(connection.reduced[0]?.rate).toBeNull();
   data.removed.emit({ display: "cloud", key: null });
-  expect(line.reduced).toEqual([]);
+  expect(connection.reduced).toEqual([]);
 });
 
 it("does not report images with invisible loss", () => {
-  const data = store();
-  const line = new SlowConnection(data as unknown as DisplayDataStore, () => 0);
-  const image = (quality: number): DisplayData["content"] => ({
+  const data = createStore();
+  const connection = new SlowConnection(data as unknown as DisplayDataStore, () => 0);
+  const createImage = (quality: number): DisplayData["content"] => ({
     kind: "image_frame", width: 64, height: 48, columns: 64, rows: 48, encoding: "file", data: new Uint8Array(9), camera: null, quality,
   });
-  data.received.emit({ ...cloud(1), content: image(85) });
-  expect(line.reduced).toEqual([]);
-  data.received.emit({ ...cloud(1), content: image(70) });
-  expect(line.reduced).toHaveLength(1);
+  data.received.emit({ ...createCloud(1), content: createImage(85) });
+  expect(connection.reduced).toEqual([]);
+  data.received.emit({ ...createCloud(1), content: createImage(70) });
+  expect(connection.reduced).toHaveLength(1);
 });
 
 it("is not blamed for a page that was slow a moment ago", () => {

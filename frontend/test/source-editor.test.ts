@@ -18,12 +18,12 @@ function apply(document: SourceDocument, spec: TransactionSpec | null): void {
 }
 
 /** Replaces a part of the text, as a user does. */
-function type(document: SourceDocument, old: string, now: string): void {
-  const from = document.state.doc.toString().indexOf(old);
-  apply(document, { changes: { from, to: from + old.length, insert: now } });
+function typeText(document: SourceDocument, oldText: string, newText: string): void {
+  const start = document.state.doc.toString().indexOf(oldText);
+  apply(document, { changes: { from: start, to: start + oldText.length, insert: newText } });
 }
 
-function wholeText(document: SourceDocument): string {
+function readText(document: SourceDocument): string {
   return document.state.doc.toString();
 }
 
@@ -31,20 +31,20 @@ describe("a document", () => {
   it("is unsaved from a change until it is written or the change is taken back", () => {
     const document = documentOf();
     expect(document.isUnsaved).toBe(false);
-    type(document, "'a'", "'c'");
+    typeText(document, "'a'", "'c'");
     expect(document.isUnsaved).toBe(true);
-    type(document, "'c'", "'a'");
+    typeText(document, "'c'", "'a'");
     expect(document.isUnsaved).toBe(false);
-    type(document, "'a'", "'c'");
+    typeText(document, "'a'", "'c'");
     expect(document.beginWriting()).toBe(TEXT.replace("'a'", "'c'"));
-    type(document, "'b'", "'d'");
+    typeText(document, "'b'", "'d'");
     document.endWriting(2);
     expect([document.isUnsaved, document.version, document.savedText.toString()]).toEqual([true, 2, TEXT.replace("'a'", "'c'")]);
   });
 
   it("stays unsaved if it was not written", () => {
     const document = documentOf();
-    type(document, "'a'", "'c'");
+    typeText(document, "'a'", "'c'");
     document.beginWriting();
     document.endWriting(null);
     expect([document.isUnsaved, document.version, document.isWriting]).toEqual([true, 1, false]);
@@ -52,50 +52,50 @@ describe("a document", () => {
 
   it("follows the file, and keeps unsaved changes of other places", () => {
     const document = documentOf();
-    type(document, "'a'", "'mine'");
+    typeText(document, "'a'", "'mine'");
     apply(document, document.onDiskChanged(TEXT.replace("'b'", "'theirs'"), 2));
-    expect(wholeText(document)).toBe("<robot>\n  <link name='mine'/>\n  <link name='theirs'/>\n</robot>\n");
+    expect(readText(document)).toBe("<robot>\n  <link name='mine'/>\n  <link name='theirs'/>\n</robot>\n");
     expect([document.isUnsaved, document.conflict, document.version]).toEqual([true, null, 2]);
-    type(document, "'mine'", "'a'");
+    typeText(document, "'mine'", "'a'");
     expect(document.isUnsaved).toBe(false);
   });
 
   it.each([
     ["mine", (document: SourceDocument) => (document.keepMine(), null), "'mine'", true],
     ["that of the disk", (document: SourceDocument) => document.takeDisk(), "'theirs'", false],
-  ])("with changes of the same place waits for the user, who chooses %s", (_, settle, name, isUnsaved) => {
+  ])("with changes of the same place waits for the user, who chooses %s", (_, settleConflict, name, isUnsaved) => {
     const document = documentOf();
-    type(document, "'a'", "'mine'");
-    const theirs = TEXT.replace("'a'", "'theirs'");
-    expect(document.onDiskChanged(theirs, 2)).toBeNull();
+    typeText(document, "'a'", "'mine'");
+    const diskText = TEXT.replace("'a'", "'theirs'");
+    expect(document.onDiskChanged(diskText, 2)).toBeNull();
     expect(document.conflict?.version).toBe(2);
-    expect(wholeText(document)).toContain("'mine'");
-    apply(document, settle(document));
-    expect(wholeText(document)).toBe(TEXT.replace("'a'", name));
-    expect([document.isUnsaved, document.conflict, document.savedText.toString()]).toEqual([isUnsaved, null, theirs]);
+    expect(readText(document)).toContain("'mine'");
+    apply(document, settleConflict(document));
+    expect(readText(document)).toBe(TEXT.replace("'a'", name));
+    expect([document.isUnsaved, document.conflict, document.savedText.toString()]).toEqual([isUnsaved, null, diskText]);
   });
 
   it("has no conflict with a file that has the same change", () => {
     const document = documentOf();
-    type(document, "'a'", "'c'");
+    typeText(document, "'a'", "'c'");
     expect(document.onDiskChanged(TEXT.replace("'a'", "'c'"), 2)).toBeNull();
     expect([document.isUnsaved, document.conflict]).toEqual([false, null]);
   });
 
   it("finds places of the file in the edited text", () => {
     const document = documentOf();
-    type(document, "<robot>\n", "<robot>\n\n\n");
-    const before = TEXT.indexOf("  <link name='b'");
-    expect([document.currentLineOf(3), document.describedLineOf(before + 2)]).toEqual([before + 2, 3]);
+    typeText(document, "<robot>\n", "<robot>\n\n\n");
+    const position = TEXT.indexOf("  <link name='b'");
+    expect([document.currentLineOf(3), document.describedLineOf(position + 2)]).toEqual([position + 2, 3]);
   });
 
   it("finds places of the text that the scene shows, which may be older or newer than the file", () => {
     const document = documentOf();
-    type(document, "<robot>\n", "<robot>\n\n\n");
+    typeText(document, "<robot>\n", "<robot>\n\n\n");
     document.beginShowing(1);
     document.endShowing(1, true);
     expect(document.describedLineOf(document.currentLineOf(5))).toBe(5);
-    type(document, "<robot>\n", "<robot>\n\n");
+    typeText(document, "<robot>\n", "<robot>\n\n");
     document.beginShowing(2);
     document.endShowing(2, false); // it has errors
     expect(document.state.doc.lineAt(document.currentLineOf(5)).number).toBe(6);
@@ -103,22 +103,22 @@ describe("a document", () => {
 
   it("takes over an edit of the robot beside what was typed since, and not in the same place", () => {
     const document = documentOf();
-    type(document, "'a'", "'c'");
+    typeText(document, "'a'", "'c'");
     document.beginShowing(1);
-    type(document, "'c'", "'d'");
+    typeText(document, "'c'", "'d'");
     apply(document, document.onRobotEdited(TEXT.replace("'a'", "'c'").replace("'b'", "'moved'"), 1));
-    expect(wholeText(document)).toBe("<robot>\n  <link name='d'/>\n  <link name='moved'/>\n</robot>\n");
+    expect(readText(document)).toBe("<robot>\n  <link name='d'/>\n  <link name='moved'/>\n</robot>\n");
     expect(document.isUnsaved).toBe(true);
     expect(document.onRobotEdited(TEXT.replace("'a'", "'e'"), 1)).toBeNull();
   });
 });
 
 it("the smallest change replaces one range", () => {
-  const [before, after] = [textOf("one two three"), textOf("one 2 three")];
+  const [textBefore, textAfter] = [textOf("one two three"), textOf("one 2 three")];
   const parts: unknown[] = [];
-  findSmallestChange(before, after).iterChanges((from, to, _a, _b, text) => parts.push([from, to, text.toString()]));
+  findSmallestChange(textBefore, textAfter).iterChanges((start, end, _a, _b, text) => parts.push([start, end, text.toString()]));
   expect(parts).toEqual([[4, 7, "2"]]);
-  expect(findSmallestChange(before, before).empty).toBe(true);
+  expect(findSmallestChange(textBefore, textBefore).empty).toBe(true);
   expect(findSmallestChange(textOf("aa"), textOf("aaa")).apply(textOf("aa")).toString()).toBe("aaa");
 });
 

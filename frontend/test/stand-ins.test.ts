@@ -9,23 +9,23 @@ import { levelsFor, MovingMeshes, type MovingPiece } from "../src/scene/robot/mo
 
 beforeAll(() => MeshoptSimplifier.ready);
 
-function triangles(geometry: BufferGeometry): Triangles {
-  const array = (name: string): Float32Array => geometry.getAttribute(name).array as Float32Array;
-  return { positions: array("position"), normals: array("normal"), index: geometry.index ? Uint32Array.from(geometry.index.array) : null };
+function toTriangles(geometry: BufferGeometry): Triangles {
+  const arrayOf = (name: string): Float32Array => geometry.getAttribute(name).array as Float32Array;
+  return { positions: arrayOf("position"), normals: arrayOf("normal"), index: geometry.index ? Uint32Array.from(geometry.index.array) : null };
 }
 
 /** Returns a geometry like that of an STL: separate, flat triangles. */
-function soup(geometry: BufferGeometry): Triangles {
-  const apart = geometry.toNonIndexed();
-  apart.computeVertexNormals();
-  return triangles(apart);
+function separateTriangles(geometry: BufferGeometry): Triangles {
+  const flatGeometry = geometry.toNonIndexed();
+  flatGeometry.computeVertexNormals();
+  return toTriangles(flatGeometry);
 }
 
-function made(mesh: Triangles): StandIn {
+function createDefaultStandIn(mesh: Triangles): StandIn {
   return createStandIn(mesh, MeshoptSimplifier);
 }
 
-function looking(distance: number): { camera: PerspectiveCamera; height: number } {
+function viewpointAt(distance: number): { camera: PerspectiveCamera; height: number } {
   const camera = new PerspectiveCamera(45, 1, 0.01, 1000);
   camera.position.set(0, 0, distance);
   camera.updateMatrixWorld();
@@ -33,18 +33,18 @@ function looking(distance: number): { camera: PerspectiveCamera; height: number 
 }
 
 /** A worker that answers when the test tells it to. */
-function worker(): { worker: StandInWorker; requests: StandInRequest[]; answer: (standIns: StandInAnswer["standIns"]) => void } {
+function createWorker(): { createWorker: StandInWorker; requests: StandInRequest[]; answer: (standIns: StandInAnswer["standIns"]) => void } {
   const requests: StandInRequest[] = [];
-  const made: StandInWorker = { onmessage: null, onerror: null, postMessage: (request) => void requests.push(request) };
+  const worker: StandInWorker = { onmessage: null, onerror: null, postMessage: (request) => void requests.push(request) };
   const answer = (standIns: StandInAnswer["standIns"]): void => {
-    made.onmessage?.({ data: { id: requests.at(-1)!.id, standIns } } as MessageEvent<StandInAnswer>);
+    worker.onmessage?.({ data: { id: requests.at(-1)!.id, standIns } } as MessageEvent<StandInAnswer>);
   };
-  return { worker: made, requests, answer };
+  return { createWorker: worker, requests, answer };
 }
 
 describe("a stand-in", () => {
   it("has fewer triangles at each level, and stays within the error", () => {
-    const { positions, levels } = made(soup(new SphereGeometry(1, 48, 32)));
+    const { positions, levels } = createDefaultStandIn(separateTriangles(new SphereGeometry(1, 48, 32)));
     expect(levels.length).toBeGreaterThan(3);
     expect(levels[0]?.error).toBe(0);
     for (let i = 1; i < levels.length; i++) {
@@ -52,26 +52,26 @@ describe("a stand-in", () => {
       expect(levels[i]!.index.length).toBeLessThan(0.81 * levels[i - 1]!.index.length);
     }
     for (const { error, index } of levels) {
-      let off = 0;
+      let largestError = 0;
       for (let i = 0; i < index.length; i += 3) {
         // The center of a flat triangle is the farthest from the sphere.
-        const middle = [0, 1, 2].map((axis) => [0, 1, 2].reduce((sum, k) => sum + positions[3 * index[i + k]! + axis]! / 3, 0));
-        off = Math.max(off, 1 - Math.hypot(...middle));
+        const center = [0, 1, 2].map((axis) => [0, 1, 2].reduce((sum, k) => sum + positions[3 * index[i + k]! + axis]! / 3, 0));
+        largestError = Math.max(largestError, 1 - Math.hypot(...center));
       }
-      expect(off).toBeLessThan(1.3 * error + 0.005);
+      expect(largestError).toBeLessThan(1.3 * error + 0.005);
     }
   });
 
   it("merges the vertices of separate triangles, but not across edges", () => {
-    const box = made(soup(new BoxGeometry(1, 1, 1)));
+    const box = createDefaultStandIn(separateTriangles(new BoxGeometry(1, 1, 1)));
     expect(box.positions.length / 3).toBe(24);
     expect(box.levels[0]?.index.length).toBe(36);
-    const round = made(soup(new SphereGeometry(1, 24, 16)));
+    const round = createDefaultStandIn(separateTriangles(new SphereGeometry(1, 24, 16)));
     expect(round.positions.length / 3).toBeLessThan(25 * 17);
   });
 
   it("does not exist for a mesh without area", () => {
-    const { levels, sphere } = made({ positions: new Float32Array(9), normals: new Float32Array(9), index: null });
+    const { levels, sphere } = createDefaultStandIn({ positions: new Float32Array(9), normals: new Float32Array(9), index: null });
     expect(levels).toEqual([{ error: 0, index: new Uint32Array(0) }]);
     expect(sphere[3]).toBe(0);
   });
@@ -79,49 +79,49 @@ describe("a stand-in", () => {
 
 describe("stand-ins of meshes", () => {
   it("are requested once, one for each group", () => {
-    const { worker: made, requests, answer } = worker();
-    const standIns = new StandIns(() => made);
+    const { createWorker: worker, requests, answer } = createWorker();
+    const standIns = new StandIns(() => worker);
     const geometry = new BoxGeometry(1, 1, 1);
     expect(standIns.standInsOf(geometry)).toBeNull();
     expect(standIns.standInsOf(geometry)).toBeNull();
     expect(requests).toHaveLength(1);
     expect(requests[0]?.pieces).toHaveLength(6);
     expect(requests[0]?.pieces[0]?.index).toHaveLength(6);
-    const found = requests[0]!.pieces.map((piece) => createStandIn(piece, MeshoptSimplifier));
-    answer(found);
-    expect(standIns.standInsOf(geometry)).toBe(found);
+    const pieceStandIns = requests[0]!.pieces.map((piece) => createStandIn(piece, MeshoptSimplifier));
+    answer(pieceStandIns);
+    expect(standIns.standInsOf(geometry)).toBe(pieceStandIns);
   });
 
   it("do not exist if the worker does not run", () => {
-    const { worker: made } = worker();
-    const standIns = new StandIns(() => made);
+    const { createWorker: worker } = createWorker();
+    const standIns = new StandIns(() => worker);
     const geometry = new SphereGeometry();
     standIns.standInsOf(geometry);
-    made.onerror?.({} as ErrorEvent);
+    worker.onerror?.({} as ErrorEvent);
     expect(standIns.standInsOf(geometry)).toEqual([]);
   });
 });
 
 describe("moving meshes", () => {
-  const ball = (): MovingPiece => ({ standIn: made(triangles(new SphereGeometry(1, 48, 32))), matrix: new Matrix4(), color: 0xff0000 });
+  const createBall = (): MovingPiece => ({ standIn: createDefaultStandIn(toTriangles(new SphereGeometry(1, 48, 32))), matrix: new Matrix4(), color: 0xff0000 });
 
   it("are coarser at a greater distance, and absent outside the view", () => {
-    const piece = ball();
-    const levels = [2, 5, 50, 500].map((distance) => levelsFor([piece], looking(distance))[0]);
+    const piece = createBall();
+    const levels = [2, 5, 50, 500].map((distance) => levelsFor([piece], viewpointAt(distance))[0]);
     expect(levels).toEqual([...levels].sort((a, b) => a! - b!));
     expect(new Set(levels).size).toBeGreaterThan(2);
-    expect(levelsFor([{ ...piece, matrix: new Matrix4().makeTranslation(100, 0, 0) }], looking(5))).toEqual([null]);
+    expect(levelsFor([{ ...piece, matrix: new Matrix4().makeTranslation(100, 0, 0) }], viewpointAt(5))).toEqual([null]);
     // From inside nothing is left out.
-    expect(levelsFor([piece], looking(0.5))).toEqual([0]);
+    expect(levelsFor([piece], viewpointAt(0.5))).toEqual([0]);
     // A hundred times as large from a hundred times the distance looks the same.
-    expect(levelsFor([{ ...piece, matrix: new Matrix4().makeScale(100, 100, 100) }], looking(500))).toEqual(levelsFor([piece], looking(5)));
+    expect(levelsFor([{ ...piece, matrix: new Matrix4().makeScale(100, 100, 100) }], viewpointAt(500))).toEqual(levelsFor([piece], viewpointAt(5)));
   });
 
   it("replace the meshes until the frame is drawn", () => {
     const parent = new Object3D();
     const mesh = new Mesh(new SphereGeometry(), new MeshLambertMaterial());
     const moving = new MovingMeshes(parent);
-    moving.begin([ball(), ball()], [mesh], looking(50));
+    moving.begin([createBall(), createBall()], [mesh], viewpointAt(50));
     expect(moving.drawnCounts.pieces).toBe(2);
     expect(moving.drawnCounts.triangles).toBeLessThan(48 * 32);
     expect(mesh.layers.isEnabled(0)).toBe(false);

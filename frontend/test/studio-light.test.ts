@@ -3,9 +3,9 @@ import { describe, expect, it } from "vitest";
 import { enableShadows, StudioLight } from "../src/scene/studio-light";
 
 describe("the studio", () => {
-  function parts(studio: StudioLight): { lamp: DirectionalLight; ground: Mesh } {
-    const lamp = studio.root.children.find((each) => each instanceof DirectionalLight);
-    const ground = studio.root.children.find((each): each is Mesh => each instanceof Mesh);
+  function partsOf(studio: StudioLight): { lamp: DirectionalLight; ground: Mesh } {
+    const lamp = studio.root.children.find((object) => object instanceof DirectionalLight);
+    const ground = studio.root.children.find((object): object is Mesh => object instanceof Mesh);
     if (!lamp || !ground) throw new Error("no lamp, or no ground");
     return { lamp, ground };
   }
@@ -13,7 +13,7 @@ describe("the studio", () => {
   it("has a ground below the objects, and shadows of their size", () => {
     for (const size of [0.01, 1, 100]) {
       const studio = new StudioLight();
-      const { lamp, ground } = parts(studio);
+      const { lamp, ground } = partsOf(studio);
       studio.update(new Box3(new Vector3(0, 0, 0), new Vector3(size, size, size)), -size);
       expect(ground.position.z).toBe(-size);
       expect(ground.visible).toBe(true);
@@ -29,12 +29,12 @@ describe("the studio", () => {
   it("gives a robot's shadow softer edges than a world's", () => {
     const sun = new DirectionalLight();
     enableShadows(sun);
-    expect(parts(new StudioLight()).lamp.shadow.radius).toBeGreaterThan(2 * sun.shadow.radius);
+    expect(partsOf(new StudioLight()).lamp.shadow.radius).toBeGreaterThan(2 * sun.shadow.radius);
   });
 
   it("has no ground while it is empty", () => {
     const studio = new StudioLight();
     studio.update(new Box3(), 0);
-    expect(parts(studio).ground.visible).toBe(false);
+    expect(partsOf(studio).ground.visible).toBe(false);
   });
 });

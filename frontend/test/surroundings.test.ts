@@ -8,19 +8,19 @@ const FOG = { color: [1, 1, 1], start: 2, end: 9, density: null };
 describe("sky and fog", () => {
   it("exist for worlds that have them, and are created once", () => {
     const scene = new Scene();
-    const around = new SkyAndFog(scene);
-    around.set({ ...NONE, daylight: 1, fog: FOG }, false);
+    const skyAndFog = new SkyAndFog(scene);
+    skyAndFog.set({ ...NONE, daylight: 1, fog: FOG }, false);
     const { background, fog } = scene;
     expect(background).toBeInstanceOf(DataTexture);
     expect(fog).toBeInstanceOf(Fog);
     expect(fog).toMatchObject({ near: 2, far: 9 });
-    around.set({ ...NONE, daylight: 1, fog: { ...FOG } }, false);
+    skyAndFog.set({ ...NONE, daylight: 1, fog: { ...FOG } }, false);
     expect(scene.background).toBe(background);
     expect(scene.fog).toBe(fog);
-    around.set({ ...NONE, daylight: 0, fog: { ...FOG, density: 0.5 } }, false);
+    skyAndFog.set({ ...NONE, daylight: 0, fog: { ...FOG, density: 0.5 } }, false);
     expect(scene.background).not.toBe(background);
     expect(scene.fog).toBeInstanceOf(FogExp2);
-    around.set(NONE, false);
+    skyAndFog.set(NONE, false);
     expect([scene.background, scene.fog]).toEqual([null, null]);
   });
 
@@ -32,12 +32,12 @@ describe("sky and fog", () => {
 
   it("are a backdrop in a studio, with its color at the zenith and a brighter horizon", () => {
     const scene = new Scene();
-    const around = new SkyAndFog(scene);
-    around.set({ ...NONE, backdrop: "#303030" }, false);
+    const skyAndFog = new SkyAndFog(scene);
+    skyAndFog.set({ ...NONE, backdrop: "#303030" }, false);
     const { data } = (scene.background as DataTexture).image as { data: Uint8Array };
     const [horizon = 0, zenith = 0] = [data[data.length / 2], data[data.length - 4]];
     expect(horizon).toBeGreaterThan(zenith + 20);
-    around.set({ ...NONE, backdrop: "#303030" }, true);
+    skyAndFog.set({ ...NONE, backdrop: "#303030" }, true);
     expect(scene.background).toBeNull();
   });
 });

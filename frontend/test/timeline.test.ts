@@ -4,68 +4,68 @@ import { formatAge, formatClock, computeDensities, formatExtent, formatMoment, f
 import type { PageMessage, Playhead } from "../src/protocol";
 import { TimelineState } from "../src/state/timeline";
 
-function playhead(part: Partial<Playhead> = {}): Playhead & { type: "playhead" } {
+function createPlayhead(part: Partial<Playhead> = {}): Playhead & { type: "playhead" } {
   return { type: "playhead", position: 100, playing: false, speed: 1, loop: false, seeks: 0, problem: "", live: false, ...part };
 }
 
 describe("the timeline", () => {
-  let sent: PageMessage[];
+  let sentMessages: PageMessage[];
   let connection: Connection;
   let timeline: TimelineState;
 
   beforeEach(() => {
-    sent = [];
+    sentMessages = [];
     connection = new Connection("ws://localhost/ws");
-    vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+    vi.spyOn(connection, "send").mockImplementation((message) => void sentMessages.push(message));
     timeline = new TimelineState(connection);
     connection.message.emit({ type: "timeline", name: "drive", start: 100, end: 110, topics: [], live: false });
-    connection.message.emit(playhead());
+    connection.message.emit(createPlayhead());
   });
 
   it("moves to where the user drags it, and requests one time after another, only the newest", () => {
     for (const position of [102, 103, 104]) timeline.seek(position);
     expect(timeline.position).toBe(104);
-    expect(sent).toEqual([{ type: "seek_time", position: 102 }]);
-    connection.message.emit(playhead({ position: 100.2, playing: true }));
-    expect(timeline.position, "told before the server was there").toBe(104);
-    connection.message.emit(playhead({ position: 102, seeks: 1 }));
-    expect(sent[1]).toEqual({ type: "seek_time", position: 104 });
+    expect(sentMessages).toEqual([{ type: "seek_time", position: 102 }]);
+    connection.message.emit(createPlayhead({ position: 100.2, playing: true }));
+    expect(timeline.position, "sent before the server reached the requested time").toBe(104);
+    connection.message.emit(createPlayhead({ position: 102, seeks: 1 }));
+    expect(sentMessages[1]).toEqual({ type: "seek_time", position: 104 });
     expect(timeline.position).toBe(104);
-    connection.message.emit(playhead({ position: 104, seeks: 2 }));
-    expect(sent).toHaveLength(2);
-    connection.message.emit(playhead({ position: 104.1, seeks: 2, playing: true }));
+    connection.message.emit(createPlayhead({ position: 104, seeks: 2 }));
+    expect(sentMessages).toHaveLength(2);
+    connection.message.emit(createPlayhead({ position: 104.1, seeks: 2, playing: true }));
     expect(timeline.position).toBe(104.1);
   });
 
   it("stays within the recording", () => {
     timeline.seek(200);
-    expect(sent).toEqual([{ type: "seek_time", position: 110 }]);
+    expect(sentMessages).toEqual([{ type: "seek_time", position: 110 }]);
   });
 
   it("reports changes separately from time that passes", () => {
-    const told: string[] = [];
-    timeline.changed.on(() => told.push("changed"));
-    timeline.moved.on(() => told.push("moved"));
-    connection.message.emit(playhead({ playing: true }));
-    connection.message.emit(playhead({ playing: true, position: 100.1 }));
-    connection.message.emit(playhead({ playing: true, position: 100.2, loop: true }));
-    expect(told).toEqual(["changed", "moved", "changed"]);
+    const events: string[] = [];
+    timeline.changed.on(() => events.push("changed"));
+    timeline.moved.on(() => events.push("moved"));
+    connection.message.emit(createPlayhead({ playing: true }));
+    connection.message.emit(createPlayhead({ playing: true, position: 100.1 }));
+    connection.message.emit(createPlayhead({ playing: true, position: 100.2, loop: true }));
+    expect(events).toEqual(["changed", "moved", "changed"]);
   });
 
   it("stays at the end of the history while live", () => {
     connection.message.emit({ type: "timeline", name: "", start: 100, end: 110, topics: [], live: true });
-    connection.message.emit(playhead({ live: true }));
+    connection.message.emit(createPlayhead({ live: true }));
     connection.message.emit({ type: "history_extent", start: 105, end: 120, size: 5e6, most: 1e7 });
     expect([timeline.isPlaying, timeline.isLive, timeline.position]).toEqual([true, true, 120]);
     timeline.play(false);
-    connection.message.emit(playhead({ position: 119 }));
+    connection.message.emit(createPlayhead({ position: 119 }));
     expect([timeline.isPlaying, timeline.isLive, timeline.position]).toEqual([false, false, 119]);
     expect(formatAge(1)).toBe("−0:01.000");
     expect(formatMoment(52.304)).toBe("0:52.304");
     expect(formatMoment(new Date(2026, 1, 3, 14, 3, 7, 256).getTime() / 1000)).toBe("14:03:07.256");
     expect(formatExtent({ type: "history_extent", start: 105, end: 120, size: 5e6, most: 1e7 })).toBe("0:15 · 5.0 MB");
     timeline.goLive();
-    expect(sent).toEqual([{ type: "play", playing: false }, { type: "go_live" }]);
+    expect(sentMessages).toEqual([{ type: "play", playing: false }, { type: "go_live" }]);
   });
 
   it("disappears with a program that has none", () => {
@@ -83,8 +83,8 @@ describe("texts of the timeline", () => {
   });
 
   it("show the density of messages relative to the densest part of each topic", () => {
-    const topic = (name: string, counts: number[]) => ({ name, kind: "", count: counts.reduce((a, b) => a + b, 0), counts });
-    const rows = computeDensities([topic("/a", [1, 0]), topic("/b", [2, 4]), topic("/c", [])]);
-    expect(rows.map((row) => row.map((each) => Math.round(each * 100)))).toEqual([[34, 60], [60, 0]]);
+    const createTopic = (name: string, counts: number[]) => ({ name, kind: "", count: counts.reduce((a, b) => a + b, 0), counts });
+    const rows = computeDensities([createTopic("/a", [1, 0]), createTopic("/b", [2, 4]), createTopic("/c", [])]);
+    expect(rows.map((row) => row.map((density) => Math.round(density * 100)))).toEqual([[34, 60], [60, 0]]);
   });
 });

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { StatusRow } from "../src/protocol";
 import { DisplaysState, problemsOf } from "../src/state/displays";
-import { display, tree } from "./messages";
+import { createDisplay, createTree } from "./messages";
 
 const ROWS: StatusRow[] = [
   { name: "Topic", level: "warn", text: "No messages received" },
@@ -18,7 +18,13 @@ describe("the problems of a display", () => {
   it("are counted if they are errors and the display is enabled", () => {
     const displays = new DisplaysState();
     const warned = ROWS.slice(0, 2);
-    displays.setTree(tree(display({ id: "a", enabled: true, status: ROWS }), display({ id: "b", enabled: true, status: warned }), display({ id: "c", enabled: false, status: ROWS })));
+    displays.setTree(
+      createTree(
+        createDisplay({ id: "a", enabled: true, status: ROWS }),
+        createDisplay({ id: "b", enabled: true, status: warned }),
+        createDisplay({ id: "c", enabled: false, status: ROWS }),
+      ),
+    );
     expect(displays.failingCount).toBe(1);
     displays.setStatus("global", "error", ROWS);
     displays.setStatus("b", "error", ROWS);

@@ -28,17 +28,17 @@ describe("a video", () => {
   });
 
   it("has frames of a still scene, which is drawn ten times per second while it is recorded", async () => {
-    let drawn = 0;
+    let drawCount = 0;
     const videos: Blob[] = [];
-    const recorder = new VideoRecorder(canvas, () => drawn++, (video) => videos.push(video));
+    const recorder = new VideoRecorder(canvas, () => drawCount++, (video) => videos.push(video));
     await vi.advanceTimersByTimeAsync(1000);
-    expect(drawn).toBe(0);
+    expect(drawCount).toBe(0);
     recorder.start();
     await vi.advanceTimersByTimeAsync(2000);
-    expect(drawn).toBe(21);
+    expect(drawCount).toBe(21);
     recorder.stop();
     await vi.advanceTimersByTimeAsync(2000);
-    expect(drawn).toBe(21);
+    expect(drawCount).toBe(21);
     expect(videos).toHaveLength(1);
   });
 });

@@ -1,58 +1,58 @@
 import { describe, expect, it } from "vitest";
 import { FIELD_OF_VIEW, onGround, castRay, type Camera } from "../src/state/views/camera";
 import { controllerOf } from "../src/state/views/catalog";
-import { spanToTarget } from "../src/state/views/fit";
+import { transformSpan } from "../src/state/views/fit";
 import type { Drag, ViewController, ViewValues } from "../src/state/views/view-controller";
 import type { Vector } from "../src/state/views/vector";
 
 const SIZE = { width: 800, height: 600 };
-const ORBIT = view("Orbit");
-const GROUND = view("XYOrbit");
-const FLY = view("FPS");
-const MAP = view("TopDownOrtho");
+const ORBIT = controllerNamed("Orbit");
+const GROUND = controllerNamed("XYOrbit");
+const FLY = controllerNamed("FPS");
+const MAP = controllerNamed("TopDownOrtho");
 const FOCUSED: ViewValues = { Distance: 2, Yaw: 5.5, Pitch: 0.33, "Focal Point/X": 1, "Focal Point/Y": 2, "Focal Point/Z": 3 };
 
-function view(name: string): ViewController {
+function controllerNamed(name: string): ViewController {
   return controllerOf(`rviz_default_plugins/${name}`);
 }
 
-function dragged(part: Partial<Drag>): Drag {
+function createDrag(part: Partial<Drag>): Drag {
   return { ...SIZE, left: false, middle: false, right: false, shift: false, x: 400, y: 300, dx: 0, dy: 0, ...part };
 }
 
-function close(actual: readonly number[], expected: readonly number[], digits = 6): void {
-  expected.forEach((value, i) => expect(actual[i]).toBeCloseTo(value, digits));
+function expectClose(actual: readonly number[], expectedValues: readonly number[], digits = 6): void {
+  expectedValues.forEach((value, i) => expect(actual[i]).toBeCloseTo(value, digits));
 }
 
-function look(cls: string, values: ViewValues): { cls: string; values: ViewValues; camera: Camera } {
-  return { cls: `rviz_default_plugins/${cls}`, values, camera: view(cls).computeCamera(values) };
+function createSource(cls: string, values: ViewValues): { cls: string; values: ViewValues; camera: Camera } {
+  return { cls: `rviz_default_plugins/${cls}`, values, camera: controllerNamed(cls).computeCamera(values) };
 }
 
-function forward({ back }: Camera): Vector {
+function forwardOf({ back }: Camera): Vector {
   return [-back[0], -back[1], -back[2]];
 }
 
 /** Returns the position of a point on the screen: right and up from the center, per meter of depth. */
-function seen(camera: Camera, point: Vector): [number, number] {
-  const off = point.map((value, i) => value - (camera.position[i] ?? 0));
-  const along = (axis: Vector): number => axis.reduce((sum, value, i) => sum + value * (off[i] ?? 0), 0);
-  const depth = -along(camera.back);
-  return [along(camera.right) / depth, along(camera.up) / depth];
+function projectPoint(camera: Camera, point: Vector): [number, number] {
+  const offset = point.map((value, i) => value - (camera.position[i] ?? 0));
+  const componentAlong = (axis: Vector): number => axis.reduce((sum, value, i) => sum + value * (offset[i] ?? 0), 0);
+  const depth = -componentAlong(camera.back);
+  return [componentAlong(camera.right) / depth, componentAlong(camera.up) / depth];
 }
 
 describe("every view", () => {
   it("has right-handed unit axes", () => {
     for (const [name, values] of [["Orbit", FOCUSED], ["XYOrbit", FOCUSED], ["FPS", { Yaw: 1, Pitch: -0.4 }], ["TopDownOrtho", { Angle: 0.7 }]] as const) {
-      const { right, up, back } = view(name).computeCamera(values);
+      const { right, up, back } = controllerNamed(name).computeCamera(values);
       for (const axis of [right, up, back]) expect(Math.hypot(...axis)).toBeCloseTo(1);
-      close(right, [up[1] * back[2] - up[2] * back[1], up[2] * back[0] - up[0] * back[2], up[0] * back[1] - up[1] * back[0]]);
+      expectClose(right, [up[1] * back[2] - up[2] * back[1], up[2] * back[0] - up[0] * back[2], up[0] * back[1] - up[1] * back[0]]);
     }
   });
 
   it("changes nothing while no button is pressed", () => {
     for (const name of ["Orbit", "XYOrbit", "FPS", "TopDownOrtho"]) {
-      for (const shift of [false, true]) {
-        expect(view(name).drag(FOCUSED, dragged({ dx: 10, dy: 10, shift })), name).toEqual({});
+      for (const isShiftHeld of [false, true]) {
+        expect(controllerNamed(name).drag(FOCUSED, createDrag({ dx: 10, dy: 10, shift: isShiftHeld })), name).toEqual({});
       }
     }
   });
@@ -61,47 +61,47 @@ describe("every view", () => {
 describe("Orbit", () => {
   it("has the pose of RViz's formula, and is upside down with Invert Z", () => {
     const [x, y, z] = ORBIT.computeCamera(FOCUSED).position;
-    close([x, y, z], [1 + 2 * Math.cos(5.5) * Math.cos(0.33), 2 + 2 * Math.sin(5.5) * Math.cos(0.33), 3 + 2 * Math.sin(0.33)]);
+    expectClose([x, y, z], [1 + 2 * Math.cos(5.5) * Math.cos(0.33), 2 + 2 * Math.sin(5.5) * Math.cos(0.33), 3 + 2 * Math.sin(0.33)]);
     const inverted = ORBIT.computeCamera({ ...FOCUSED, "Invert Z Axis": true });
     expect(inverted.position[2]).toBeCloseTo(3 - 2 * Math.sin(0.33));
     expect(inverted.up[2]).toBeLessThan(0);
   });
 
   it("rotates 0.005 rad per pixel, wraps the yaw and stops the pitch before the pole", () => {
-    const rotated = ORBIT.drag(FOCUSED, dragged({ left: true, dx: 10, dy: 4 }));
-    close([Number(rotated["Yaw"]), Number(rotated["Pitch"])], [5.45, 0.35]);
-    expect(ORBIT.drag({ ...FOCUSED, Yaw: 0.01 }, dragged({ left: true, dx: 4 }))["Yaw"]).toBeCloseTo(2 * Math.PI - 0.01);
+    const rotated = ORBIT.drag(FOCUSED, createDrag({ left: true, dx: 10, dy: 4 }));
+    expectClose([Number(rotated["Yaw"]), Number(rotated["Pitch"])], [5.45, 0.35]);
+    expect(ORBIT.drag({ ...FOCUSED, Yaw: 0.01 }, createDrag({ left: true, dx: 4 }))["Yaw"]).toBeCloseTo(2 * Math.PI - 0.01);
     const limit = Math.PI / 2 - 0.001;
-    expect(ORBIT.drag(FOCUSED, dragged({ left: true, dy: 10_000 }))["Pitch"]).toBeCloseTo(limit);
-    expect(ORBIT.drag(FOCUSED, dragged({ left: true, dy: -10_000 }))["Pitch"]).toBeCloseTo(-limit);
+    expect(ORBIT.drag(FOCUSED, createDrag({ left: true, dy: 10_000 }))["Pitch"]).toBeCloseTo(limit);
+    expect(ORBIT.drag(FOCUSED, createDrag({ left: true, dy: -10_000 }))["Pitch"]).toBeCloseTo(-limit);
   });
 
   it("pans so that the focal plane follows the pointer", () => {
-    const moved = ORBIT.drag(FOCUSED, dragged({ middle: true, dy: SIZE.height }));
-    const away = ["X", "Y", "Z"].map((axis) => Number(moved[`Focal Point/${axis}`]) - Number(FOCUSED[`Focal Point/${axis}`]));
-    expect(Math.hypot(...away)).toBeCloseTo(2 * 2 * Math.tan(FIELD_OF_VIEW / 2));
-    expect(ORBIT.drag(FOCUSED, dragged({ left: true, shift: true, dy: SIZE.height }))).toEqual(moved);
+    const change = ORBIT.drag(FOCUSED, createDrag({ middle: true, dy: SIZE.height }));
+    const motion = ["X", "Y", "Z"].map((axis) => Number(change[`Focal Point/${axis}`]) - Number(FOCUSED[`Focal Point/${axis}`]));
+    expect(Math.hypot(...motion)).toBeCloseTo(2 * 2 * Math.tan(FIELD_OF_VIEW / 2));
+    expect(ORBIT.drag(FOCUSED, createDrag({ left: true, shift: true, dy: SIZE.height }))).toEqual(change);
   });
 
   it("zooms 12 % per notch, and a hundredth of the distance per pixel with the right button", () => {
     expect(ORBIT.applyWheel(FOCUSED, 120, false)["Distance"]).toBeCloseTo(2 * 0.88);
-    expect(ORBIT.drag(FOCUSED, dragged({ right: true, dy: 10 }))["Distance"]).toBeCloseTo(2 * 1.1);
+    expect(ORBIT.drag(FOCUSED, createDrag({ right: true, dy: 10 }))["Distance"]).toBeCloseTo(2 * 1.1);
     expect(ORBIT.applyWheel(FOCUSED, 1e6, false)["Distance"]).toBeGreaterThan(0);
   });
 
   it("moves along the line of sight with Shift", () => {
-    const moved = ORBIT.applyWheel(FOCUSED, 120, true);
+    const change = ORBIT.applyWheel(FOCUSED, 120, true);
     const { back } = ORBIT.computeCamera(FOCUSED);
     ["X", "Y", "Z"].forEach((axis, i) => {
-      expect(moved[`Focal Point/${axis}`]).toBeCloseTo(Number(FOCUSED[`Focal Point/${axis}`]) - 0.24 * (back[i] ?? 0));
+      expect(change[`Focal Point/${axis}`]).toBeCloseTo(Number(FOCUSED[`Focal Point/${axis}`]) - 0.24 * (back[i] ?? 0));
     });
-    expect(moved["Distance"]).toBeUndefined();
+    expect(change["Distance"]).toBeUndefined();
   });
 
   it("looks at a point without moving", () => {
-    const after = ORBIT.computeCamera({ ...FOCUSED, ...ORBIT.lookAt(FOCUSED, [0, 0, 1]) });
-    close(after.position, ORBIT.computeCamera(FOCUSED).position);
-    close(seen(after, [0, 0, 1]), [0, 0]);
+    const camera = ORBIT.computeCamera({ ...FOCUSED, ...ORBIT.lookAt(FOCUSED, [0, 0, 1]) });
+    expectClose(camera.position, ORBIT.computeCamera(FOCUSED).position);
+    expectClose(projectPoint(camera, [0, 0, 1]), [0, 0]);
   });
 });
 
@@ -110,22 +110,22 @@ describe("XYOrbit", () => {
 
   it("is raised by a fifth of the distance", () => {
     const [orbit, ground] = [ORBIT.computeCamera(values), GROUND.computeCamera(values)];
-    close(ground.position, orbit.position.map((each, i) => each + 2 * (orbit.up[i] ?? 0)));
+    expectClose(ground.position, orbit.position.map((value, i) => value + 2 * (orbit.up[i] ?? 0)));
   });
 
   it("keeps the ground under the pointer, at most one meter per step", () => {
-    const drag = dragged({ middle: true, dx: 12, dy: -7 });
-    const before = onGround(castRay(GROUND.computeCamera(values), drag.x, drag.y, SIZE));
-    const after = { ...values, ...GROUND.drag(values, drag) };
-    close(onGround(castRay(GROUND.computeCamera(after), drag.x + 12, drag.y - 7, SIZE)) ?? [], before ?? [NaN]);
-    expect(after["Focal Point/Z"]).toBe(0);
-    const far = GROUND.drag(values, dragged({ middle: true, dy: -300 }));
-    expect(Math.hypot(Number(far["Focal Point/X"]) - 1, Number(far["Focal Point/Y"]) - 2)).toBeLessThanOrEqual(1 + 1e-9);
+    const drag = createDrag({ middle: true, dx: 12, dy: -7 });
+    const pointBefore = onGround(castRay(GROUND.computeCamera(values), drag.x, drag.y, SIZE));
+    const valuesAfter = { ...values, ...GROUND.drag(values, drag) };
+    expectClose(onGround(castRay(GROUND.computeCamera(valuesAfter), drag.x + 12, drag.y - 7, SIZE)) ?? [], pointBefore ?? [NaN]);
+    expect(valuesAfter["Focal Point/Z"]).toBe(0);
+    const limitedChange = GROUND.drag(values, createDrag({ middle: true, dy: -300 }));
+    expect(Math.hypot(Number(limitedChange["Focal Point/X"]) - 1, Number(limitedChange["Focal Point/Y"]) - 2)).toBeLessThanOrEqual(1 + 1e-9);
   });
 
   it("zooms with the wheel and the right button, also with Shift", () => {
     expect(GROUND.applyWheel(values, 120, true)["Distance"]).toBeCloseTo(8.8);
-    expect(GROUND.drag(values, dragged({ right: true, shift: true, dy: 10 }))["Distance"]).toBeCloseTo(11);
+    expect(GROUND.drag(values, createDrag({ right: true, shift: true, dy: 10 }))["Distance"]).toBeCloseTo(11);
   });
 
   it("focuses on the ground below a point", () => {
@@ -135,26 +135,26 @@ describe("XYOrbit", () => {
 
 describe("FPS", () => {
   it("looks along yaw, tilted down by pitch", () => {
-    close(forward(FLY.computeCamera({ Yaw: 0, Pitch: 0 })), [1, 0, 0]);
-    close(forward(FLY.computeCamera({ Yaw: Math.PI / 2, Pitch: 0.5 })), [0, Math.cos(0.5), -Math.sin(0.5)]);
+    expectClose(forwardOf(FLY.computeCamera({ Yaw: 0, Pitch: 0 })), [1, 0, 0]);
+    expectClose(forwardOf(FLY.computeCamera({ Yaw: Math.PI / 2, Pitch: 0.5 })), [0, Math.cos(0.5), -Math.sin(0.5)]);
   });
 
   it("rotates, moves sideways, and flies forward", () => {
     const values: ViewValues = { Yaw: 1, Pitch: 0, "Position/X": 0, "Position/Y": 0, "Position/Z": 1 };
-    const turned = FLY.drag(values, dragged({ left: true, dx: 10, dy: 10 }));
-    close([Number(turned["Yaw"]), Number(turned["Pitch"])], [0.95, 0.05]);
+    const rotated = FLY.drag(values, createDrag({ left: true, dx: 10, dy: 10 }));
+    expectClose([Number(rotated["Yaw"]), Number(rotated["Pitch"])], [0.95, 0.05]);
     const { right } = FLY.computeCamera(values);
-    const across = FLY.drag(values, dragged({ middle: true, dx: 100 }));
-    close([Number(across["Position/X"]), Number(across["Position/Y"])], [right[0], right[1]]);
-    const ahead = FLY.applyWheel(values, 120, false);
-    close([Number(ahead["Position/X"]), Number(ahead["Position/Y"])], [1.2 * Math.cos(1), 1.2 * Math.sin(1)]);
-    expect(FLY.drag(values, dragged({ right: true, dy: 10 }))["Position/Z"]).toBeCloseTo(1);
+    const sideways = FLY.drag(values, createDrag({ middle: true, dx: 100 }));
+    expectClose([Number(sideways["Position/X"]), Number(sideways["Position/Y"])], [right[0], right[1]]);
+    const forward = FLY.applyWheel(values, 120, false);
+    expectClose([Number(forward["Position/X"]), Number(forward["Position/Y"])], [1.2 * Math.cos(1), 1.2 * Math.sin(1)]);
+    expect(FLY.drag(values, createDrag({ right: true, dy: 10 }))["Position/Z"]).toBeCloseTo(1);
   });
 
   it("starts above and looks at the origin", () => {
     const camera = FLY.computeCamera(FLY.zero());
-    close(camera.position, [5, 5, 10]);
-    close(seen(camera, [0, 0, 0]), [0, 0]);
+    expectClose(camera.position, [5, 5, 10]);
+    expectClose(projectPoint(camera, [0, 0, 0]), [0, 0]);
   });
 });
 
@@ -162,63 +162,63 @@ describe("TopDownOrtho", () => {
   it("with a negative scale is rotated by half a turn, and is dragged and zoomed accordingly", () => {
     const values = { Scale: -80, Angle: 0 };
     const { right, up, scale } = MAP.computeCamera(values);
-    close([...right, ...up, scale ?? 0], [-1, 0, 0, 0, -1, 0, 80]);
-    expect(MAP.drag(values, dragged({ middle: true, dx: 8 }))["X"]).toBeCloseTo(0.1);
+    expectClose([...right, ...up, scale ?? 0], [-1, 0, 0, 0, -1, 0, 80]);
+    expect(MAP.drag(values, createDrag({ middle: true, dx: 8 }))["X"]).toBeCloseTo(0.1);
     expect(MAP.applyWheel(values, 120, false)["Scale"]).toBeCloseTo(-80 * 1.12);
-    expect(MAP.drag(values, dragged({ right: true, dy: 500 }))["Scale"]).toBeCloseTo(-0.08);
+    expect(MAP.drag(values, createDrag({ right: true, dy: 500 }))["Scale"]).toBeCloseTo(-0.08);
   });
 
   it("rotates, moves by pixels of its scale, and zooms", () => {
     const values: ViewValues = { Scale: 50, Angle: Math.PI / 2, X: 1, Y: 2 };
-    expect(MAP.drag(values, dragged({ left: true, dx: 10 }))["Angle"]).toBeCloseTo(Math.PI / 2 + 0.05);
-    const moved = MAP.drag(values, dragged({ middle: true, dx: 50 }));
-    close([Number(moved["X"]), Number(moved["Y"])], [1, 1]);
-    expect(MAP.drag(values, dragged({ right: true, dy: 10 }))["Scale"]).toBeCloseTo(45);
+    expect(MAP.drag(values, createDrag({ left: true, dx: 10 }))["Angle"]).toBeCloseTo(Math.PI / 2 + 0.05);
+    const change = MAP.drag(values, createDrag({ middle: true, dx: 50 }));
+    expectClose([Number(change["X"]), Number(change["Y"])], [1, 1]);
+    expect(MAP.drag(values, createDrag({ right: true, dy: 10 }))["Scale"]).toBeCloseTo(45);
     expect(MAP.applyWheel(values, 120, false)["Scale"]).toBeCloseTo(56);
   });
 
   it("maps a pixel to the ground", () => {
     const camera = MAP.computeCamera({ Scale: 100, Angle: 0, X: 1, Y: 2 });
-    close(onGround(castRay(camera, 500, 200, SIZE)) ?? [], [2, 3, 0]);
+    expectClose(onGround(castRay(camera, 500, 200, SIZE)) ?? [], [2, 3, 0]);
   });
 });
 
 describe("changing the class of a view", () => {
   it("to FPS keeps position and direction of an Orbit, and back", () => {
-    const orbit = ORBIT.computeCamera(FOCUSED);
-    const fly = FLY.computeCamera(FLY.mimic(look("Orbit", FOCUSED)));
-    close(fly.position, orbit.position);
-    close(fly.back, orbit.back);
-    const back = ORBIT.computeCamera(ORBIT.mimic(look("FPS", FLY.mimic(look("Orbit", FOCUSED)))));
-    close(back.position, orbit.position);
-    close(back.back, orbit.back);
+    const orbitCamera = ORBIT.computeCamera(FOCUSED);
+    const flyCamera = FLY.computeCamera(FLY.mimic(createSource("Orbit", FOCUSED)));
+    expectClose(flyCamera.position, orbitCamera.position);
+    expectClose(flyCamera.back, orbitCamera.back);
+    const orbitCameraAgain = ORBIT.computeCamera(ORBIT.mimic(createSource("FPS", FLY.mimic(createSource("Orbit", FOCUSED)))));
+    expectClose(orbitCameraAgain.position, orbitCamera.position);
+    expectClose(orbitCameraAgain.back, orbitCamera.back);
   });
 
   it("to Orbit rotates about a point at the distance of the origin", () => {
     const values: ViewValues = { Yaw: 0, Pitch: 0, "Position/X": 3, "Position/Y": 0, "Position/Z": 4 };
-    expect(ORBIT.mimic(look("FPS", values))).toMatchObject({ Distance: 5, "Focal Point/X": 8, "Focal Point/Z": 4 });
+    expect(ORBIT.mimic(createSource("FPS", values))).toMatchObject({ Distance: 5, "Focal Point/X": 8, "Focal Point/Z": 4 });
   });
 
   it("to XYOrbit keeps the view if the camera sees the ground", () => {
     const values: ViewValues = { Yaw: 0.3, Pitch: 0.7, "Position/X": 3, "Position/Y": 1, "Position/Z": 4 };
     const fly = FLY.computeCamera(values);
-    const mimicked = GROUND.mimic(look("FPS", values));
-    close(GROUND.computeCamera(mimicked).position, fly.position);
-    close(GROUND.computeCamera(mimicked).back, fly.back);
+    const mimicked = GROUND.mimic(createSource("FPS", values));
+    expectClose(GROUND.computeCamera(mimicked).position, fly.position);
+    expectClose(GROUND.computeCamera(mimicked).back, fly.back);
     expect(mimicked["Focal Point/Z"]).toBeCloseTo(0);
   });
 
   it("to XYOrbit starts over if the camera looks up", () => {
-    expect(GROUND.mimic(look("FPS", { Pitch: -0.5, "Position/Z": 1 }))).toEqual(GROUND.zero());
+    expect(GROUND.mimic(createSource("FPS", { Pitch: -0.5, "Position/Z": 1 }))).toEqual(GROUND.zero());
   });
 
   it("to TopDownOrtho shows the focal point, or the point below the camera", () => {
-    expect(MAP.mimic(look("Orbit", FOCUSED))).toEqual({ X: 1, Y: 2 });
-    expect(MAP.mimic(look("FPS", { "Position/X": 7, "Position/Y": 8 }))).toEqual({ X: 7, Y: 8 });
+    expect(MAP.mimic(createSource("Orbit", FOCUSED))).toEqual({ X: 1, Y: 2 });
+    expect(MAP.mimic(createSource("FPS", { "Position/X": 7, "Position/Y": 8 }))).toEqual({ X: 7, Y: 8 });
   });
 
   it("from TopDownOrtho to Orbit looks down from 100 m with the same side up", () => {
-    const values = ORBIT.mimic(look("TopDownOrtho", { X: 1, Y: 2, Angle: 0 }));
+    const values = ORBIT.mimic(createSource("TopDownOrtho", { X: 1, Y: 2, Angle: 0 }));
     expect(values["Distance"]).toBeCloseTo(100);
     expect(ORBIT.computeCamera(values).up[1]).toBeGreaterThan(0.99);
   });
@@ -226,15 +226,15 @@ describe("changing the class of a view", () => {
 
 describe("a fitted view", () => {
   /** Returns the distances of a box's corners from the center of the canvas, right and up; 1 is the edge. */
-  function reach(values: ViewValues, min: Vector, max: Vector, { width, height }: typeof SIZE): [number, number] {
+  function extentOnCanvas(values: ViewValues, min: Vector, max: Vector, { width, height }: typeof SIZE): [number, number] {
     const camera = ORBIT.computeCamera(values);
     const edge = Math.tan(FIELD_OF_VIEW / 2);
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i): Vector => {
       return [(i & 1 ? min : max)[0], (i & 2 ? min : max)[1], (i & 4 ? min : max)[2]];
     });
-    const places = corners.map((corner) => seen(camera, corner));
-    const most = (axis: 0 | 1): number => Math.max(...places.map((place) => Math.abs(place[axis])));
-    return [(most(0) / edge) * (height / width), most(1) / edge];
+    const points = corners.map((corner) => projectPoint(camera, corner));
+    const largestExtent = (axis: 0 | 1): number => Math.max(...points.map((point) => Math.abs(point[axis])));
+    return [(largestExtent(0) / edge) * (height / width), largestExtent(1) / edge];
   }
 
   it("shows the whole of a box of any size and shape, from any side, in any window, with a margin", () => {
@@ -244,9 +244,9 @@ describe("a fitted view", () => {
           for (const start of [FOCUSED, { ...FOCUSED, Yaw: 0, Pitch: 0 }, { ...FOCUSED, Pitch: 1.5 }]) {
             const min: Vector = [3, -1, 2];
             const max: Vector = [3 + size * edges[0], -1 + size * edges[1], 2 + size * edges[2]];
-            const [across, up] = reach({ ...start, ...ORBIT.fit(start, { min, max }, canvas) }, min, max, canvas);
-            expect(Math.max(across, up)).toBeLessThan(0.85);
-            expect(Math.max(across, up)).toBeGreaterThan(0.5);
+            const [sideways, up] = extentOnCanvas({ ...start, ...ORBIT.fit(start, { min, max }, canvas) }, min, max, canvas);
+            expect(Math.max(sideways, up)).toBeLessThan(0.85);
+            expect(Math.max(sideways, up)).toBeGreaterThan(0.5);
           }
         }
       }
@@ -265,28 +265,28 @@ describe("a fitted view", () => {
     const box = { min: [3, -1, 2], max: [3.4, -0.4, 3] } as const;
     for (const name of ["FPS", "XYOrbit", "ThirdPersonFollower"]) {
       const start = { Yaw: 1, Pitch: 0.6, Distance: 7 };
-      const values = { ...start, ...view(name).fit(start, box, SIZE) };
-      const camera = view(name).computeCamera(values);
-      close(seen(camera, [3.2, -0.7, 2.5]), [0, 0]);
-      close(camera.back, view(name).computeCamera(start).back);
-      const [, top] = seen(camera, [3, -1, 3]);
+      const values = { ...start, ...controllerNamed(name).fit(start, box, SIZE) };
+      const camera = controllerNamed(name).computeCamera(values);
+      expectClose(projectPoint(camera, [3.2, -0.7, 2.5]), [0, 0]);
+      expectClose(camera.back, controllerNamed(name).computeCamera(start).back);
+      const [, top] = projectPoint(camera, [3, -1, 3]);
       expect(Math.abs(top)).toBeLessThan(Math.tan(FIELD_OF_VIEW / 2));
     }
     expect(MAP.fit({ Scale: 10, Angle: 0 }, box, SIZE)).toEqual({ X: 3.2, Y: -0.7, Scale: expect.closeTo(600 / 0.6 / 1.2) as number });
   });
 
   it("does not clip small objects, and keeps the near clip distance for others", () => {
-    const ant = { min: [0, 0, 0], max: [0.01, 0.004, 0.003] } as const;
+    const smallBox = { min: [0, 0, 0], max: [0.01, 0.004, 0.003] } as const;
     const start = { ...FOCUSED, "Near Clip Distance": 0.01 };
-    const near = Number(ORBIT.fit(start, ant, SIZE)["Near Clip Distance"]);
-    expect(near).toBeGreaterThanOrEqual(0.001);
-    expect(near).toBeLessThan(0.01);
+    const nearClipDistance = Number(ORBIT.fit(start, smallBox, SIZE)["Near Clip Distance"]);
+    expect(nearClipDistance).toBeGreaterThanOrEqual(0.001);
+    expect(nearClipDistance).toBeLessThan(0.01);
     expect(ORBIT.fit(start, { min: [0, 0, 0], max: [1, 1, 1] }, SIZE)).not.toHaveProperty("Near Clip Distance");
   });
 
   it("looks from a moving frame", () => {
-    const { min, max } = spanToTarget({ min: [1, 2, 0], max: [3, 3, 1] }, { position: [1, 2, 0], yaw: Math.PI / 2 });
-    close(min, [0, -2, 0]);
-    close(max, [1, 0, 1]);
+    const { min, max } = transformSpan({ min: [1, 2, 0], max: [3, 3, 1] }, { position: [1, 2, 0], yaw: Math.PI / 2 });
+    expectClose(min, [0, -2, 0]);
+    expectClose(max, [1, 0, 1]);
   });
 });

@@ -5,12 +5,12 @@ import type { TextStorage } from "../src/storage";
 /** Voices of a browser, which record what they should say. */
 class Voices extends EventTarget {
   readonly spoken: [text: string, lang: string, voice: string][] = [];
-  hushed = 0;
+  cancelCount = 0;
   speaking = false;
-  private listed: SpeechSynthesisVoice[] = [];
+  private availableVoices: SpeechSynthesisVoice[] = [];
 
   getVoices(): SpeechSynthesisVoice[] {
-    return this.listed;
+    return this.availableVoices;
   }
 
   speak({ text, lang, voice }: SpeechSynthesisUtterance): void {
@@ -18,24 +18,24 @@ class Voices extends EventTarget {
   }
 
   cancel(): void {
-    this.hushed += 1;
+    this.cancelCount += 1;
   }
 
   /** Voices arrive some time after the page has loaded. */
-  come(...voices: [name: string, lang: string][]): void {
-    this.listed = voices.map(([name, lang]) => ({ name, lang, voiceURI: name, default: false, localService: true }));
+  arrive(...voices: [name: string, lang: string][]): void {
+    this.availableVoices = voices.map(([name, lang]) => ({ name, lang, voiceURI: name, default: false, localService: true }));
     this.dispatchEvent(new Event("voiceschanged"));
   }
 }
 
 let voices: Voices;
-let kept: Map<string, string>;
+let storedTexts: Map<string, string>;
 let storage: TextStorage;
 
 beforeEach(() => {
   voices = new Voices();
-  kept = new Map();
-  storage = { getItem: (key) => kept.get(key) ?? null, setItem: (key, value) => void kept.set(key, value) };
+  storedTexts = new Map();
+  storage = { getItem: (key) => storedTexts.get(key) ?? null, setItem: (key, value) => void storedTexts.set(key, value) };
   vi.stubGlobal("speechSynthesis", voices);
   vi.stubGlobal(
     "SpeechSynthesisUtterance",
@@ -61,7 +61,7 @@ it("is silent until it is switched on, and stops when it is switched off", () =>
   speaker.speak("");
   expect(voices.spoken).toEqual([["on my way", "", ""]]);
   speaker.configure({ on: false });
-  expect(voices.hushed).toBe(1);
+  expect(voices.cancelCount).toBe(1);
 });
 
 it("leaves the voice to the browser, but marks Chinese texts as Chinese", () => {
@@ -73,10 +73,10 @@ it("leaves the voice to the browser, but marks Chinese texts as Chinese", () => 
 
 it("lists the user's languages first, reports when voices arrive, and uses the chosen one, also next time", () => {
   const speaker = new Speaker(storage);
-  let told = 0;
-  speaker.changed.on(() => (told += 1));
-  voices.come(["Ting", "zh-CN"], ["Hans", "de-DE"], ["Anna", "en-US"]);
-  expect(told).toBe(1);
+  let changeCount = 0;
+  speaker.changed.on(() => (changeCount += 1));
+  voices.arrive(["Ting", "zh-CN"], ["Hans", "de-DE"], ["Anna", "en-US"]);
+  expect(changeCount).toBe(1);
   expect(speaker.voices.map(({ name }) => name)).toEqual(["Anna", "Hans", "Ting"]);
   speaker.configure({ on: true, voice: "Hans" });
   new Speaker(storage).speak("ich komme");
@@ -84,7 +84,7 @@ it("lists the user's languages first, reports when voices arrive, and uses the c
 });
 
 it("ignores a missing voice and invalid settings", () => {
-  kept.set("linkwright.speaker.1", "{");
+  storedTexts.set("linkwright.speaker.1", "{");
   const speaker = new Speaker(storage);
   expect(speaker.settings).toEqual({ on: false, voice: "" });
   speaker.configure({ on: true, voice: "nobody" });

@@ -1,14 +1,14 @@
 import { Box3, BoxGeometry, Matrix4, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import { freePlace } from "../src/scene/displays/free-place";
+import { findFreePlace } from "../src/scene/displays/free-place";
 import type { MeshPart } from "../src/scene/meshes/mesh-template";
-import { extrudePolygons, heightmapGeometry, selectSubmesh } from "../src/scene/objects/world-geometries";
+import { extrudePolygons, createHeightmap, selectSubmesh } from "../src/scene/objects/world-geometries";
 
 const SQUARE = [0, 0, 4, 0, 4, 4, 0, 4];
 const HOLE = [1, 1, 3, 1, 3, 3, 1, 3];
 
 /** Returns the area of the faces that face up, m2. */
-function top(outlines: number[][]): number {
+function computeTopArea(outlines: number[][]): number {
   const geometry = extrudePolygons(outlines, 2);
   const points = geometry.getAttribute("position");
   let sum = 0;
@@ -23,24 +23,24 @@ function top(outlines: number[][]): number {
 
 describe("extrusion", () => {
   it("raises polygons, and cuts inner ones out as holes", () => {
-    expect(top([SQUARE])).toBeCloseTo(16);
-    expect(top([SQUARE, HOLE])).toBeCloseTo(12);
-    expect(top([HOLE, SQUARE])).toBeCloseTo(12);
-    expect(top([SQUARE, HOLE, [1.5, 1.5, 2.5, 1.5, 2.5, 2.5, 1.5, 2.5]])).toBeCloseTo(13);
+    expect(computeTopArea([SQUARE])).toBeCloseTo(16);
+    expect(computeTopArea([SQUARE, HOLE])).toBeCloseTo(12);
+    expect(computeTopArea([HOLE, SQUARE])).toBeCloseTo(12);
+    expect(computeTopArea([SQUARE, HOLE, [1.5, 1.5, 2.5, 1.5, 2.5, 2.5, 1.5, 2.5]])).toBeCloseTo(13);
   });
 
   it("skips invalid polygons", () => {
-    expect(top([[0, 0, 1, 1]])).toBe(0);
+    expect(computeTopArea([[0, 0, 1, 1]])).toBe(0);
   });
 });
 
 describe("submesh", () => {
-  const part = (name: string, x: number): MeshPart => ({
+  const createPart = (name: string, x: number): MeshPart => ({
     geometry: new BoxGeometry(1, 1, 1).translate(x, 0, 0),
     materials: [null],
     names: [name, "scene"],
   });
-  const parts = [part("wheel", 2), part("body", 5)];
+  const parts = [createPart("wheel", 2), createPart("body", 5)];
 
   it("is the whole mesh, or the parts with the name", () => {
     expect(selectSubmesh(parts, null).parts).toEqual(parts);
@@ -56,10 +56,10 @@ describe("submesh", () => {
 
 describe("ground", () => {
   it("has the heights at their positions, the first row at minimum y", () => {
-    const geometry = heightmapGeometry(new Float32Array([0, 0, 1, 1]), 2, [10, 20, 3, 1, 2, 0.5, 5]);
+    const geometry = createHeightmap(new Float32Array([0, 0, 1, 1]), 2, [10, 20, 3, 1, 2, 0.5, 5]);
     geometry.computeBoundingBox();
-    const box = geometry.boundingBox ?? new Box3();
-    expect([...box.min.toArray(), ...box.max.toArray()]).toEqual([-4, -8, 0.5, 6, 12, 3.5]);
+    const createBox = geometry.boundingBox ?? new Box3();
+    expect([...createBox.min.toArray(), ...createBox.max.toArray()]).toEqual([-4, -8, 0.5, 6, 12, 3.5]);
     const points = geometry.getAttribute("position");
     expect([points.getY(0), points.getZ(0)]).toEqual([12, 3.5]);
     expect(geometry.getAttribute("uv").getX(1)).toBe(2);
@@ -67,23 +67,23 @@ describe("ground", () => {
 });
 
 describe("the position proposed for a model", () => {
-  const box = (x: number, y: number, side: number): Box3 => new Box3().setFromCenterAndSize(new Vector3(x, y, 0.2), new Vector3(side, side, 0.4));
+  const createBox = (x: number, y: number, side: number): Box3 => new Box3().setFromCenterAndSize(new Vector3(x, y, 0.2), new Vector3(side, side, 0.4));
   const origin = new Matrix4();
 
   it("is the origin, or the nearest free meter", () => {
-    expect(freePlace([], origin)).toEqual([0, 0, 0]);
-    expect(freePlace([box(5, 0, 1)], origin)).toEqual([0, 0, 0]);
-    expect(freePlace([box(0, 0, 0.4)], origin)).toEqual([1, 0, 0]);
-    expect(freePlace([box(0, 0, 0.4), box(1, 0, 0.2)], origin)).toEqual([0, 1, 0]);
-    expect(freePlace([box(0, 0, 3.2)], origin)).toEqual([3, 0, 0]);
+    expect(findFreePlace([], origin)).toEqual([0, 0, 0]);
+    expect(findFreePlace([createBox(5, 0, 1)], origin)).toEqual([0, 0, 0]);
+    expect(findFreePlace([createBox(0, 0, 0.4)], origin)).toEqual([1, 0, 0]);
+    expect(findFreePlace([createBox(0, 0, 0.4), createBox(1, 0, 0.2)], origin)).toEqual([0, 1, 0]);
+    expect(findFreePlace([createBox(0, 0, 3.2)], origin)).toEqual([3, 0, 0]);
   });
 
   it("is in the world's frame, whatever the fixed frame is", () => {
-    expect(freePlace([box(10, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([1, 0, 0]);
-    expect(freePlace([box(0, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([0, 0, 0]);
+    expect(findFreePlace([createBox(10, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([1, 0, 0]);
+    expect(findFreePlace([createBox(0, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([0, 0, 0]);
   });
 
   it("is beyond all objects if nothing near is free", () => {
-    expect(freePlace([box(0, 0, 60)], origin)).toEqual([31, 0, 0]);
+    expect(findFreePlace([createBox(0, 0, 60)], origin)).toEqual([31, 0, 0]);
   });
 });

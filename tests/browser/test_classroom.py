@@ -191,6 +191,49 @@ def test_lesson_texts_fit_and_only_commands_have_copy_button(start, open_page, w
     assert all(abs(top) < 8 for top in tops), "punctuation is on the line of the code before it"
 
 
+DIVIDED_WORDS = r"""() => {
+  const box = document.querySelector(".lesson-table");
+  const linesOf = (node, start, end) => {
+    const range = document.createRange();
+    range.setStart(node, start);
+    range.setEnd(node, end);
+    return new Set([...range.getClientRects()].map(({ bottom }) => Math.round(bottom))).size;
+  };
+  const divided = [];
+  const texts = document.createTreeWalker(box, NodeFilter.SHOW_TEXT);
+  while (texts.nextNode()) {
+    const node = texts.currentNode;
+    for (const { 0: word, index } of node.textContent.matchAll(/[\w'.:-]+|[\u4e00-\u9fff]{2,3}(?![\u4e00-\u9fff])/g)) {
+      const isWhole = /\w/.test(word) || node.textContent === word;
+      if (isWhole && linesOf(node, index, index + word.length) > 1) divided.push(word);
+    }
+  }
+  return divided;
+}"""
+"""The words of a table that are on two lines, also those of two or three Chinese characters."""
+
+
+@pytest.mark.parametrize("title", ["Decide without a robot", "Another camera"])
+def test_tables_keep_words_whole_and_scroll_in_their_own_box(start, open_page, workspace, title):
+    page = open_page(start("learn", str(workspace)), wait=False, size=(1440, 900))
+    until(page, f"{CHECKS}?.checked_at")
+    page.get_by_role("button", name="Steps").click()
+    page.locator(".outline-step", has_text=title).click()
+    for width in (1440, 1024):
+        page.set_viewport_size({"width": width, "height": 768})
+        for button, name in (("中文", "表格"), ("EN", "Table")):
+            page.get_by_role("button", name=button).click()
+            page.get_by_role("group", name=name).wait_for()
+            assert page.evaluate(DIVIDED_WORDS) == [], (width, button)
+            assert page.locator(".lesson-body").evaluate("body => body.scrollWidth <= body.clientWidth")
+    assert violations(page) == []
+    table = page.get_by_role("group", name="Table")
+    table.evaluate("box => (box.style.width = '200px')")
+    table.focus()
+    page.keyboard.press("ArrowRight")
+    becomes(lambda: table.evaluate("box => box.scrollLeft > 0"), True)
+
+
 def test_classroom_fits_small_screen_and_passes_axe(start, open_page, workspace):
     workspace.mkdir()
     shutil.copy(ROBOT, workspace)

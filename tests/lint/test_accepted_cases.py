@@ -535,27 +535,28 @@ def test_uninstalled_file_that_no_launch_file_reads_is_an_info(tmp_path, file, l
 
 
 @pytest.mark.parametrize(
-    ("data", "codes"),
+    ("program", "data", "codes"),
     [
-        ("(os.path.join('lib', name), [name + '/driver.py'])", []),
-        ("('lib/p', ['p/driver.py'])", []),
-        ("('share/p', ['p/driver.py'])", ["LW844"]),
+        ("driver.py", "(os.path.join('lib', name), [name + '/driver.py'])", []),
+        ("driver.py", "('lib/p', ['p/driver.py'])", []),
+        ("driver.py", "('share/p', ['p/driver.py'])", ["LW844"]),
+        ("driver.bash", "(os.path.join('lib', name), glob('p/*'))", []),
     ],
 )
-def test_program_in_data_files_is_an_executable(tmp_path, data, codes):
+def test_program_in_data_files_is_an_executable(tmp_path, program, data, codes):
     (tmp_path / "package.xml").write_text(
         MANIFEST.format(more="<export><build_type>ament_python</build_type></export>")
     )
     (tmp_path / "setup.py").write_text(
-        "import os\nfrom setuptools import setup\n\nname = 'p'\n"
+        "import os\nfrom glob import glob\nfrom setuptools import setup\n\nname = 'p'\n"
         f"setup(name=name, packages=[name], data_files=[{data}], entry_points={{'console_scripts': []}})\n"
     )
     for folder in ("p", "launch"):
         (tmp_path / folder).mkdir()
-    (tmp_path / "p/driver.py").write_text("")
+    (tmp_path / "p" / program).write_text("")
     (tmp_path / "launch/p.launch.py").write_text(
         "from launch_ros.actions import Node\n\n\n"
-        "def generate_launch_description():\n    Node(package='p', executable='driver.py')\n"
+        f"def generate_launch_description():\n    Node(package='p', executable='{program}')\n"
     )
     findings = examine_package(tmp_path, Settings(select=("LW844",))).diagnostics
     assert [finding.code for finding in findings] == codes

@@ -64,6 +64,13 @@ FILES = {
         ("set(CMAKE_CXX_STANDARD 14)", "set(X 1) # a comment\nset(CMAKE_CXX_STANDARD 14)", [], False),
         ("install(DIRECTORY launch config", "install(DIRECTORY\n  config\n  launch", [], False),
         ("project(arm)", "project(arms)", [], False),
+        ("launch config DEST", "launch config worlds DEST",
+         ["installed folders that the repository does not have added: 'worlds'"], False),
+        ("set(CMAKE_CXX_STANDARD 14)", "set(CMAKE_EXPORT_COMPILE_COMMANDS ON)\nset(CMAKE_CXX_STANDARD 14)", [], False),
+        ("ament_package()", "catkin_add_nosetests(test/a.py)\nroslaunch_add_file_check(launch)\nament_package()",
+         ["tests added: 'test/a.py', 'launch'"], False),
+        ("ament_package()", "if($ENV{SIMULATOR} STREQUAL old)\nendif()\nament_package()",
+         ["environment variable 'SIMULATOR' decides what is built"], False),
     ],
 )  # fmt: skip
 def test_changes_of_cmake_files_are_reported(repository, compare, old, new, expected, is_breaking):
@@ -98,6 +105,102 @@ def test_build_file_of_a_subdirectory_is_compared_with_its_package(repository, c
     ]
     assert found.changes[1].location.file == "a/tools/CMakeLists.txt"
     assert result.other_files == []
+
+
+def test_added_words_of_a_long_setting_are_reported(repository, compare):
+    text = CMAKE.replace("ament_package()", "ament_export_libraries(one two three four five)\nament_package()")
+    repository.commit({**FILES, "a/CMakeLists.txt": text})
+    repository.write({"a/CMakeLists.txt": text.replace("four five", "five six")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["ament_export_libraries: six added, four removed"]
+
+
+def test_folder_that_is_new_and_installed_now_is_reported(repository, compare):
+    repository.commit(FILES)
+    text = CMAKE.replace("launch config DEST", "launch config notes DEST")
+    repository.write({"a/CMakeLists.txt": text, "a/notes/all.txt": "grease\n"})
+    assert sentences(subject(compare(repository), "a/CMakeLists.txt")) == ["installed now: 'share/arm/notes/'"]
+
+
+CONTENTS = (
+    "installed executables 'driver', 'tuner', 'home.py'; installed libraries 'arm_core'; "
+    "exported plugin descriptions 'plugins.xml'; built interfaces 'msg/State.msg', 'msg/Load.msg'; "
+    "files in 'share/arm/launch/', 'share/arm/config/', 'share/arm/'"
+)
+
+
+def test_contents_of_added_and_removed_build_files_are_listed(repository, compare):
+    first = repository.commit({"README.md": "arm\n"})
+    second = repository.commit(FILES)
+    added = subject(compare(repository, f"{first}..{second}"), "a/CMakeLists.txt")
+    assert sorted(str(added.changes[0].sentence).removeprefix("build file added: ").split("; ")) == sorted(
+        CONTENTS.split("; ")
+    )
+    repository.commit(dict.fromkeys(FILES))
+    removed = subject(compare(repository, f"{second}..HEAD"), "a/CMakeLists.txt")
+    assert "installed libraries 'arm_core'" in str(removed.changes[0].sentence)
+
+
+def test_build_file_without_a_compared_difference_is_listed(repository, compare):
+    repository.commit(FILES)
+    repository.write({"a/CMakeLists.txt": CMAKE.replace("src/core.cpp", "src/core.cpp src/more.cpp")})
+    result = compare(repository)
+    assert (result.subjects, result.other_files) == ([], ["a/CMakeLists.txt"])
+
+
+SETTINGS = {
+    "setup.cfg": """[metadata]
+name = arm
+[options.entry_points]
+console_scripts =
+    driver = arm.driver:main
+    tuner = arm.tuner:main
+[options.data_files]
+share/arm/launch = launch/*.launch.py
+[develop]
+script_dir=$base/lib/arm
+[install]
+install_scripts=$base/lib/arm
+""",
+    "pyproject.toml": """[project]
+name = "arm"
+version = "1.0.0"
+[project.scripts]
+driver = "arm.driver:main"
+tuner = "arm.tuner:main"
+[project.entry-points.arm_tools]
+home = "arm.tools:Home"
+[tool.setuptools.data-files]
+"share/arm/launch" = ["launch/*.launch.py"]
+""",
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "expected"),
+    [
+        ("setup.cfg", "    tuner = arm.tuner:main\n", "", ["installed executables removed: 'tuner'"]),
+        ("setup.cfg", "install_scripts=$base/lib/arm", "install_scripts=$base/bin",
+         ["settings: 'install.install_scripts': $base/lib/arm -> $base/bin"]),
+        ("setup.cfg", "launch/*.launch.py", "launch/arm.launch.py",
+         ["not installed any more: 'share/arm/launch/all.launch.py'"]),
+        ("pyproject.toml", 'tuner = "arm.tuner:main"\n', "", ["installed executables removed: 'tuner'"]),
+        ("pyproject.toml", 'home = "', 'rest = "', ["entry points added: 'arm_tools: rest'",
+                                                   "entry points removed: 'arm_tools: home'"]),
+        ("pyproject.toml", '["launch/*.launch.py"]', '["launch/arm.launch.py"]',
+         ["not installed any more: 'share/arm/launch/all.launch.py'"]),
+        ("pyproject.toml", '"1.0.0"', '"1.1.0"', ["settings: 'version': 1.0.0 -> 1.1.0"]),
+        ("pyproject.toml", "[project]", "[tool.ruff]\nline-length = 120\n[project]", []),
+        ("pyproject.toml", "[project]", "[project", ["cannot be read any more"]),
+    ],
+)  # fmt: skip
+def test_changes_of_settings_of_python_packages_are_reported(repository, compare, name, old, new, expected):
+    files = {path: text for path, text in PYTHON_FILES.items() if not path.endswith("setup.py")}
+    repository.commit({**files, f"a/{name}": SETTINGS[name]})
+    assert old in SETTINGS[name]
+    repository.write({f"a/{name}": SETTINGS[name].replace(old, new)})
+    found = [sentence for subject in compare(repository).subjects for sentence in sentences(subject)]
+    assert [sentence.partition(": Expected")[0] for sentence in found] == expected
 
 
 SETUP = """from glob import glob
@@ -179,13 +282,17 @@ EXPORTS = PACKAGE_XML.replace(
     [
         ("arm_base plugin", "arm_core plugin", ["export added: arm_core plugin=${prefix}/plugins.xml",
                                                 "export removed: arm_base plugin=${prefix}/plugins.xml"], True),
-        ("prefix}/plugins", "prefix}/all", ["export added: arm_base plugin=${prefix}/all.xml",
-                                            "export removed: arm_base plugin=${prefix}/plugins.xml"], False),
+        ("prefix}/plugins", "prefix}/all",
+         ["export arm_base: plugin ${prefix}/plugins.xml -> ${prefix}/all.xml"], False),
+        ('_path="${prefix}/models"', '_path="${prefix}/models" plugin_path="${prefix}/lib"',
+         ["export gazebo_ros: plugin_path ${prefix}/lib added"], False),
+        (' gazebo_model_path="${prefix}/models"', "",
+         ["export gazebo_ros: gazebo_model_path ${prefix}/models removed"], True),
         ("ament_cmake", "ament_python", ["build type: ament_cmake -> ament_python"], False),
         ('    <gazebo_ros gazebo_model_path="${prefix}/models"/>\n', "",
          ["export removed: gazebo_ros gazebo_model_path=${prefix}/models"], True),
         ("<exec_depend>", '<exec_depend condition="$ROS_VERSION == 2">',
-         ["exec_depend xacro: condition - -> $ROS_VERSION == 2"], False),
+         ["exec_depend xacro: always -> if $ROS_VERSION == 2"], False),
         ("ann@example.org", "ann@example.com", ["email of maintainer: ann@example.org -> ann@example.com"], False),
         ("An arm.", "Two arms.", ["description changed"], False),
         ("1.0.0", "1.0.1", ["version: 1.0.0 -> 1.0.1"], False),
@@ -198,3 +305,46 @@ def test_changes_of_manifests_are_reported(repository, compare, old, new, expect
     result = compare(repository)
     assert sentences(subject(result, "a/package.xml")) == expected
     assert bool(breaking(result)) is is_breaking
+
+
+DEPENDENCIES = EXPORTS.replace(
+    "  <exec_depend>xacro</exec_depend>\n",
+    """  <build_depend>gears</build_depend>
+  <exec_depend>gears</exec_depend>
+  <build_depend>levers</build_depend>
+  <exec_depend>levers</exec_depend>
+  <exec_depend condition="$SIMULATOR == 'old'">bridge</exec_depend>
+  <exec_depend condition="$SIMULATOR == 'new'">bridge</exec_depend>
+  <exec_depend>xacro</exec_depend>
+""",
+)
+
+
+def changes_of_dependencies(repository, compare, *replacements):
+    repository.commit({"a/package.xml": DEPENDENCIES})
+    text = DEPENDENCIES
+    for old, new in replacements:
+        assert old in text
+        text = text.replace(old, new)
+    repository.write({"a/package.xml": text})
+    result = compare(repository)
+    return sentences(subject(result, "a/package.xml")), breaking(result)
+
+
+def test_dependencies_with_the_same_tags_are_one_line(repository, compare):
+    found, _ = changes_of_dependencies(repository, compare, (">gears<", ">wheels<"), (">levers<", ">cranks<"))
+    assert found == [
+        "build_depend + exec_depend added: wheels, cranks",
+        "build_depend + exec_depend removed: gears, levers",
+    ]
+
+
+def test_all_conditions_of_a_dependency_are_compared(repository, compare):
+    lines = [line for line in DEPENDENCIES.splitlines(keepends=True) if "bridge" in line]
+    new = "  <exec_depend>bridge</exec_depend>\n"
+    found, breaking_ones = changes_of_dependencies(repository, compare, (lines[0], new), (lines[1], ""))
+    assert found == [
+        "exec_depend bridge: if $SIMULATOR == 'old'; if $SIMULATOR == 'new' -> always",
+        "environment variable 'SIMULATOR' does not decide any more what is built",
+    ]
+    assert breaking_ones == found[1:]

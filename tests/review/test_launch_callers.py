@@ -37,8 +37,8 @@ def generate_launch_description():
 def changes_with_reasons(repository, compare):
     """Review new texts of two launch files of which one includes the other, and return sentences with their reasons."""
 
-    def run(new: str, new_part: str = PART, old: str = READING):
-        repository.commit({"arm/launch/arm.launch.py": old, "arm/launch/part.launch.py": PART})
+    def run(new: str, new_part: str = PART, old: str = READING, old_part: str = PART):
+        repository.commit({"arm/launch/arm.launch.py": old, "arm/launch/part.launch.py": old_part})
         repository.write({"arm/launch/arm.launch.py": new, "arm/launch/part.launch.py": new_part})
         subjects = [entry for entry in compare(repository).subjects if entry.path == "arm/launch/arm.launch.py"]
         changes = subjects[0].changes if subjects else []
@@ -168,11 +168,14 @@ def test_action_that_is_appended_to_a_list_is_no_other_code(changes_of):
     assert found == ["node 'a/b' added"]
 
 
-def test_removed_include_stops_its_nodes(changes_with_reasons):
+WITH_NODE = PART.replace('"1")]', '"1"), Node(package="arm", executable="hand")]')
+
+
+@pytest.mark.parametrize(("part", "reason"), [(WITH_NODE, "its nodes do not start any more"), (PART, None)])
+def test_removed_include_stops_its_nodes(changes_with_reasons, part, reason):
     line = '        IncludeLaunchDescription(PathJoinSubstitution([ThisLaunchFileDir(), "part.launch.py"])),\n'
-    assert changes_with_reasons(READING.replace(line, "")) == {
-        "include of '$(dirname)/part.launch.py' removed": "its nodes do not start any more"
-    }
+    new = READING.replace(line, "")
+    assert changes_with_reasons(new, part, old_part=part) == {"include of '$(dirname)/part.launch.py' removed": reason}
 
 
 UNUSED = """import os

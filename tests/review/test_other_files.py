@@ -330,14 +330,14 @@ def test_manifest_changes_are_reported(package, compare):
     review_subject = subject(compare(package), "arm_description/package.xml")
     assert sentences(review_subject) == [
         "version: 1.0.0 -> 1.1.0",
-        "exec_depend urdf added",
-        "exec_depend xacro removed",
+        "exec_depend added: urdf",
+        "exec_depend removed: xacro",
     ]
 
 
 def test_renamed_package_is_breaking(package, compare):
     package.write({"arm_description/package.xml": PACKAGE_XML.replace("arm_description", "robot_description")})
-    assert "name: arm_description -> robot_description" in breaking(compare(package))
+    assert "package 'arm_description' renamed to 'robot_description'" in breaking(compare(package))
 
 
 def _stl(height: float) -> bytes:
@@ -412,13 +412,19 @@ PLUGINS = """<library path="arm_hardware">
 
 def test_removed_plugin_class_is_breaking(repository, compare):
     repository.commit({"a/arm_plugins.xml": PLUGINS})
-    plugins = PLUGINS.replace('name="arm/Gripper"', 'name="arm/Hand"')
+    plugins = PLUGINS.replace('name="arm/Gripper" type="arm::Gripper"', 'name="arm/Hand" type="arm::Hand"')
     repository.commit({"a/arm_plugins.xml": None, "a/plugins/hardware.xml": plugins})
     result = compare(repository, "HEAD~1..HEAD")
     assert breaking(result) == ["plugin class 'arm/Gripper' removed"]
     review_subject = subject(result, "a/plugins/hardware.xml")
     assert sentences(review_subject) == ["plugin class 'arm/Hand' added"]
     assert review_subject.changes[0].location.line == 3
+
+
+def test_plugin_class_with_another_name_and_the_same_type_is_renamed(repository, compare):
+    repository.commit({"a/arm_plugins.xml": PLUGINS})
+    repository.write({"a/arm_plugins.xml": PLUGINS.replace('name="arm/Gripper"', 'name="arm/Hand"')})
+    assert breaking(compare(repository)) == ["plugin class 'arm/Gripper' renamed to 'arm/Hand'"]
 
 
 def test_changed_base_class_of_plugin_is_breaking(repository, compare):

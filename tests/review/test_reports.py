@@ -255,3 +255,14 @@ def test_file_with_breaking_changes_only_has_no_heading_of_its_own():
     report = as_markdown(Review("a", "b", [Subject(SubjectKind.INTERFACE, "a.msg", "a.msg", "a.msg", [change])]))
     assert report.count("a.msg") == 1
     assert "field removed" in report
+
+
+def test_added_files_with_the_same_summary_are_not_the_same(package, compare):
+    launch = "<launch><arg name='robot' default='{}'/><node pkg='a' type='b' name='c'/></launch>"
+    package.commit({f"arm_description/launch/{name}.launch": launch.format(name) for name in ("left", "right")})
+    lines = as_text(compare(package, "HEAD~1..HEAD")).splitlines()
+    assert [line for line in lines if line.endswith(".launch")] == [
+        "arm_description/launch/left.launch",
+        "arm_description/launch/right.launch",
+    ]
+    assert not any("the same in" in line for line in lines)

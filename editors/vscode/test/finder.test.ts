@@ -1,27 +1,27 @@
 import { expect, test } from "vitest";
-import { candidates, type Places, resolved } from "../src/server/candidates.js";
-import { type Command, shown } from "../src/server/command.js";
-import { findServer, installable } from "../src/server/finder.js";
-import { emptyPlaces } from "./places.js";
+import { findCandidates, type Places, resolvePath } from "../src/server/candidates.js";
+import { type Command, formatCommand } from "../src/server/command.js";
+import { findInstallTarget, findServer } from "../src/server/finder.js";
+import { createPlaces } from "./places.js";
 
 const EVERYWHERE = {
   exists: () => true,
-  selectedPython: () => Promise.resolve("/conda/bin/python"),
-  onPath: (program: string) => `/usr/bin/${program}`,
+  getSelectedPython: () => Promise.resolve("/conda/bin/python"),
+  findOnPath: (program: string) => `/usr/bin/${program}`,
 };
 
-async function order(given: Partial<Places>): Promise<string[]> {
+async function listPrograms(overrides: Partial<Places>): Promise<string[]> {
   const commands: string[] = [];
-  for await (const { command } of candidates(emptyPlaces(given))) commands.push(shown(command));
+  for await (const { command } of findCandidates(createPlaces(overrides))) commands.push(formatCommand(command));
   return commands;
 }
 
-function only(program: string): (command: Command) => Promise<string | undefined> {
+function succeedOnlyFor(program: string): (command: Command) => Promise<string | undefined> {
   return (command) => Promise.resolve(command.program === program ? undefined : "no Linkwright");
 }
 
 test("the workspace's environments come before the selected Python, and the PATH comes last", async () => {
-  expect(await order(EVERYWHERE)).toEqual([
+  expect(await listPrograms(EVERYWHERE)).toEqual([
     "/work/.venv/bin/python -m linkwright",
     "/work/venv/bin/python -m linkwright",
     "/conda/bin/python -m linkwright",
@@ -31,19 +31,19 @@ test("the workspace's environments come before the selected Python, and the PATH
 
 test("each folder of the workspace may have an environment", async () => {
   const exists = (file: string): boolean => file.startsWith("/two/");
-  expect(await order({ folders: ["/one", "/two"], exists })).toEqual([
+  expect(await listPrograms({ folders: ["/one", "/two"], exists })).toEqual([
     "/two/.venv/bin/python -m linkwright",
     "/two/venv/bin/python -m linkwright",
   ]);
 });
 
 test("an interpreter that is set is the only one tried", async () => {
-  expect(await order({ ...EVERYWHERE, interpreter: "/opt/python" })).toEqual(["/opt/python -m linkwright"]);
+  expect(await listPrograms({ ...EVERYWHERE, interpreter: "/opt/python" })).toEqual(["/opt/python -m linkwright"]);
 });
 
 test("environments on Windows have their Python in Scripts", async () => {
   const exists = (file: string): boolean => file === "C:\\robot\\.venv\\Scripts\\python.exe";
-  expect(await order({ folders: ["C:\\robot"], isWindows: true, exists })).toEqual([
+  expect(await listPrograms({ folders: ["C:\\robot"], isWindows: true, exists })).toEqual([
     "C:\\robot\\.venv\\Scripts\\python.exe -m linkwright",
   ]);
 });
@@ -55,12 +55,12 @@ test.each([
   ["~/robot/bin/python", "/home/me/robot/bin/python"],
   [" python3.12 ", "python3.12"],
 ])("the setting %s means %s", (setting, path) => {
-  expect(resolved(setting, emptyPlaces())).toBe(path);
+  expect(resolvePath(setting, createPlaces())).toBe(path);
 });
 
-test("the first command that runs the server is found, and what failed before is told", async () => {
-  const search = await findServer(emptyPlaces(EVERYWHERE), only("/conda/bin/python"));
-  expect(search.found?.command.program).toBe("/conda/bin/python");
+test("the search returns the first command that runs the server, and the failures before it", async () => {
+  const search = await findServer(createPlaces(EVERYWHERE), succeedOnlyFor("/conda/bin/python"));
+  expect(search.candidate?.command.program).toBe("/conda/bin/python");
   expect(search.failures.map(({ candidate, reason }) => [candidate.command.program, reason])).toEqual([
     ["/work/.venv/bin/python", "no Linkwright"],
     ["/work/venv/bin/python", "no Linkwright"],
@@ -69,22 +69,22 @@ test("the first command that runs the server is found, and what failed before is
 
 test("the Python extension is not asked where an environment has the server", async () => {
   let isAsked = false;
-  const selectedPython = (): Promise<undefined> => {
+  const getSelectedPython = (): Promise<undefined> => {
     isAsked = true;
     return Promise.resolve(undefined);
   };
-  await findServer(emptyPlaces({ ...EVERYWHERE, selectedPython }), only("/work/.venv/bin/python"));
+  await findServer(createPlaces({ ...EVERYWHERE, getSelectedPython }), succeedOnlyFor("/work/.venv/bin/python"));
   expect(isAsked).toBe(false);
 });
 
 test("Linkwright is installed into the preferred interpreter", async () => {
-  const search = await findServer(emptyPlaces({ ...EVERYWHERE, exists: () => false }), only("none"));
-  expect(search.found).toBeUndefined();
-  expect(installable(search)).toBe("/conda/bin/python");
+  const search = await findServer(createPlaces({ ...EVERYWHERE, exists: () => false }), succeedOnlyFor("none"));
+  expect(search.candidate).toBeUndefined();
+  expect(findInstallTarget(search)).toBe("/conda/bin/python");
 });
 
 test("nothing is installed beside a linkwright on the PATH, which another program manages", async () => {
-  const search = await findServer(emptyPlaces({ onPath: EVERYWHERE.onPath }), only("none"));
+  const search = await findServer(createPlaces({ findOnPath: EVERYWHERE.findOnPath }), succeedOnlyFor("none"));
   expect(search.failures).toHaveLength(1);
-  expect(installable(search)).toBeUndefined();
+  expect(findInstallTarget(search)).toBeUndefined();
 });

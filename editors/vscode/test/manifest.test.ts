@@ -15,13 +15,14 @@ const README = readFileSync("README.md", "utf8");
 
 test("the commands of the manifest are registered", () => {
   const source = readFileSync("src/vscode/extension.ts", "utf8");
-  const registered = [...source.matchAll(/registerCommand\("([^"]+)"/g)].map((found) => found[1]);
-  expect(registered.sort()).toEqual(contributes.commands.map(({ command }) => command).sort());
+  const registeredCommands = [...source.matchAll(/registerCommand\("([^"]+)"/g)].map((match) => match[1]);
+  expect(registeredCommands.sort()).toEqual(contributes.commands.map(({ command }) => command).sort());
 });
 
 test("each language has a grammar with the scope that its file declares", () => {
-  const own = contributes.languages.filter(({ configuration }) => configuration !== undefined); // others are VS Code's
-  expect(contributes.grammars.map(({ language }) => language)).toEqual(own.map(({ id }) => id));
+  // Languages without a configuration are defined by VS Code.
+  const ownLanguages = contributes.languages.filter(({ configuration }) => configuration !== undefined);
+  expect(contributes.grammars.map(({ language }) => language)).toEqual(ownLanguages.map(({ id }) => id));
   for (const { path, scopeName } of contributes.grammars) {
     const grammar = JSON.parse(readFileSync(path, "utf8")) as { readonly scopeName: string };
     expect(grammar.scopeName).toBe(scopeName);

@@ -1,15 +1,15 @@
 import type { Places } from "../src/server/candidates.js";
 
-/** Return places with nothing in them, except what is given. */
-export function emptyPlaces(given: Partial<Places> = {}): Places {
+/** Return places without any Linkwright, with the given overrides. */
+export function createPlaces(overrides: Partial<Places> = {}): Places {
   return {
     interpreter: "",
     folders: ["/work"],
     home: "/home/me",
     isWindows: false,
     exists: () => false,
-    selectedPython: () => Promise.resolve(undefined),
-    onPath: () => undefined,
-    ...given,
+    getSelectedPython: () => Promise.resolve(undefined),
+    findOnPath: () => undefined,
+    ...overrides,
   };
 }

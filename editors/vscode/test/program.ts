@@ -4,11 +4,11 @@ import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const REPOSITORY = join(dirname(fileURLToPath(import.meta.url)), "..", "..", "..");
-const NAMED = process.env["LINKWRIGHT_PYTHON"];
-const BUILT = [".venv", ".venv-3.13", ".venv-3.10"].map((name) => join(REPOSITORY, name, "bin", "python"));
+const CONFIGURED_PYTHON = process.env["LINKWRIGHT_PYTHON"];
+const VENV_PYTHONS = [".venv", ".venv-3.13", ".venv-3.10"].map((name) => join(REPOSITORY, name, "bin", "python"));
 
-/** The Python whose Linkwright the tests run: that of the environment variable, else of the checkout, else none. */
-export const PYTHON = NAMED ?? BUILT.find((file) => existsSync(file));
+/** The Python whose Linkwright the tests run: `LINKWRIGHT_PYTHON`, else an environment of the checkout, else none. */
+export const PYTHON = CONFIGURED_PYTHON ?? VENV_PYTHONS.find((file) => existsSync(file));
 
 /** Whether that Python knows PYTHONSAFEPATH, as 3.11 and newer do. */
 export const HAS_SAFE_PATH =

@@ -17,13 +17,13 @@ import {
   StreamMessageReader,
   StreamMessageWriter,
 } from "vscode-languageserver-protocol/node";
-import { type Command, environment, extended, moduleOf } from "../src/server/command.js";
+import { appendArguments, type Command, createEnvironment, moduleCommandFor } from "../src/server/command.js";
 import { findServer } from "../src/server/finder.js";
 import { probe } from "../src/server/probe.js";
-import { emptyPlaces } from "./places.js";
+import { createPlaces } from "./places.js";
 import { HAS_SAFE_PATH, PYTHON } from "./program.js";
 
-const BROKEN = `<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+const BROKEN_XACRO = `<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:macro name="bar" params="name"><link name="\${name}"/></xacro:macro>
   <xacro:barr name="upper"/>
 </robot>
@@ -34,21 +34,21 @@ beforeEach(() => void (folder = mkdtempSync(join(tmpdir(), "linkwright-vscode-")
 afterEach(() => rmSync(folder, { recursive: true }));
 
 test("a program that is not there cannot run the server", async () => {
-  expect(await probe(moduleOf(join(folder, "python")), folder)).toContain("ENOENT");
+  expect(await probe(moduleCommandFor(join(folder, "python")), folder)).toContain("ENOENT");
 });
 
 describe.skipIf(PYTHON === undefined)("the real server", () => {
   const interpreter = PYTHON ?? "";
 
   test("finds the macro that does not exist", async () => {
-    const { found } = await findServer(emptyPlaces({ interpreter }), (command) => probe(command, folder));
-    const command = found?.command;
-    expect(command).toEqual(moduleOf(interpreter));
-    const [diagnostic] = await diagnostics(command ?? moduleOf(interpreter), "arm.urdf.xacro", BROKEN);
+    const { candidate } = await findServer(createPlaces({ interpreter }), (command) => probe(command, folder));
+    const command = candidate?.command;
+    expect(command).toEqual(moduleCommandFor(interpreter));
+    const [diagnostic] = await runDiagnostics(command ?? moduleCommandFor(interpreter), "arm.urdf.xacro", BROKEN_XACRO);
     expect(diagnostic).toMatchObject({ code: "XAC401", source: "linkwright", range: { start: { line: 2, character: 2 } } });
   });
 
-  test("does not run without its extra, which the probe tells", async () => {
+  test("does not run without its extra, and the probe returns the reason", async () => {
     const blocked = join(folder, "pygls");
     mkdirSync(blocked);
     writeFileSync(join(blocked, "__init__.py"), "raise ModuleNotFoundError('hidden', name='pygls')\n");
@@ -59,33 +59,33 @@ describe.skipIf(PYTHON === undefined)("the real server", () => {
 
   test.skipIf(!HAS_SAFE_PATH)("does not import modules of the workspace", async () => {
     writeFileSync(join(folder, "queue.py"), "raise SystemExit('imported from the workspace')\n");
-    expect(await probe(moduleOf(interpreter), folder)).toBeUndefined();
+    expect(await probe(moduleCommandFor(interpreter), folder)).toBeUndefined();
   });
 });
 
-/** Open a file in the server, as an editor does, and return the first findings about it. */
-async function diagnostics(command: Command, name: string, text: string): Promise<readonly Diagnostic[]> {
-  const { program, args } = extended(command, "lsp");
-  const child = spawn(program, args, { cwd: folder, env: environment(), stdio: ["pipe", "pipe", "inherit"] });
-  const ended = new Promise((resolve) => child.on("close", resolve));
+/** Start the server, open a file in it, as an editor does, and return the first diagnostics published for it. */
+async function runDiagnostics(command: Command, name: string, text: string): Promise<readonly Diagnostic[]> {
+  const { program, args } = appendArguments(command, "lsp");
+  const child = spawn(program, args, { cwd: folder, env: createEnvironment(), stdio: ["pipe", "pipe", "inherit"] });
+  const exitStatus = new Promise((resolve) => child.on("close", resolve));
   const reader = new StreamMessageReader(child.stdout);
   const connection = createProtocolConnection(reader, new StreamMessageWriter(child.stdin));
   connection.listen();
   try {
-    return await opened(connection, name, text);
+    return await openDocument(connection, name, text);
   } finally {
     await connection.sendRequest(ShutdownRequest.type);
     await connection.sendNotification(ExitNotification.type);
-    expect(await ended).toBe(0);
+    expect(await exitStatus).toBe(0);
     connection.dispose();
   }
 }
 
-async function opened(connection: ProtocolConnection, name: string, text: string): Promise<readonly Diagnostic[]> {
+async function openDocument(connection: ProtocolConnection, name: string, text: string): Promise<readonly Diagnostic[]> {
   const workspaceFolders = [{ uri: pathToFileURL(folder).href, name: "robot" }];
   const uri = pathToFileURL(join(folder, name)).href;
   writeFileSync(join(folder, name), text);
-  const published = new Promise<readonly Diagnostic[]>((resolve) => {
+  const publishedDiagnostics = new Promise<readonly Diagnostic[]>((resolve) => {
     connection.onNotification(PublishDiagnosticsNotification.type, (params) => {
       if (params.uri === uri) resolve(params.diagnostics);
     });
@@ -99,5 +99,5 @@ async function opened(connection: ProtocolConnection, name: string, text: string
   await connection.sendNotification(InitializedNotification.type, {});
   const textDocument = { uri, languageId: "xacro", version: 1, text };
   await connection.sendNotification(DidOpenTextDocumentNotification.type, { textDocument });
-  return published;
+  return publishedDiagnostics;
 }

@@ -93,7 +93,7 @@ export function icon(name: IconName, className = ""): SVGSVGElement {
 }
 
 /** Returns the icon of a display class, such as `rviz_default_plugins/Grid`. */
-export function displayIcon(cls: string): IconName {
+export function iconNameOf(cls: string): IconName {
   const name = cls.split("/").pop() ?? cls;
   return name in DISPLAY_PATHS ? (name as DisplayIcon) : "unknown";
 }

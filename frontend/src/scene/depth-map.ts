@@ -58,14 +58,14 @@ export class DepthMap {
     // Check the neighbors, too: points on an edge fall next to their surface as often as on it.
     for (let dy = -1; dy <= 1; dy++) {
       for (let dx = -1; dx <= 1; dx++) {
-        if (this.distanceToSurface(column + dx, row + dy) >= distance * (1 - TOLERANCE)) return true;
+        if (this.readDistance(column + dx, row + dy) >= distance * (1 - TOLERANCE)) return true;
       }
     }
     return false;
   }
 
   /** Returns the distance from the camera to the nearest surface at a pixel, m along the viewing axis. */
-  private distanceToSurface(column: number, row: number): number {
+  private readDistance(column: number, row: number): number {
     if (column < 0 || row < 0 || column >= this.size.x || row >= this.size.y) return 0;
     const first = (row * this.size.x + column) * 4;
     const [a = 0, b = 0, c = 0, d = 0] = this.pixels.subarray(first, first + 4);

@@ -21,12 +21,12 @@ export class FreeRoom {
   private coveredAbove = 0;
 
   /**
-   * @param spanOfRobots - returns the bounding box of all robots.
+   * @param computeRobotSpan - returns the bounding box of all robots.
    * @param aim - updates the camera.
    */
   constructor(
     private readonly viewport: ShiftedView,
-    private readonly spanOfRobots: () => Span | null,
+    private readonly computeRobotSpan: () => Span | null,
     private readonly aim: () => void,
     private readonly invalidate: () => void,
   ) {}
@@ -73,7 +73,7 @@ export class FreeRoom {
   }
 
   private extentOfRobots(): ScreenExtent | null {
-    const box = this.spanOfRobots();
+    const box = this.computeRobotSpan();
     this.aim();
     return box && extentOf(box, this.viewport.camera, this.viewport.size);
   }

@@ -3,7 +3,7 @@ import type { ViewState } from "../state/view";
 import type { ViewSize } from "../state/views/camera";
 import type { Span, Vector } from "../state/views/vector";
 import { orbitFrom } from "../state/views/orbit";
-import { orbitAround, orbitOverview } from "../state/views/surroundings";
+import { computeViewAround, computeOverview } from "../state/views/surroundings";
 import type { ViewValues } from "../state/views/view-controller";
 import { PICKABLE } from "./layers";
 
@@ -17,8 +17,8 @@ const MIN_FOCAL_DISTANCE = 0.5;
 /** The part of a world that the initial view needs. */
 export interface InitialViewWorld {
   readonly hasRobots: boolean;
-  boundsByKind(): { robots: Box3; world: Box3 };
-  cameraOfFile(): Matrix4 | null;
+  computeBoundsByKind(): { robots: Box3; world: Box3 };
+  readCameraOfFile(): Matrix4 | null;
   isClear(ray: Raycaster): boolean;
   pick(ray: Raycaster): { distance: number } | null;
 }
@@ -29,19 +29,19 @@ export interface InitialViewWorld {
  */
 export function setInitialView(world: InitialViewWorld, view: ViewState, size: ViewSize): void {
   if (!view.awaitsFit(world.hasRobots ? SHOWS_ROBOTS : SHOWS_WORLD)) return;
-  const camera = world.cameraOfFile();
+  const camera = world.readCameraOfFile();
   if (camera) {
-    view.proposeValues(orbitFromCamera(world, camera), SHOWS_ROBOTS, true);
+    view.proposeValues(orbitValuesOf(world, camera), SHOWS_ROBOTS, true);
     return;
   }
-  const boundsByKind = world.boundsByKind();
+  const boundsByKind = world.computeBoundsByKind();
   const [robots, everything] = [spanOf(boundsByKind.robots), spanOf(boundsByKind.world)];
-  if (robots) view.proposeValues(orbitAround(view.values, robots, size, (eye, position) => canSee(world, eye, position)), SHOWS_ROBOTS, true);
-  else view.proposeValues(everything ? orbitOverview(view.values, everything, size) : {}, SHOWS_WORLD, world.hasRobots);
+  if (robots) view.proposeValues(computeViewAround(view.values, robots, size, (eye, position) => canSee(world, eye, position)), SHOWS_ROBOTS, true);
+  else view.proposeValues(everything ? computeOverview(view.values, everything, size) : {}, SHOWS_WORLD, world.hasRobots);
 }
 
 /** Returns the values of an Orbit view that looks like a camera of the world's file, without its roll. */
-function orbitFromCamera(world: InitialViewWorld, camera: Matrix4): ViewValues {
+function orbitValuesOf(world: InitialViewWorld, camera: Matrix4): ViewValues {
   const eye = new Vector3().setFromMatrixPosition(camera);
   const direction = new Vector3(1, 0, 0).transformDirection(camera);
   const hit = world.pick(rayFrom(eye, direction))?.distance ?? (direction.z < 0 && eye.z > 0 ? -eye.z / direction.z : DEFAULT_FOCAL_DISTANCE);

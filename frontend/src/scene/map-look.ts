@@ -19,6 +19,6 @@ export function frameMaps(drawings: Iterable<readonly [string, Drawing]>, view: 
   const [width, height] = [window.innerWidth, window.innerHeight];
   const key = [...maps.map((map) => map.size), `${width} x ${height}`].join(";");
   if (!view.awaitsMap(key)) return;
-  const span = spanOf(maps.reduce((sum, map) => sum.union(map.bounds()), new Box3()));
+  const span = spanOf(maps.reduce((sum, map) => sum.union(map.computeBounds()), new Box3()));
   if (span) view.frameMap(span, room.center(), key);
 }

@@ -47,12 +47,12 @@ export class Picker {
   }
 
   pickAlongRay(ray: Raycaster): PickedObject | null {
-    let nearest: PickedObject | null = null;
+    let nearestObject: PickedObject | null = null;
     for (const [display, drawing] of this.listDrawings()) {
       const hit = drawing.pick?.(ray);
-      if (hit && (nearest === null || hit.distance < nearest.hit.distance)) nearest = { display, drawing, hit };
+      if (hit && (nearestObject === null || hit.distance < nearestObject.hit.distance)) nearestObject = { display, drawing, hit };
     }
-    return nearest;
+    return nearestObject;
   }
 
   /** Returns the point of the nearest object at a position, in the fixed frame. */
@@ -100,19 +100,19 @@ export class Picker {
 
   /** Returns the center of the selection, or of all selectable objects if nothing is selected. */
   centerOfSelection(): Vector | null {
-    const span = this.boundsOfSelection() ?? this.boundsOfAll();
+    const span = this.computeSelectionBounds() ?? this.computeAllBounds();
     return span && scale(add(span.min, span.max), 0.5);
   }
 
   /** Returns the bounding box of all selectable objects in the fixed frame. */
-  boundsOfAll(): Span | null {
+  computeAllBounds(): Span | null {
     const box = new Box3();
     for (const [, drawing] of this.listDrawings()) if (drawing.pick) box.expandByObject(drawing.root);
     return spanOf(box);
   }
 
   /** Returns the bounding box of the selection in the fixed frame; null if nothing is selected. */
-  boundsOfSelection(): Span | null {
+  computeSelectionBounds(): Span | null {
     const box = new Box3();
     for (const [display, drawing] of this.listDrawings()) {
       for (const item of this.session.selection.items) {

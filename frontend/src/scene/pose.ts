@@ -7,7 +7,7 @@ const orientation = new Quaternion();
 const ONE = new Vector3(1, 1, 1);
 
 /** Computes the matrix of a pose, x y z (m) qx qy qz qw, from index `at` on. */
-export function poseMatrix(values: ArrayLike<number>, matrix: Matrix4, offset = 0): Matrix4 {
+export function setPoseMatrix(values: ArrayLike<number>, matrix: Matrix4, offset = 0): Matrix4 {
   position.fromArray(values, offset);
   orientation.fromArray(values, offset + 3);
   return matrix.compose(position, orientation, ONE);
@@ -16,7 +16,7 @@ export function poseMatrix(values: ArrayLike<number>, matrix: Matrix4, offset = 
 /** Computes the pose of a frame; returns false, and leaves `matrix` unchanged, if the frame has no transform. */
 export function framePose(frames: FrameStore, row: number, matrix: Matrix4): boolean {
   if (!frames.has(row)) return false;
-  poseMatrix(frames.poses, matrix, row * 7);
+  setPoseMatrix(frames.poses, matrix, row * 7);
   return true;
 }
 
@@ -24,9 +24,9 @@ export function framePose(frames: FrameStore, row: number, matrix: Matrix4): boo
  * Computes the pose of a display's content: that of its frame at the time of the content, or now if the content follows
  * its frame. Returns false, and leaves `matrix` unchanged, if the frame has no transform.
  */
-export function dataPose(frames: FrameStore, data: DisplayData, matrix: Matrix4): boolean {
+export function readDataPose(frames: FrameStore, data: DisplayData, matrix: Matrix4): boolean {
   if (data.pose) {
-    poseMatrix(data.pose, matrix);
+    setPoseMatrix(data.pose, matrix);
     return true;
   }
   if (data.frame !== "" && data.frame !== frames.fixedFrame) return framePose(frames, frames.rowOf(data.frame), matrix);

@@ -11,8 +11,8 @@ export interface LitRobot {
   readonly visibleKey: string;
   readonly visibleMeshes: readonly Mesh[];
   /** Returns the height of the ground below the robot, in the fixed frame, m. */
-  ground(): number;
-  roughBounds(): Box3;
+  computeGround(): number;
+  computeRoughBounds(): Box3;
 }
 
 /** The lighting of robots, and the shadows that they cast. */
@@ -38,13 +38,13 @@ export class RobotLight {
     this.shadow.root.visible = lighting === "Soft";
     if (lighting === "Camera") return null;
     const key = robots.map((robot) => robot.visibleKey).join(";");
-    if (key !== this.ground.what) this.ground = { what: key, height: Math.min(...robots.map((robot) => robot.ground())) };
+    if (key !== this.ground.what) this.ground = { what: key, height: Math.min(...robots.map((robot) => robot.computeGround())) };
     const { height } = this.ground;
     if (lighting === "Soft") {
       this.shadow.update(robots.flatMap((robot) => robot.visibleMeshes), height);
       return null;
     }
-    this.studio.update(robots.reduce((sum, robot) => sum.union(robot.roughBounds()), new Box3()), height);
+    this.studio.update(robots.reduce((sum, robot) => sum.union(robot.computeRoughBounds()), new Box3()), height);
     return { hasShadows: true, background: null, daylight: null, fog: null, backdrop };
   }
 }

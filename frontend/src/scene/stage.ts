@@ -73,8 +73,8 @@ export class Stage {
   ) {
     this.meshes = new MeshLibrary(session.meshProgress, files, standIns);
     this.viewport = new Viewport(container, () => this.loop.redraw(NOT_ANTIALIASED));
-    this.freeRoom = new FreeRoom(this.viewport, () => this.boundsOfRobots(), () => this.viewport.aim(session.view), () => this.loop.invalidate());
-    this.picker = new Picker(this.viewport, session, () => this.enabledDrawings());
+    this.freeRoom = new FreeRoom(this.viewport, () => this.computeRobotBounds(), () => this.viewport.aim(session.view), () => this.loop.invalidate());
+    this.picker = new Picker(this.viewport, session, () => this.iterateEnabledDrawings());
     this.outline = new Outline(this.viewport);
     const invalidate = (): void => this.loop.invalidate();
     this.flash = new Flash(this.viewport, session, (display, link) => this.objectsOf(display, link), invalidate);
@@ -99,7 +99,7 @@ export class Stage {
 
   /** The number of visuals of all robots drawn in the last frame. */
   get visualsDrawn(): number {
-    return this.robots().reduce((sum, robot) => sum + robot.visualsDrawn, 0);
+    return this.listRobots().reduce((sum, robot) => sum + robot.visualsDrawn, 0);
   }
 
   /** Returns what a display draws, for tests. */
@@ -129,7 +129,7 @@ export class Stage {
 
   /** Whether a display has objects that the Interact tool can move. */
   get isInteractive(): boolean {
-    return [...this.enabledDrawings()].some(([, drawing]) => "onPointer" in drawing);
+    return [...this.iterateEnabledDrawings()].some(([, drawing]) => "onPointer" in drawing);
   }
 
   /** Looks at the center of the selection, or of all selectable objects if nothing is selected. */
@@ -140,13 +140,13 @@ export class Stage {
 
   /** Fits the whole selection, or everything if nothing is selected, into view from the current direction. */
   fit(): void {
-    const box = this.picker.boundsOfSelection() ?? this.boundsOfAll();
+    const box = this.picker.computeSelectionBounds() ?? this.computeAllBounds();
     if (box) this.session.view.fit(box, this.freeRoom.center());
   }
 
   /** Fits all robots into view from the current direction. */
   fitRobots(): void {
-    const box = this.spanOfRobots();
+    const box = this.computeRobotSpan();
     if (box) this.session.view.fit(box, this.freeRoom.center());
   }
 
@@ -158,7 +158,7 @@ export class Stage {
   }
 
   /** Returns the enabled displays by ID. */
-  private *enabledDrawings(): Generator<readonly [string, Drawing]> {
+  private *iterateEnabledDrawings(): Generator<readonly [string, Drawing]> {
     for (const [id, { display, drawing }] of this.drawings) if (display.isEnabled) yield [id, drawing];
   }
 
@@ -255,11 +255,11 @@ export class Stage {
   private draw(detail: Detail): void {
     const { view } = this.session;
     this.viewport.share = detail.share;
-    frameMaps(this.enabledDrawings(), view, this.freeRoom);
+    frameMaps(this.iterateEnabledDrawings(), view, this.freeRoom);
     this.viewport.aim(view);
     this.focalShape.updatePose(view);
     const { lighting } = this;
-    for (const robot of this.robots()) robot.light = lighting;
+    for (const robot of this.listRobots()) robot.light = lighting;
     let loadingKey = "";
     const now = performance.now();
     for (const { display, drawing, pacing } of this.drawings.values()) {
@@ -273,18 +273,18 @@ export class Stage {
       this.loadingKey = loadingKey;
       this.session.displays.statusChanged.emit(null);
     }
-    this.hasRobotSettled ||= isSettled && [...this.robots(), ...this.worlds()].some((model) => model.hasPose);
+    this.hasRobotSettled ||= isSettled && [...this.listRobots(), ...this.listWorlds()].some((model) => model.hasPose);
     if (isSettled && this.session.robot !== null) this.placelessSince ??= now;
     this.setInitialView(isSettled);
-    const ownLight = this.worlds().find((world) => world.ownLight)?.ownLight ?? this.robotLight.update(this.worlds().length > 0 ? "Camera" : lighting, this.robots(), this.backgroundColor);
+    const ownLight = this.listWorlds().find((world) => world.ownLight)?.ownLight ?? this.robotLight.update(this.listWorlds().length > 0 ? "Camera" : lighting, this.listRobots(), this.backgroundColor);
     this.backdrop.root.visible = this.session.displays.hasBackdrop && !hasOwnBackground(ownLight);
     this.viewport.applyLight(ownLight);
     this.inspectLayer.update();
-    this.outline.set(this.selectedObjects());
+    this.outline.set(this.listSelectedObjects());
     const isMoving = detail.moving && ownLight === null;
-    if (isMoving) for (const [, drawing] of this.enabledDrawings()) drawing.simplify?.(this.viewport.drawnView);
+    if (isMoving) for (const [, drawing] of this.iterateEnabledDrawings()) drawing.simplify?.(this.viewport.drawnView);
     this.viewport.render(detail.smooth);
-    if (isMoving) for (const [, drawing] of this.enabledDrawings()) drawing.simplify?.(null);
+    if (isMoving) for (const [, drawing] of this.iterateEnabledDrawings()) drawing.simplify?.(null);
     this.outline.render();
     this.flash.render();
     this.drawElsewhere();
@@ -292,7 +292,7 @@ export class Stage {
 
   /** The lighting of robots; a robot in a world is lit as the world's display specifies. */
   private get lighting(): Lighting {
-    const [world] = this.worlds();
+    const [world] = this.listWorlds();
     if (world) return world.lighting === "Soft" ? "Soft" : "Camera";
     const light = this.session.displays.globalOptions.text("Camera", "Light");
     if (light === "Camera") return "Camera";
@@ -302,50 +302,50 @@ export class Stage {
   /** Places the camera if no user has: in front of the robot's visible parts, or into a world once it is complete. */
   private setInitialView(isSettled: boolean): void {
     const { view } = this.session;
-    const [robots, [world]] = [this.robots(), this.worlds()];
+    const [robots, [world]] = [this.listRobots(), this.listWorlds()];
     if (robots.length === 0 && world?.hasPose) {
       if (isSettled) setInitialView(world, view, this.viewport.size);
     } else {
       const visibleKey = robots.flatMap((robot) => robot.visibleKey || []).join(";");
       const needsFit = view.awaitsFit(visibleKey);
       if (visibleKey === "" || !(needsFit || view.awaitsSize)) return;
-      const box = this.spanOfRobots();
+      const box = this.computeRobotSpan();
       if (box && needsFit) view.fitFirst(box, this.freeRoom.center(), visibleKey);
-      if (box && isSettled) view.reportSize(box, Math.min(...robots.map((robot) => robot.ground())));
+      if (box && isSettled) view.reportSize(box, Math.min(...robots.map((robot) => robot.computeGround())));
     }
     this.viewport.aim(view);
   }
 
-  private robots(): RobotModelDrawing[] {
-    return [...this.enabledDrawings()].flatMap(([, drawing]) => (drawing instanceof RobotModelDrawing ? [drawing] : []));
+  private listRobots(): RobotModelDrawing[] {
+    return [...this.iterateEnabledDrawings()].flatMap(([, drawing]) => (drawing instanceof RobotModelDrawing ? [drawing] : []));
   }
 
   /** The simulated world, if one is shown, with the display's ID. */
   get world(): { id: string; drawing: WorldDrawing } | null {
-    for (const [id, drawing] of this.enabledDrawings()) if (drawing instanceof WorldDrawing) return { id, drawing };
+    for (const [id, drawing] of this.iterateEnabledDrawings()) if (drawing instanceof WorldDrawing) return { id, drawing };
     return null;
   }
 
-  private worlds(): WorldDrawing[] {
-    return [...this.enabledDrawings()].flatMap(([, drawing]) => (drawing instanceof WorldDrawing ? [drawing] : []));
+  private listWorlds(): WorldDrawing[] {
+    return [...this.iterateEnabledDrawings()].flatMap(([, drawing]) => (drawing instanceof WorldDrawing ? [drawing] : []));
   }
 
-  private boundsOfRobots(): Span | null {
-    return spanOf(this.robots().reduce((sum, robot) => sum.union(robot.bounds()), new Box3()));
+  private computeRobotBounds(): Span | null {
+    return spanOf(this.listRobots().reduce((sum, robot) => sum.union(robot.computeBounds()), new Box3()));
   }
 
   /** Returns the bounding box of all robots, with sample points of their surfaces. */
-  private spanOfRobots(): Span | null {
-    const box = this.boundsOfRobots();
-    const points = this.robots().flatMap((robot) => robot.visibleMeshes.flatMap((mesh) => samplePoints(mesh)));
+  private computeRobotSpan(): Span | null {
+    const box = this.computeRobotBounds();
+    const points = this.listRobots().flatMap((robot) => robot.visibleMeshes.flatMap((mesh) => samplePoints(mesh)));
     return box && points.length > 0 ? { ...box, points } : box;
   }
 
   /** Returns the bounding box of robots and the world's models; of all selectable objects if there are none. */
-  private boundsOfAll(): Span | null {
-    const worlds = this.worlds().reduce((sum, world) => sum.union(world.boundsByKind().world), new Box3());
-    const robots = this.robots().reduce((sum, robot) => sum.union(robot.bounds()), worlds);
-    return spanOf(robots) ?? this.picker.boundsOfAll();
+  private computeAllBounds(): Span | null {
+    const worldBounds = this.listWorlds().reduce((sum, world) => sum.union(world.computeBoundsByKind().world), new Box3());
+    const allBounds = this.listRobots().reduce((sum, robot) => sum.union(robot.computeBounds()), worldBounds);
+    return spanOf(allBounds) ?? this.picker.computeAllBounds();
   }
 
   /** Draws the displays that show the scene in their own panels. */
@@ -378,7 +378,7 @@ export class Stage {
     this.loop.invalidate();
   }
 
-  private selectedObjects(): Object3D[] {
+  private listSelectedObjects(): Object3D[] {
     const objects: Object3D[] = [];
     for (const { display, key } of this.session.selection.items) objects.push(...this.objectsOf(display, key));
     const { hoveredElement } = this.session.focus;

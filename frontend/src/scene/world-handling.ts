@@ -53,7 +53,7 @@ export class WorldHandling {
     this.line.root.material.depthTest = false;
     this.line.root.renderOrder = RENDER_ORDER;
     stage.viewport.scene.add(this.line.root);
-    session.simulation.freePlace = () => stage.world?.drawing.freePlace() ?? [0, 0, 0];
+    session.simulation.findFreePlace = () => stage.world?.drawing.findFreePlace() ?? [0, 0, 0];
   }
 
   /** Handles an event; returns false if it is left to the active tool. */
@@ -123,7 +123,7 @@ export class WorldHandling {
 
   private send({ drawing, link, point, offset, isPull }: ModelGrab): void {
     const { simulation } = this.session;
-    const inWorld = drawing.directionToWorld(offset);
+    const inWorld = drawing.transformToWorld(offset);
     if (isPull) simulation.push(link, point.toArray(), inWorld.multiplyScalar(STIFFNESS).toArray());
     else simulation.drag(modelOf(link), inWorld.toArray(), false);
   }

@@ -43,11 +43,11 @@ export class ComparisonState {
   }
 
   /** Whether links are colored by their differences. */
-  get marks(): boolean {
+  get areMarksShown(): boolean {
     return this.showsMarks;
   }
 
-  set marks(showsMarks: boolean) {
+  set areMarksShown(showsMarks: boolean) {
     this.showsMarks = showsMarks;
     this.changed.emit();
   }
@@ -99,17 +99,17 @@ export interface DifferenceGroup {
 export function groupDifferences(items: readonly ComparedItem[]): DifferenceGroup[] {
   const groups: ComparedItem[][] = [];
   for (const item of items) {
-    const last = groups.at(-1);
-    const [first] = last ?? [];
-    if (last && first?.subject === item.subject && first.name === item.name) last.push(item);
+    const lastGroup = groups.at(-1);
+    const [first] = lastGroup ?? [];
+    if (lastGroup && first?.subject === item.subject && first.name === item.name) lastGroup.push(item);
     else groups.push([item]);
   }
   return groups.map((group) => ({ items: group, kind: group.length === 1 ? (group[0]?.kind ?? "changed") : "changed" }));
 }
 
 /** Returns the marks among the links, in the order of the legend. */
-export function usedMarks(robots: readonly ComparedRobot[]): MarkName[] {
-  const marks = new Set<MarkName>(robots.flatMap(({ marks }) => Object.values(marks)));
+export function listUsedMarks(robots: readonly ComparedRobot[]): MarkName[] {
+  const marks = new Set<MarkName>(robots.flatMap((robot) => Object.values(robot.marks)));
   return [...(["added", "changed", "removed"] as const).filter((mark) => marks.has(mark)), "old"];
 }
 

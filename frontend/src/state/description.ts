@@ -54,7 +54,7 @@ export class DescriptionState {
       this.findingsArrived.emit(message.display);
     });
     connection.on("description_text", ({ display, file, text }) => {
-      this.texts.set(textKey(display, file), text);
+      this.texts.set(createTextKey(display, file), text);
       this.textArrived.emit();
     });
     // While a description has an error, its texts are those with the error; otherwise those of the robot shown.
@@ -94,7 +94,7 @@ export class DescriptionState {
 
   /** Returns a text if it has arrived, otherwise requests it; null if it does not exist. */
   textOf(display: string, file: string): string | null | undefined {
-    const key = textKey(display, file);
+    const key = createTextKey(display, file);
     if (!this.texts.has(key)) {
       this.texts.set(key, undefined);
       this.connection.send({ type: "ask_description_text", display, file });
@@ -123,7 +123,7 @@ export class DescriptionState {
   }
 }
 
-function textKey(display: string, file: string): string {
+function createTextKey(display: string, file: string): string {
   return `${display} ${file}`;
 }
 

@@ -1,7 +1,7 @@
 import type { FrameStore } from "./frames";
 
 /** Returns the root of the tree with the most frames, the first if there are several; null if there are no frames. */
-export function largestRoot({ names, parents }: Pick<FrameStore, "names" | "parents">): string | null {
+export function findLargestRoot({ names, parents }: Pick<FrameStore, "names" | "parents">): string | null {
   const sizes = new Map<number, number>();
   for (let row = 0; row < names.length; row++) {
     let root = row;

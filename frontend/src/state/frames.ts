@@ -67,7 +67,7 @@ export class FrameStore {
   }
 
   /** Returns the distance of two frames: the largest difference of their coordinates in m or quaternion components. */
-  difference(first: string, second: string): number {
+  computeDifference(first: string, second: string): number {
     const [a, b] = [this.rowOf(first), this.rowOf(second)];
     if (!this.has(a) || !this.has(b)) return Infinity;
     let maximum = 0;

@@ -20,13 +20,13 @@ export const COLUMNS = [
 export type Column = (typeof COLUMNS)[number];
 
 /** The texts for the cells. */
-interface Words {
+interface JointTexts {
   readonly kinds: Readonly<Record<JointDetails["kind"], string>>;
   readonly table: { readonly damping: (value: string) => string; readonly friction: (value: string) => string };
 }
 
 /** Returns the texts of a joint's row. */
-export function formatJointCells(joint: JointDetails, angles: AngleUnits, words: Words): Record<Column, string> {
+export function formatJointCells(joint: JointDetails, angles: AngleUnits, texts: JointTexts): Record<Column, string> {
   const scale = angles.scale(joint.kind);
   const unit = joint.kind === "prismatic" ? "m" : angles.current;
   const isMovable = joint.kind !== "fixed";
@@ -35,7 +35,7 @@ export function formatJointCells(joint: JointDetails, angles: AngleUnits, words:
   const { mimic, damping, friction, soft_lower, soft_upper } = joint;
   return {
     name: joint.name,
-    kind: words.kinds[joint.kind],
+    kind: texts.kinds[joint.kind],
     parent: joint.parent,
     child: joint.child,
     axis: isMovable && joint.kind !== "floating" ? joint.axis.map(formatRounded).join(" ") : "",
@@ -45,8 +45,8 @@ export function formatJointCells(joint: JointDetails, angles: AngleUnits, words:
     effort: formatAmount(joint.effort, joint.kind === "prismatic" ? "N" : "N m"),
     mimic: mimic ? formatMimic(mimic.joint, mimic.multiplier, mimic.offset * scale, unit) : "",
     dynamics: [
-      damping === null ? "" : words.table.damping(formatRounded(damping)),
-      friction === null ? "" : words.table.friction(formatRounded(friction)),
+      damping === null ? "" : texts.table.damping(formatRounded(damping)),
+      friction === null ? "" : texts.table.friction(formatRounded(friction)),
     ]
       .filter((text) => text !== "")
       .join(", "),

@@ -44,9 +44,9 @@ export class LinkTreeState {
  * Returns the rows of a tree from its root down. During a search, folds are ignored, and only links remain whose name,
  * or whose joint's name, contains all words of the search, with their ancestors.
  */
-export function visibleRows(model: DescriptionModel, state: LinkTreeState, search: string): TreeRow[] {
-  const words = search.toLowerCase().split(/\s+/).filter((word) => word !== "");
-  const matching = words.length > 0 ? matchesOf(model, words) : null;
+export function listVisibleRows(model: DescriptionModel, state: LinkTreeState, search: string): TreeRow[] {
+  const searchWords = search.toLowerCase().split(/\s+/).filter((word) => word !== "");
+  const matching = searchWords.length > 0 ? matchesOf(model, searchWords) : null;
   const rows: TreeRow[] = [];
   const visited = new Set<string>();
   const stack: [string, JointDetails | null, number][] = [[model.description.root, null, 0]];
@@ -64,11 +64,11 @@ export function visibleRows(model: DescriptionModel, state: LinkTreeState, searc
   return rows;
 }
 
-function matchesOf(model: DescriptionModel, words: readonly string[]): Set<string> {
+function matchesOf(model: DescriptionModel, searchWords: readonly string[]): Set<string> {
   const matching = new Set<string>();
   for (const link of model.links.keys()) {
     const names = `${link} ${model.jointAbove(link)?.name ?? ""}`.toLowerCase();
-    if (!words.every((word) => names.includes(word))) continue;
+    if (!searchWords.every((word) => names.includes(word))) continue;
     for (let ancestor: string | undefined = link; ancestor !== undefined && !matching.has(ancestor); ancestor = model.jointAbove(ancestor)?.parent) matching.add(ancestor);
   }
   return matching;

@@ -5,7 +5,7 @@ type Rotation = readonly [number, number, number, number];
 type Vector = readonly [number, number, number];
 
 /** Returns a pose `b` given in the frame `a`, in the frame in which `a` is given. */
-export function compose(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
+export function composePoses(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
   const [x, y, z] = rotate(turnOf(a), placeOf(b));
   return [a[0] + x, a[1] + y, a[2] + z, ...multiply(turnOf(a), turnOf(b))];
 }

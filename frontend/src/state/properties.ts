@@ -50,9 +50,9 @@ export class PropertyRows {
   }
 
   find(...path: readonly string[]): PropertyNode | undefined {
-    const [first, ...rest] = path;
+    const [first, ...childPath] = path;
     let node = first === undefined ? undefined : this.byName.get(first);
-    for (const name of rest) node = node?.children.find((child) => child.name === name);
+    for (const name of childPath) node = node?.children.find((child) => child.name === name);
     return node;
   }
 

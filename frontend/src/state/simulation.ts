@@ -12,7 +12,7 @@ export class SimulationState {
   /** The user asked to add a model at a position in the world, m. */
   readonly spawnRequested = new Signal<readonly number[]>();
   /** Returns a free position for a model in the world, m; the drawing of a world replaces this function. */
-  freePlace: () => readonly number[] = () => [0, 0, 0];
+  findFreePlace: () => readonly number[] = () => [0, 0, 0];
   private status: SimulationStatus | null = null;
 
   constructor(private readonly connection: Connection) {

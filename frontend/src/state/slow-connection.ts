@@ -56,7 +56,7 @@ function reductionOf(content: DisplayData["content"]): Reduction | null {
 }
 
 function rateOf(times: readonly number[]): number | null {
-  const [oldest, newest] = [times[0], times.at(-1)];
-  if (oldest === undefined || newest === undefined || newest - oldest < RATE_WINDOW_MS / 10) return null;
-  return ((times.length - 1) * 1000) / (newest - oldest);
+  const [oldestTime, newestTime] = [times[0], times.at(-1)];
+  if (oldestTime === undefined || newestTime === undefined || newestTime - oldestTime < RATE_WINDOW_MS / 10) return null;
+  return ((times.length - 1) * 1000) / (newestTime - oldestTime);
 }

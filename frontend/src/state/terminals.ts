@@ -45,7 +45,7 @@ export class TerminalsState {
     connection.on("hello", ({ run }) => this.onHello(run));
     connection.on("terminals", ({ folder, terminals, why_not: unavailableReason }) => {
       if (this.isUnknown && folder !== "") connection.send({ type: "watch_program_pages" });
-      [this.folder, this.items, this.unavailableReason] = [folder, this.isUnknown ? this.withoutLost(terminals) : terminals, unavailableReason];
+      [this.folder, this.items, this.unavailableReason] = [folder, this.isUnknown ? this.excludeLost(terminals) : terminals, unavailableReason];
       this.isUnknown = false;
       this.setAvailable(folder !== "");
       this.changed.emit();
@@ -120,7 +120,7 @@ export class TerminalsState {
   }
 
   /** Returns terminals where the lost connection does not count as another page; the program may not know of the loss. */
-  private withoutLost(items: readonly TerminalItem[]): TerminalItem[] {
+  private excludeLost(items: readonly TerminalItem[]): TerminalItem[] {
     return items.map((item) => (item.shown === "elsewhere" && this.shownBefore.has(item.id) ? { ...item, shown: "nowhere" } : item));
   }
 

@@ -48,8 +48,8 @@ export function layOutTree(root: TreeNode, gap: number, levelGap: number): TidyT
     placedNodes.set(node, placedNode);
     return placedNode;
   });
-  const last = rows.at(-1);
-  return { nodes, width: Math.max(...outline.right) - left, height: last ? last.top + last.height : 0 };
+  const lastRow = rows.at(-1);
+  return { nodes, width: Math.max(...outline.right) - left, height: lastRow ? lastRow.top + lastRow.height : 0 };
 }
 
 /** Places the children of a node next to each other and returns the contour of the whole. */
@@ -60,10 +60,10 @@ function placeChildren(
   gap: number,
 ): Contour {
   const contourOfNode: Contour = { left: [-node.width / 2], right: [node.width / 2] };
-  const [first, ...others] = node.children;
+  const [first, ...otherChildren] = node.children;
   if (!first) return contourOfNode;
   const contour = contours.get(first);
-  if (contour && others.length === 0) {
+  if (contour && otherChildren.length === 0) {
     // Extend the child's contour in place, because no other node needs it and a chain may be long.
     contour.left.unshift(-node.width / 2);
     contour.right.unshift(node.width / 2);

@@ -47,7 +47,7 @@ export class TimeControlState {
   }
 
   /** Returns the current times; null until the server has sent any. */
-  currentTimes(): Times | null {
+  computeTimes(): Times | null {
     if (!this.clock) return null;
     const { ros, ros_start, wall, wall_start, running } = this.clock;
     const elapsed = (this.now() - this.clockAt) / 1000;

@@ -3,9 +3,9 @@ import type { Property, PropertyValue, SavedView, View, ViewClass } from "../pro
 import { Signal } from "../signal";
 import type { FrameStore } from "./frames";
 import type { PageMemory } from "./page-memory";
-import { cameraToFixed, cameraToTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
+import { transformToFixed, transformToTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
-import { contains, spanToTarget } from "./views/fit";
+import { contains, transformSpan } from "./views/fit";
 import { distanceBetween, type Span, type Vector } from "./views/vector";
 import type { Drag, ViewController, ViewValues } from "./views/view-controller";
 
@@ -93,7 +93,7 @@ export class ViewState {
 
   /** The camera in the fixed frame. */
   get camera(): Camera {
-    return cameraToFixed(this.controller.computeCamera(this.view.values), this.target);
+    return transformToFixed(this.controller.computeCamera(this.view.values), this.target);
   }
 
   propertiesOf(cls: string): readonly Property[] {
@@ -208,7 +208,7 @@ export class ViewState {
     const defaults = this.defaultsOf(cls);
     const targetFrame = previousView.values[TARGET_FRAME];
     this.view = { ...previousView, cls, values: targetFrame === undefined ? defaults : { ...defaults, [TARGET_FRAME]: targetFrame } };
-    const camera = cameraToTarget(inFixed, this.target);
+    const camera = transformToTarget(inFixed, this.target);
     this.update(this.controller.mimic({ cls: previousView.cls, values: previousView.values, camera }));
   }
 
@@ -288,7 +288,7 @@ export class ViewState {
   }
 
   private fitValues(box: Span, size: ViewSize): ViewValues {
-    return this.controller.fit(this.view.values, spanToTarget(box, this.target), size);
+    return this.controller.fit(this.view.values, transformSpan(box, this.target), size);
   }
 
   private change(view: View): void {
@@ -334,8 +334,8 @@ function copyOf(view: View): View {
 function find(properties: readonly Property[], id: string): Property | undefined {
   for (const property of properties) {
     if (property.id === id) return property;
-    const found = find(property.children, id);
-    if (found) return found;
+    const match = find(property.children, id);
+    if (match) return match;
   }
   return undefined;
 }

@@ -66,11 +66,11 @@ export class Dialog {
   private keepFocus(event: KeyboardEvent): void {
     const elements = this.element.querySelectorAll<HTMLElement>("button, input, select, textarea, [tabindex]");
     const focusableElements = [...elements].filter((element) => element.tabIndex >= 0 && !element.matches(":disabled") && element.checkVisibility());
-    const [first, last] = [focusableElements[0], focusableElements.at(-1)];
-    const edgeElement = event.shiftKey ? first : last;
+    const [firstElement, lastElement] = [focusableElements[0], focusableElements.at(-1)];
+    const edgeElement = event.shiftKey ? firstElement : lastElement;
     if (document.activeElement !== edgeElement) return;
     event.preventDefault();
-    (event.shiftKey ? last : first)?.focus();
+    (event.shiftKey ? lastElement : firstElement)?.focus();
   }
 
   /** Whether the main choice is enabled. */

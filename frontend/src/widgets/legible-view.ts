@@ -20,10 +20,10 @@ const MIN_TEXT_PX = 10;
 export function computeLegibleView(image: Size, window: Size, textSize: number, point: readonly [number, number], margin = 16): ImageView {
   const fittingScale = Math.min((window[0] - 2 * margin) / image[0], (window[1] - 2 * margin) / image[1]);
   const scale = Math.min(1, Math.max(MIN_TEXT_PX / textSize, fittingScale));
-  const position = (axis: 0 | 1): number => {
+  const choosePosition = (axis: 0 | 1): number => {
     const [size, room] = [image[axis] * scale, window[axis]];
     if (size <= room - 2 * margin) return (room - size) / 2;
     return Math.min(margin, Math.max(room - margin - size, room / 2 - point[axis] * scale));
   };
-  return { x: position(0), y: position(1), scale };
+  return { x: choosePosition(0), y: choosePosition(1), scale };
 }

@@ -64,7 +64,12 @@ class CommitFiles:
 
     def finder(self, folder: Path) -> PackageFinder:
         """Return a finder for a file's folder that finds the commit's packages, and others from the working tree."""
-        return PackageFinder(start=[folder, self._repository_root, Path.cwd()], extra=self.packages)
+        return self._finder.starting_at([folder, self._repository_root, Path.cwd()])
+
+    @cached_property
+    def _finder(self) -> PackageFinder:
+        """The finder whose search of the source trees all others share."""
+        return PackageFinder(start=[self._repository_root], extra=self.packages)
 
     @cached_property
     def packages(self) -> Mapping[str, Path]:

@@ -6,8 +6,10 @@ import os
 import stat
 import sys
 from pathlib import Path
+from weakref import WeakValueDictionary
 
 from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.geometry.mesh_content import ContentKey, content_key
 from linkwright.geometry.outlines import Outline, SmallMesh, read_small
 from linkwright.geometry.shapes import MAX_COORDINATE
 from linkwright.loading.lean_typing import TYPE_CHECKING
@@ -131,6 +133,8 @@ def _mesh_bytes(_: object, mesh: TriangleMesh) -> int:
 
 _CACHE: BoundedCache[tuple[str, int, int], TriangleMesh] = BoundedCache(_CACHE_SIZE, _mesh_bytes)
 """The meshes of files, by the path, the time of the last change in ns, and the size in bytes."""
+_BY_CONTENT: WeakValueDictionary[ContentKey, TriangleMesh] = WeakValueDictionary()
+"""The cached meshes by the content of their files, which both versions of a repository have under other paths."""
 
 
 def _read_cached(path: Path, real_path: str) -> TriangleMesh:
@@ -149,8 +153,12 @@ def _read_cached(path: Path, real_path: str) -> TriangleMesh:
     key = real_path, file_status.st_mtime_ns, file_status.st_size
     mesh = _CACHE.values.get(key)
     if mesh is None:
-        mesh = read_mesh(path)
+        content = content_key(path)
+        mesh = None if content is None else _BY_CONTENT.get(content)
+        mesh = mesh or read_mesh(path)
         _CACHE.store(key, mesh)
+        if content is not None:
+            _BY_CONTENT[content] = mesh
     return mesh
 
 

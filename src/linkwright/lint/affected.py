@@ -28,6 +28,8 @@ _MAX_TEXT_BYTES, _MAX_MESH_BYTES = 1 << 20, 1 << 16
 _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)|%[sd]|\{[\w.\[\]'\"]*\}")
 _WORD = re.compile(r"model://[\w.+-]+|[\w.+*-]+")
 _MODEL = "model://"
+_MODEL_CONFIG = "model.config"
+"""The name of a file that names files of its own folder."""
 _MIN_FIXED_CHARACTERS = 3
 """The number of fixed characters besides the suffix that a computed name must have to be followed."""
 
@@ -37,10 +39,14 @@ class TextFiles:
 
     Args:
         root: the folder with the files of the version.
+        other: another version whose names are used for files that did not change; None to read all files.
+        changed: the paths of the files that differ between both versions, relative to the roots.
     """
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, root: Path, other: TextFiles | None = None, changed: Collection[str] = ()) -> None:
         self._root = root
+        self._other = other
+        self._changed = changed
 
     def affected(self, changed: Iterable[str], candidates: Collection[str]) -> set[str]:
         """Return the candidates that have changed or that changed files can affect.
@@ -62,8 +68,10 @@ class TextFiles:
     def _naming(self, path: str) -> Iterator[str]:
         """Yield the paths of the files whose texts can name a file."""
         name = Path(path).name
-        yield from self._files_by_name.get(name, ())
-        if name in ("model.config", "model.sdf"):
+        for file in self._files_by_name.get(name, ()):
+            if Path(file).name != _MODEL_CONFIG or Path(file).parent == Path(path).parent:
+                yield file
+        if name in (_MODEL_CONFIG, "model.sdf"):
             yield from self._files_by_name.get(Path(path).parent.name, ())
         for pattern, files in self._files_by_pattern:
             if pattern.fullmatch(name):
@@ -74,10 +82,20 @@ class TextFiles:
         """The files that contain a name, and the files that contain a pattern of names, by name and by pattern."""
         by_name: dict[str, list[str]] = defaultdict(list)
         by_pattern: dict[str, list[str]] = defaultdict(list)
-        for path, text in self._texts():
-            for name in set(_file_names(text)):
+        for path, names in self._names_by_file.items():
+            for name in names:
                 (by_pattern if "*" in name else by_name)[name].append(path)
         return by_name, by_pattern
+
+    @cached_property
+    def _names_by_file(self) -> dict[str, frozenset[str]]:
+        """The names and patterns of names in each file, by path."""
+        known = {} if self._other is None else self._other._names_by_file
+        names: dict[str, frozenset[str]] = {}
+        for path, file in self._files():
+            is_known = path in known and path not in self._changed
+            names[path] = known[path] if is_known else frozenset(_file_names(_text(file)))
+        return names
 
     @property
     def _files_by_name(self) -> dict[str, list[str]]:
@@ -90,17 +108,21 @@ class TextFiles:
             for pattern, files in self._names[1].items()
         ]
 
-    def _texts(self) -> Iterator[tuple[str, str]]:
-        """Yield the path and the text of each file."""
+    def _files(self) -> Iterator[tuple[str, Path]]:
+        """Yield the relative and the absolute path of each file."""
         for folder, folders, names in os.walk(self._root):
             folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
             for name in sorted(names):
                 file = Path(folder, name)
                 if name.endswith(_TEXT_SUFFIXES) and file.is_file() and not file.is_symlink():
-                    with file.open("rb") as stream:
-                        size = _MAX_MESH_BYTES if name.endswith(_MESH_SUFFIXES) else _MAX_TEXT_BYTES
-                        text = stream.read(size).decode("utf-8", errors="replace")
-                    yield file.relative_to(self._root).as_posix(), text
+                    yield file.relative_to(self._root).as_posix(), file
+
+
+def _text(file: Path) -> str:
+    """Return the beginning of a file."""
+    with file.open("rb") as stream:
+        size = _MAX_MESH_BYTES if file.name.endswith(_MESH_SUFFIXES) else _MAX_TEXT_BYTES
+        return stream.read(size).decode("utf-8", errors="replace")
 
 
 def _file_names(text: str) -> Iterator[str]:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.mesh_content import ContentKey, content_key
 from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, file_resolver
 from linkwright.geometry.mesh_parts import UNCOLORED, FileMaterial, MeshPart, Triangles, read_parts, read_simple_parts
 from linkwright.geometry.meshes import MAX_FILE_SIZE, read_mesh, unreadable
@@ -41,6 +42,12 @@ class MeshSurface:
     names: frozenset[str]
 
 
+_WITHOUT_OTHER_FILES = (".stl", ".dae")
+"""The formats in which a file without images contains all that is drawn."""
+_NAME_OF_IMAGE = b"init_from"
+"""The tag in COLLADA before the name of the file of an image."""
+
+
 class SurfaceLibrary:
     """A reader that reads each mesh file once, for one or several scenes.
 
@@ -52,6 +59,7 @@ class SurfaceLibrary:
     def __init__(self) -> None:
         self.colorless: dict[Path, LinkwrightError] = {}
         self._surfaces: dict[tuple[str, int, int, bool], list[MeshSurface]] = {}
+        self._by_content: dict[tuple[ContentKey, bool], list[MeshSurface]] = {}
 
     def read(self, path: Path, *, has_names: bool = False) -> list[MeshSurface]:
         """Return the surfaces of a mesh file.
@@ -70,12 +78,20 @@ class SurfaceLibrary:
             raise unreadable(path, error.strerror or str(error)) from None
         key = os.path.realpath(path), status.st_mtime_ns, status.st_size, has_names
         if key not in self._surfaces:
-            self._surfaces[key] = [
-                MeshSurface(Surface.of_triangles(part.triangles, _texture(part)), part.file_material, part.names)
-                for part in self._parts(path, status.st_size, has_names=has_names)
-                if len(part.triangles.indices)
-            ]
+            is_alone = path.suffix.lower() in _WITHOUT_OTHER_FILES
+            content = content_key(path, unless=_NAME_OF_IMAGE) if is_alone else None
+            known = None if content is None else self._by_content.get((content, has_names))
+            self._surfaces[key] = self._read(path, status.st_size, has_names=has_names) if known is None else known
+            if content is not None:
+                self._by_content[content, has_names] = self._surfaces[key]
         return self._surfaces[key]
+
+    def _read(self, path: Path, size: int, *, has_names: bool) -> list[MeshSurface]:
+        return [
+            MeshSurface(Surface.of_triangles(part.triangles, _texture(part)), part.file_material, part.names)
+            for part in self._parts(path, size, has_names=has_names)
+            if len(part.triangles.indices)
+        ]
 
     def _parts(self, path: Path, size: int, *, has_names: bool) -> list[MeshPart]:
         kind = path.suffix.lower()

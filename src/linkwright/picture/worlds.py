@@ -73,6 +73,7 @@ class _WorldReader:
         self.problems: list[Diagnostic] = []
         self._library = library
         self._finder = finder
+        self._files: dict[tuple[str, Path], Path | Missing] = {}
 
     def surfaces(self, placed_link: PlacedLink) -> Iterator[Surface]:
         """Yield the surfaces of a link's visuals in the link's frame."""
@@ -151,7 +152,10 @@ class _WorldReader:
 
     def _file(self, visual: Visual, address: str) -> Path | Missing:
         source = visual.element.source if visual.element is not None else None
-        return self._finder.file(address, Path.cwd() if source is None else Path(source.name).parent)
+        key = address, Path.cwd() if source is None else Path(source.name).parent
+        if key not in self._files:
+            self._files[key] = self._finder.file(*key)
+        return self._files[key]
 
     def _add_incomplete(self, link: str, reason: Phrase, hint: Phrase | None = None) -> None:
         message = phrase("link '{link}' is drawn incompletely: {reason}", link=link, reason=reason)

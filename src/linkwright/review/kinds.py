@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
@@ -11,15 +12,25 @@ from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import SubjectKind
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.cmake_files import CMAKE_FILE, compare_cmake_files
+from linkwright.review.files.build_contents import build_contents
+from linkwright.review.files.build_facts import BuildFacts
+from linkwright.review.files.cmake_files import CMAKE_FILE, compare_cmake_files, read_cmake_facts
 from linkwright.review.files.interfaces import compare_interfaces, interface_contents
-from linkwright.review.files.manifests import compare_manifests
+from linkwright.review.files.manifests import compare_manifests, manifest_contents
 from linkwright.review.files.maps import compare_maps
 from linkwright.review.files.meshes import compare_meshes, mesh_contents
 from linkwright.review.files.parameter_files import compare_parameter_files, parameter_contents
+from linkwright.review.files.python_settings import (
+    PYPROJECT,
+    SETUP_CFG,
+    compare_pyproject_files,
+    compare_setup_cfg_files,
+    read_pyproject,
+    read_setup_cfg,
+)
 from linkwright.review.files.rviz_files import compare_rviz_files, rviz_contents
 from linkwright.review.files.semantics import compare_semantics, semantic_contents
-from linkwright.review.files.setup_files import SETUP_FILE, compare_setup_files
+from linkwright.review.files.setup_files import SETUP_FILE, compare_setup_files, read_setup_facts
 from linkwright.review.files.worlds import compare_worlds, world_contents
 from linkwright.review.launches.contents import launch_contents
 from linkwright.review.launches.files import compare_launch_files
@@ -41,7 +52,10 @@ class KindRule:
         added: the sentence for an added file.
         removed: the sentence for a removed file.
         removal_reason: why it is breaking to remove or rename a file; None if it is not.
-        contents: the function that returns the contents of an added file in one line, or None if they are unknown.
+        contents: the function that returns the contents of an added or removed file in one line, or None if they are
+            unknown.
+        shows_removed: whether the line about a removed file has its contents.
+        needs_contents: whether an added or removed file without contents is not reported.
     """
 
     kind: SubjectKind
@@ -51,6 +65,13 @@ class KindRule:
     removed: Phrase
     removal_reason: Phrase | None = None
     contents: Callable[[Version, str], Phrase | None] | None = None
+    shows_removed: bool = False
+    needs_contents: bool = False
+
+
+def _build_contents(read: Callable[[Version, str], BuildFacts], version: Version, path: str) -> Phrase | None:
+    """Return what a build file installs."""
+    return build_contents(read(version, path))
 
 
 _RULES = (
@@ -96,20 +117,25 @@ _RULES = (
         phrase("package added"),
         phrase("package removed"),
         phrase("packages that depend on the package do not build or start"),
+        contents=manifest_contents,
     ),
-    KindRule(
-        SubjectKind.BUILD,
-        compare_cmake_files,
-        (CMAKE_FILE.lower(),),
-        phrase("build file added"),
-        phrase("build file removed"),
-    ),
-    KindRule(
-        SubjectKind.BUILD,
-        compare_setup_files,
-        (SETUP_FILE,),
-        phrase("build file added"),
-        phrase("build file removed"),
+    *(
+        KindRule(
+            SubjectKind.BUILD,
+            compare,
+            (name.lower(),),
+            phrase("build file added"),
+            phrase("build file removed"),
+            contents=partial(_build_contents, read),
+            shows_removed=True,
+            needs_contents=name in (SETUP_CFG, PYPROJECT),
+        )
+        for name, compare, read in (
+            (CMAKE_FILE, compare_cmake_files, read_cmake_facts),
+            (SETUP_FILE, compare_setup_files, read_setup_facts),
+            (SETUP_CFG, compare_setup_cfg_files, read_setup_cfg),
+            (PYPROJECT, compare_pyproject_files, read_pyproject),
+        )
     ),
     KindRule(
         SubjectKind.SEMANTICS,

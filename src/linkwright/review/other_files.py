@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Iterable, Mapping
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
+from linkwright.review.renamed_packages import moved_files
 from linkwright.review.versions import Version, Versions
 
 _HEAD_BYTES = 4096
@@ -18,8 +20,12 @@ _MIN_FILES = 4
 def file_states(versions: Versions, files: Iterable[ChangedFile]) -> dict[str, Phrase]:
     """Return what happened to files that are not in both versions under the same path, and robots of other programs."""
     states: dict[str, Phrase] = {}
+    files = list(files)
+    moved = dict(moved_files(versions, files))
     for file in files:
         state = _state(file)
+        if file.path in moved:
+            state = phrase("moved with the package from {folder}", folder=f"{moved[file.path] or '.'}/")
         version, path = (versions.new, file.new_path) if file.new_path else (versions.old, file.old_path)
         kind = None if path is None or file.is_submodule else _kind(version, path)
         if state is None:
@@ -74,12 +80,15 @@ def grouped_files(paths: Iterable[str], states: Mapping[str, Phrase]) -> list[tu
         state = states.get(path)
         folder = PurePosixPath(path).parent.as_posix()
         is_simple = state is not None and not state.arguments and folder != "."
-        groups.setdefault((folder if is_simple else path, str(state)), []).append(path)
+        key = folder if is_simple else path
+        if state is not None and "folder" in state.arguments:
+            key = ""  # all files of a package that moved
+        groups.setdefault((key, str(state)), []).append(path)
     result: list[tuple[str, int, Phrase | None]] = []
     for (folder, _), group in groups.items():
         state = states.get(group[0])
         if len(group) >= _MIN_FILES:
-            result.append((f"{folder}/", len(group), state))
+            result.append((f"{folder or posixpath.commonpath(group)}/", len(group), state))
         else:
             result += [(path, 1, state) for path in group]
     return result

@@ -102,6 +102,16 @@ def topics_of(element: Element) -> list[str]:
     return list(dict.fromkeys([*topics, *sensor_topics(element)]))
 
 
+def is_added(difference: Difference) -> bool:
+    """Return whether an element or value was added."""
+    return difference.kind == "added" or (difference.kind == "changed" and difference.old is None)
+
+
+def is_removed(difference: Difference) -> bool:
+    """Return whether an element or value was removed."""
+    return difference.kind == "removed" or (difference.kind == "changed" and difference.new is None)
+
+
 def added_topics(differences: Iterable[Difference]) -> frozenset[str]:
     """Return the topics of the plugins and sensors that a new version adds."""
     elements = (each.element for each in differences if each.kind == "added" or each.new is not None)
@@ -115,8 +125,7 @@ def missing_topics_reason(difference: Difference, added: frozenset[str]) -> Phra
         difference: the difference.
         added: the topics that other elements of the new version offer.
     """
-    is_removed = difference.kind == "removed" or (difference.kind == "changed" and difference.new is None)
-    if not is_removed or difference.element is None:
+    if not is_removed(difference) or difference.element is None:
         return None
     topics = [topic for topic in topics_of(difference.element) if topic not in added]
     if not topics:

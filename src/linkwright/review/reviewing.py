@@ -26,6 +26,7 @@ from linkwright.review.files.mesh_groups import grouped_meshes
 from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
+from linkwright.review.installed_paths import keeps_installed_path
 from linkwright.review.kinds import LAUNCH_HELPER, KindRule, may_help_launch_files, rule_of
 from linkwright.review.launches.formats import with_other_formats
 from linkwright.review.launches.helpers import makes_actions
@@ -33,6 +34,7 @@ from linkwright.review.notes import is_unreadable_as_before, missing_notes, unre
 from linkwright.review.other_files import file_states
 from linkwright.review.parts import compare_parts
 from linkwright.review.references import lost_references
+from linkwright.review.renamed_packages import with_moved_files, without_consequences
 from linkwright.review.robots.lone_robots import read_lone_robot, robot_text
 from linkwright.review.versions import Version, Versions
 
@@ -40,6 +42,7 @@ _Pair = tuple[KindRule, "str | None", "str | None"]
 """The rule for a file, its old path and its new path."""
 _MIN_EXPANDED = 4
 """The number of descriptions from which several processes are faster than one."""
+_MOVED = "moved from {folder}, installed at the same place"
 _EXPANDED = (SubjectKind.DESCRIPTION, SubjectKind.WORLD)
 """The kinds that include other files. Parts of them are not compared on their own."""
 
@@ -68,6 +71,7 @@ def review(
     Raises:
         LinkwrightError: REV103, there is no such package.
     """
+    versions = with_moved_files(versions)
     drawings = Drawings(images=with_images or with_scenes, scenes=with_scenes)
     result = _Reviewer(versions, _package_folders(versions, packages), drawings).run(workers)
     behavior = [compare_behavior(versions, path, seeds) for path in scenarios]
@@ -105,25 +109,24 @@ class _Reviewer:
             old_findings, new_findings = (result() for result in findings)
             all_subjects = self._with_other_subjects([result() for result in subjects])
         all_subjects = compare_parts(self._versions, self._changed_files, all_subjects, self._is_complete)
+        moved = {subject.path: subject.changes[0].sentence for subject in all_subjects if _is_only_moved(subject)}
+        all_subjects = [subject for subject in all_subjects if subject.path not in moved]
+        reported = _reported_paths(all_subjects)
+        all_subjects, notes = without_consequences(self._versions, all_subjects)
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
         untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
-        compared = {path for _, *paths in pairs for path in paths if path}
-        compared |= {subject.path for subject in all_subjects if not subject.is_empty}
-        parts = {
-            change.location.file
-            for subject in all_subjects
-            for change in subject.changes
-            if change.location is not None
-        } | {subject.path for subject in all_subjects if not subject.is_empty}
-        other_files = [file for file in self._changed_files if not {file.old_path, file.new_path} & (compared | parts)]
+        reported |= {path for rule, *paths in pairs if rule.kind is not SubjectKind.BUILD for path in paths if path}
+        other_files = [
+            file for file in self._changed_files if file.path in moved or not {file.old_path, file.new_path} & reported
+        ]
         return Review(
             self._versions.old.name,
             self._versions.new.name,
             grouped_meshes([subject for subject in all_subjects if not subject.is_empty and subject not in untouched]),
             [file.path for file in other_files],
-            file_states(self._versions, other_files),
+            {**file_states(self._versions, other_files), **moved},
             *compare_findings(self._versions, old_findings, new_findings, self._new_paths),
-            list(dict.fromkeys([*self._notes(), *missing_notes(all_subjects), *unreadable_notes(untouched)])),
+            list(dict.fromkeys([*notes, *self._notes(), *missing_notes(all_subjects), *unreadable_notes(untouched)])),
         )
 
     def _with_other_subjects(self, subjects: Sequence[Subject]) -> list[Subject]:
@@ -148,7 +151,7 @@ class _Reviewer:
 
     def _pairs(self) -> Iterator[_Pair]:
         """Yield the files to compare: the rule of the kind, the old path and the new path."""
-        affected_old, affected_new = (self._affected(version) for version in (self._versions.old, self._versions.new))
+        affected_old, affected_new = self._affected()
         paths: set[tuple[str | None, str | None]] = {(path, self._new_path(path)) for path in affected_old}
         paths |= {(self._old_path(path), path) for path in affected_new}
         for file in self._changed_files:
@@ -192,11 +195,14 @@ class _Reviewer:
             _package_folder(version, path) for version, path in sides if path
         )
 
-    def _affected(self, version: Version) -> set[str]:
-        """Return the complete descriptions and worlds of a version that changed files can affect."""
-        candidates = {path for path in self._targets[version.is_old] if self._is_in_scope(path)}
+    def _affected(self) -> Iterator[set[str]]:
+        """Yield the complete descriptions and worlds of both versions that changed files can affect."""
         changed = {path for file in self._versions.changed_files for path in (file.old_path, file.new_path) if path}
-        return TextFiles(version.root).affected(changed, candidates)
+        files = None
+        for version in (self._versions.old, self._versions.new):
+            files = TextFiles(version.root, files, changed)
+            candidates = {path for path in self._targets[version.is_old] if self._is_in_scope(path)}
+            yield files.affected(changed, candidates)
 
     def _new_path(self, old_path: str) -> str | None:
         path = self._new_paths.get(old_path, old_path)
@@ -258,15 +264,17 @@ def _compare(
     effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
     if old_path is None or new_path is None:
         if new_path is None:
-            version, change = versions.old, Change(rule.removed, effect, rule.removal_reason)
+            text = _text_with_contents(rule, rule.removed, versions.old, path) if rule.shows_removed else rule.removed
+            version, change = versions.old, Change(text, effect, rule.removal_reason)
         else:
-            version, change = versions.new, Change(_added_text(rule, versions.new, path))
+            version, change = versions.new, Change(_text_with_contents(rule, rule.added, versions.new, path))
+        if rule.needs_contents and "items" not in change.sentence.arguments:
+            return Subject(kind, path, old_path, new_path)
         changes, images = _lone_contents(version, kind, path, drawings)
         return Subject(kind, path, old_path, new_path, [change, *changes], images=images)
     pair = FilePair(versions, old_path, new_path, drawings)
     if old_path != new_path:
-        text = phrase("renamed from {path}", path=old_path)
-        pair.changes.append(Change(text, effect, rule.removal_reason))
+        pair.changes.append(_renaming(versions, rule, old_path, new_path))
     try:
         rule.compare(pair)
     except LinkwrightError as error:
@@ -290,13 +298,22 @@ def _compare(
     )
 
 
-def _added_text(rule: KindRule, version: Version, path: str) -> Phrase:
-    """Return the line about an added file, with its contents where they are known."""
+def _renaming(versions: Versions, rule: KindRule, old_path: str, new_path: str) -> Change:
+    """Return the change that a file has another path."""
+    old, new = PurePosixPath(old_path), PurePosixPath(new_path)
+    if old.name == new.name and rule.removal_reason is not None and keeps_installed_path(versions, old_path, new_path):
+        return Change(phrase("moved from {folder}, installed at the same place", folder=f"{old.parent}/"))
+    text = phrase("renamed from {path}", path=old_path)
+    return Change(text, Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING, rule.removal_reason)
+
+
+def _text_with_contents(rule: KindRule, text: Phrase, version: Version, path: str) -> Phrase:
+    """Return the line about an added or removed file, with its contents where they are known."""
     try:
         contents = None if rule.contents is None else rule.contents(version, path)
     except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError, MemoryError):
         contents = None
-    return rule.added if contents is None else phrase("{change}: {items}", change=rule.added, items=contents)
+    return text if contents is None else phrase("{change}: {items}", change=text, items=contents)
 
 
 def _lone_contents(
@@ -311,6 +328,19 @@ def _lone_contents(
     model, robot = found
     images = lone_images(model, robot, is_old=version.is_old) if drawings.images else []
     return [Change(robot_text(robot))], images
+
+
+def _is_only_moved(subject: Subject) -> bool:
+    """Return whether a file is the same at another path, and installed where it was."""
+    templates = [change.sentence.template for change in subject.changes]
+    return templates == [_MOVED] and not subject.figures and not subject.problems
+
+
+def _reported_paths(subjects: Sequence[Subject]) -> set[str]:
+    """Return the paths of subjects with changes, and of the files in which these are."""
+    changes = (change for subject in subjects for change in subject.changes)
+    files = {change.location.file for change in changes if change.location is not None}
+    return files | {subject.path for subject in subjects if not subject.is_empty}
 
 
 @contextmanager

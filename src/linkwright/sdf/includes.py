@@ -78,6 +78,7 @@ class _Resolver:
         self.entities: dict[int, Entity | None] = {}
         self._finder = finder
         self._readings: dict[Path, Reading | None] = {}
+        self._paths: dict[tuple[str, Path], Path | Missing] = {}
         self._count = 0
 
     def world(self, world: World, path: Path) -> World:
@@ -147,7 +148,7 @@ class _Resolver:
         """
         if not include.uri:
             return None  # The reader has reported the missing address.
-        model_path = self._finder.model(include.uri, path.parent)
+        model_path = self._path(include.uri, path.parent)
         if isinstance(model_path, Missing):
             message = phrase("'{uri}' is left out: {reason}", uri=include.uri, reason=model_path.reason)
             self._report("SDF160", message, include, model_path.hint, model_path.severity)
@@ -179,6 +180,13 @@ class _Resolver:
             None,
         )
         return None
+
+    def _path(self, uri: str, folder: Path) -> Path | Missing:
+        """Return the file of a model, which is searched for once."""
+        key = uri, folder
+        if key not in self._paths:
+            self._paths[key] = self._finder.model(uri, folder)
+        return self._paths[key]
 
     def _check_name(self, entity: Entity | None, include: Include, names: set[str]) -> None:
         """Report an included model whose name is in `names`, and add its name to `names`."""

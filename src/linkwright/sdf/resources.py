@@ -148,6 +148,11 @@ class ResourceFinder:
                         folders.setdefault(subfolder.name, subfolder)
         return folders
 
+    @cached_property
+    def _suggested_models(self) -> tuple[str, ...]:
+        """The names of the models when the first one was not found."""
+        return tuple(self.models())
+
     def worlds(self) -> dict[str, Path]:
         """Return the files of all worlds on the search path, by name without suffix.
 
@@ -252,7 +257,7 @@ class ResourceFinder:
                 reason,
                 phrase("the folder that contains '{path}' is named '{name}'", path=path_in_model, name=folder_name),
             )
-        suggested_name = find_misspelled(name, self.models()) if len(name) >= _MIN_NAME_LENGTH else None
+        suggested_name = find_misspelled(name, self._suggested_models) if len(name) >= _MIN_NAME_LENGTH else None
         if suggested_name is not None:
             return Missing(reason, did_you_mean(name, [suggested_name]))
         hint = phrase("add the folder that contains '{path}' to {variable}", path=name, variable=SEARCH_VARIABLES[0])

@@ -1,36 +1,36 @@
 import { spawn } from "node:child_process";
-import { type Command, environment, extended } from "./command.js";
+import { appendArguments, type Command, createEnvironment } from "./command.js";
 
-const LIMIT_MS = 30_000;
+const TIMEOUT_MS = 30_000;
 
 /**
  * Return why a command cannot run the language server; undefined if it can.
  *
- * Starts the server without input, so that it ends at once: with status 0 if Linkwright and its extra `lsp` are there.
+ * The server is started without input, so it ends at once, with status 0 if Linkwright and its extra `lsp` are installed.
  *
- * @param cwd the working directory; by default that of this process.
+ * @param cwd the working directory; undefined means that of this process.
  */
 export function probe(command: Command, cwd: string | undefined): Promise<string | undefined> {
-  const { program, args } = extended(command, "lsp");
+  const { program, args } = appendArguments(command, "lsp");
   return new Promise((resolve) => {
     const child = spawn(program, args, {
       cwd,
-      env: environment(),
+      env: createEnvironment(),
       stdio: ["ignore", "ignore", "pipe"],
-      timeout: LIMIT_MS,
+      timeout: TIMEOUT_MS,
     });
-    let printed = "";
-    child.stderr.setEncoding("utf8").on("data", (text: string) => (printed += text));
+    let errorOutput = "";
+    child.stderr.setEncoding("utf8").on("data", (text: string) => (errorOutput += text));
     child.on("error", (error) => resolve(error.message));
     child.on("close", (status, signal) => {
       if (status === 0) resolve(undefined);
-      else resolve(told(printed) ?? `it ended with ${signal ?? `status ${status ?? "unknown"}`}`);
+      else resolve(extractReason(errorOutput) ?? `it ended with ${signal ?? `status ${status ?? "unknown"}`}`);
     });
   });
 }
 
-/** Return the line of an error output that says what is wrong. */
-function told(printed: string): string | undefined {
-  const lines = printed.split("\n").map((line) => line.trim());
+/** Return the line of an error output that names the error: the first with "error", else the last; undefined if empty. */
+function extractReason(errorOutput: string): string | undefined {
+  const lines = errorOutput.split("\n").map((line) => line.trim());
   return lines.find((line) => line.startsWith("error")) ?? lines.findLast((line) => line !== "");
 }

@@ -1,32 +1,32 @@
 import type { FileSystemWatcher, LogOutputChannel } from "vscode";
 import { LanguageClient, type StaticFeature } from "vscode-languageclient/node";
-import { type Command, environment, extended } from "../server/command.js";
-import { SHOW_REFERENCES } from "./references.js";
+import { appendArguments, type Command, createEnvironment } from "../server/command.js";
 import { DOCUMENTS } from "../server/documents.js";
+import { SHOW_REFERENCES } from "./references.js";
 
-/** What clients share. */
-export interface Shared {
+/** The objects that all clients of the window share. */
+export interface SharedResources {
   readonly output: LogOutputChannel;
-  /** Tells of changes on the disk. */
+  /** Reports changes of files on the disk. */
   readonly watcher: FileSystemWatcher;
 }
 
-/** Return a client of the language server that a command runs. It is not started. */
-export function makeClient(command: Command, cwd: string | undefined, { output, watcher }: Shared): LanguageClient {
-  const { program, args } = extended(command, "lsp");
-  const options = { env: environment(), ...(cwd === undefined ? {} : { cwd }) };
+/** Return a client, not yet started, of the language server that a command runs. */
+export function createClient(command: Command, cwd: string | undefined, { output, watcher }: SharedResources): LanguageClient {
+  const { program, args } = appendArguments(command, "lsp");
+  const options = { env: createEnvironment(), ...(cwd === undefined ? {} : { cwd }) };
   const client = new LanguageClient(
     "linkwright", // the prefix of the setting linkwright.trace.server
     "Linkwright",
     { command: program, args: [...args], options },
     { documentSelector: DOCUMENTS, outputChannel: output, synchronize: { fileEvents: watcher } },
   );
-  client.registerFeature(lensCommands);
+  client.registerFeature(announceLensCommands);
   return client;
 }
 
-/** Announces the commands of code lenses, which the server offers to clients that have them. */
-const lensCommands: StaticFeature = {
+/** Tells the server that this client has the commands of its code lenses; without that, it offers no such lenses. */
+const announceLensCommands: StaticFeature = {
   fillClientCapabilities: (capabilities) => {
     capabilities.experimental = { commands: [SHOW_REFERENCES, "linkwright.openInPage"] };
   },

@@ -1,7 +1,7 @@
 import { commands, type ExtensionContext, languages, type TextDocument, Uri, window, workspace } from "vscode";
-import { DOCUMENTS, OF_ROBOTS, WATCHED } from "../server/documents.js";
+import { DESCRIPTION_DOCUMENTS, DOCUMENTS, WATCHED_PATTERN } from "../server/documents.js";
 import { offerInstallation } from "./installation.js";
-import { selectedPythonChanged } from "./python.js";
+import { getSelectedPythonEvent } from "./python.js";
 import { SHOW_REFERENCES, showReferences } from "./references.js";
 import { showRobot } from "./robot.js";
 import { hasRosPackage } from "./ros.js";
@@ -10,25 +10,25 @@ import { INTERPRETER } from "./settings.js";
 
 let server: Server | undefined;
 
-/** Called by VS Code with the first description, in a workspace with a package, or with the first command. */
+/** Called by VS Code at the first activation event of `package.json`. */
 export function activate(context: ExtensionContext): void {
   const output = window.createOutputChannel("Linkwright", { log: true });
-  const watcher = workspace.createFileSystemWatcher(WATCHED);
-  const running = new Server({ output, watcher }, (search) => {
-    void offerInstallation(search, () => void running.restart());
+  const watcher = workspace.createFileSystemWatcher(WATCHED_PATTERN);
+  const languageServer = new Server({ output, watcher }, (search) => {
+    void offerInstallation(search, () => void languageServer.restart());
   });
-  server = running;
+  server = languageServer;
   context.subscriptions.push(
     output,
     watcher,
     commands.registerCommand("linkwright.openInPage", (uri?: Uri | string) =>
-      showRobot(running, typeof uri === "string" ? Uri.parse(uri, true) : uri), // a code lens passes a text
+      showRobot(languageServer, typeof uri === "string" ? Uri.parse(uri, true) : uri), // a code lens passes a string
     ),
     commands.registerCommand(SHOW_REFERENCES, showReferences),
-    commands.registerCommand("linkwright.restartServer", () => running.restart()),
+    commands.registerCommand("linkwright.restartServer", () => languageServer.restart()),
     commands.registerCommand("linkwright.showOutput", () => output.show()),
   );
-  startWithFirstDocument(running, context);
+  startWithFirstDocument(languageServer, context);
 }
 
 /** Called by VS Code when the window closes. */
@@ -37,32 +37,32 @@ export function deactivate(): Promise<void> | undefined {
 }
 
 /**
- * Start the server with the first description, or with the first other file of a ROS package. Without this distinction,
- * every YAML file of a web program would ask its author to install Linkwright.
+ * Start the server when the first description is opened or, in a workspace with a ROS package, the first other document of
+ * the server. Without this distinction, the YAML file of a web program would make the extension offer an installation.
  */
-function startWithFirstDocument(running: Server, context: ExtensionContext): void {
+function startWithFirstDocument(languageServer: Server, context: ExtensionContext): void {
   let isStarted = false;
   const start = async (): Promise<void> => {
     if (isStarted) return;
     isStarted = true;
-    await running.start();
-    await followPython(running, context);
+    await languageServer.start();
+    await followPython(languageServer, context);
   };
-  const opened = async (document: TextDocument): Promise<void> => {
+  const onDocumentOpened = async (document: TextDocument): Promise<void> => {
     if (isStarted || languages.match(DOCUMENTS, document) === 0) return;
-    if (languages.match(OF_ROBOTS, document) > 0 || (await hasRosPackage())) await start();
+    if (languages.match(DESCRIPTION_DOCUMENTS, document) > 0 || (await hasRosPackage())) await start();
   };
-  context.subscriptions.push(workspace.onDidOpenTextDocument((document) => void opened(document)));
-  workspace.textDocuments.forEach((document) => void opened(document));
+  context.subscriptions.push(workspace.onDidOpenTextDocument((document) => void onDocumentOpened(document)));
+  workspace.textDocuments.forEach((document) => void onDocumentOpened(document));
 }
 
-/** Use another Linkwright when the user chooses another Python. */
-async function followPython(running: Server, context: ExtensionContext): Promise<void> {
-  const selected = await selectedPythonChanged();
-  if (selected !== undefined) context.subscriptions.push(selected(() => void running.refresh()));
+/** Search for Linkwright again when the user selects another Python. */
+async function followPython(languageServer: Server, context: ExtensionContext): Promise<void> {
+  const onPythonSelected = await getSelectedPythonEvent();
+  if (onPythonSelected !== undefined) context.subscriptions.push(onPythonSelected(() => void languageServer.refresh()));
   context.subscriptions.push(
-    workspace.onDidChangeConfiguration((changed) => {
-      if (changed.affectsConfiguration(INTERPRETER)) void running.restart();
+    workspace.onDidChangeConfiguration((event) => {
+      if (event.affectsConfiguration(INTERPRETER)) void languageServer.restart();
     }),
   );
 }

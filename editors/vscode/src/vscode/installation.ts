@@ -1,50 +1,51 @@
 import { commands, ProcessExecution, Task, TaskRevealKind, tasks, TaskScope, window } from "vscode";
-import { shown } from "../server/command.js";
-import { installable, type Search } from "../server/finder.js";
+import { formatCommand } from "../server/command.js";
+import { findInstallTarget, type Search } from "../server/finder.js";
 import { installCommand } from "../server/requirement.js";
-import { INTERPRETER, packageSource } from "./settings.js";
+import { INTERPRETER, readPackageSource } from "./settings.js";
 
 const INSTALL = "Install";
-const CHOOSE = "Choose the Python";
-const OUTPUT = "Show the Output";
+const CHOOSE_PYTHON = "Choose the Python";
+const SHOW_OUTPUT = "Show the Output";
 
-/** Tell the user that there is no language server, and offer to install it; `installed` is called afterwards. */
-export async function offerInstallation(search: Search, installed: () => void): Promise<void> {
-  const python = installable(search);
+/** Tell the user that no language server was found, and offer to install it; `onInstalled` is called after an installation. */
+export async function offerInstallation(search: Search, onInstalled: () => void): Promise<void> {
+  const python = findInstallTarget(search);
+  const source = readPackageSource();
   const answer =
     python === undefined
       ? await window.showWarningMessage(
           "Linkwright's language server was not found. Make a virtual environment .venv in the workspace, or choose a Python.",
-          CHOOSE,
-          OUTPUT,
+          CHOOSE_PYTHON,
+          SHOW_OUTPUT,
         )
       : await window.showWarningMessage(
-          `Linkwright's language server does not run in ${python}. ${sourceOf(packageSource(), shown(installCommand(python, packageSource())))}`,
+          `Linkwright's language server does not run in ${python}. ${formatOffer(source, formatCommand(installCommand(python, source)))}`,
           INSTALL,
-          CHOOSE,
-          OUTPUT,
+          CHOOSE_PYTHON,
+          SHOW_OUTPUT,
         );
-  if (answer === INSTALL && python !== undefined) await install(python, installed);
-  if (answer === CHOOSE) await commands.executeCommand("workbench.action.openSettings", INTERPRETER);
-  if (answer === OUTPUT) await commands.executeCommand("linkwright.showOutput");
+  if (answer === INSTALL && python !== undefined) await install(python, onInstalled);
+  if (answer === CHOOSE_PYTHON) await commands.executeCommand("workbench.action.openSettings", INTERPRETER);
+  if (answer === SHOW_OUTPUT) await commands.executeCommand("linkwright.showOutput");
 }
 
-function sourceOf(source: string, command: string): string {
+function formatOffer(source: string, command: string): string {
   return source === ""
     ? `Install it with "${command}"? No version is on a public package index yet: this needs an index that has Linkwright, or the path of a checkout in the setting linkwright.package.`
     : `Install it with "${command}"?`;
 }
 
-/** Run pip in a terminal. A task needs no quoting for a shell, and tells when it has ended. */
-async function install(python: string, installed: () => void): Promise<void> {
-  const { program, args } = installCommand(python, packageSource());
+/** Run pip in a terminal. It runs as a task, which needs no quoting for a shell and has an event for its end. */
+async function install(python: string, onInstalled: () => void): Promise<void> {
+  const { program, args } = installCommand(python, readPackageSource());
   const execution = new ProcessExecution(program, [...args]);
   const task = new Task({ type: "process" }, TaskScope.Workspace, "Install the language server", "Linkwright", execution);
   task.presentationOptions = { reveal: TaskRevealKind.Always };
-  const running = await tasks.executeTask(task);
-  const listener = tasks.onDidEndTaskProcess(({ execution: ended, exitCode }) => {
-    if (ended !== running) return;
+  const taskExecution = await tasks.executeTask(task);
+  const listener = tasks.onDidEndTaskProcess(({ execution: endedExecution, exitCode }) => {
+    if (endedExecution !== taskExecution) return;
     listener.dispose();
-    if (exitCode === 0) installed();
+    if (exitCode === 0) onInstalled();
   });
 }

@@ -3,31 +3,31 @@ import { homedir, platform } from "node:os";
 import { delimiter, join } from "node:path";
 import { workspace } from "vscode";
 import type { Places } from "../server/candidates.js";
-import { selectedPython } from "./python.js";
-import { interpreter } from "./settings.js";
+import { getSelectedPython } from "./python.js";
+import { readInterpreter } from "./settings.js";
 
 const IS_WINDOWS = platform() === "win32";
 
-/** Return the places of this machine and window. */
-export function places(): Places {
+/** Return the places to search on this machine and in this window. */
+export function createPlaces(): Places {
   return {
-    interpreter: interpreter(),
-    folders: folders(),
+    interpreter: readInterpreter(),
+    folders: listFolders(),
     home: homedir(),
     isWindows: IS_WINDOWS,
     exists: existsSync,
-    selectedPython,
-    onPath,
+    getSelectedPython,
+    findOnPath,
   };
 }
 
 /** Return the paths of the workspace's folders on the disk. */
-export function folders(): string[] {
-  const all = workspace.workspaceFolders ?? [];
-  return all.filter(({ uri }) => uri.scheme === "file").map(({ uri }) => uri.fsPath);
+export function listFolders(): string[] {
+  const workspaceFolders = workspace.workspaceFolders ?? [];
+  return workspaceFolders.filter(({ uri }) => uri.scheme === "file").map(({ uri }) => uri.fsPath);
 }
 
-function onPath(program: string): string | undefined {
+function findOnPath(program: string): string | undefined {
   const name = IS_WINDOWS ? `${program}.exe` : program;
   const paths = (process.env["PATH"] ?? "").split(delimiter).filter((folder) => folder !== "");
   return paths.map((folder) => join(folder, name)).find(existsSync);

@@ -1,6 +1,6 @@
 import { type Event, extensions, type Uri } from "vscode";
 
-/** The part of the Python extension's interface that is used here. */
+/** The part of the Python extension's API that is used here. */
 interface PythonApi {
   readonly environments: {
     readonly onDidChangeActiveEnvironmentPath: Event<unknown>;
@@ -9,20 +9,20 @@ interface PythonApi {
   };
 }
 
-/** Return the interface of the Python extension; undefined if it is not installed or has another interface. */
-async function api(): Promise<PythonApi | undefined> {
+/** Return the API of the Python extension; undefined if the extension is not installed or has another API. */
+async function getPythonApi(): Promise<PythonApi | undefined> {
   const exports = (await extensions.getExtension<Partial<PythonApi> | undefined>("ms-python.python")?.activate());
   return exports?.environments === undefined ? undefined : { environments: exports.environments };
 }
 
-/** Return the interpreter that is selected in the Python extension. */
-export async function selectedPython(): Promise<string | undefined> {
-  const environments = (await api())?.environments;
+/** Return the interpreter selected in the Python extension; undefined if the extension is not installed. */
+export async function getSelectedPython(): Promise<string | undefined> {
+  const environments = (await getPythonApi())?.environments;
   const environment = await environments?.resolveEnvironment(environments.getActiveEnvironmentPath());
   return environment?.executable.uri?.fsPath;
 }
 
-/** Return the event of another selected interpreter, if the Python extension is installed. */
-export async function selectedPythonChanged(): Promise<Event<unknown> | undefined> {
-  return (await api())?.environments.onDidChangeActiveEnvironmentPath;
+/** Return the event that fires when another interpreter is selected; undefined if the Python extension is not installed. */
+export async function getSelectedPythonEvent(): Promise<Event<unknown> | undefined> {
+  return (await getPythonApi())?.environments.onDidChangeActiveEnvironmentPath;
 }

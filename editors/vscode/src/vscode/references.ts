@@ -13,16 +13,24 @@ interface ProtocolLocation {
   readonly range: { readonly start: ProtocolPosition; readonly end: ProtocolPosition };
 }
 
-/** Show locations of the language server in VS Code's list of references. */
-export async function showReferences(uri: string, place: ProtocolPosition, locations: readonly ProtocolLocation[]): Promise<void> {
+/** Show locations from the language server in VS Code's list of references. */
+export async function showReferences(
+  uri: string,
+  position: ProtocolPosition,
+  locations: readonly ProtocolLocation[],
+): Promise<void> {
   await commands.executeCommand(
     "editor.action.showReferences",
     Uri.parse(uri, true),
-    position(place),
-    locations.map(({ uri: file, range }) => new Location(Uri.parse(file, true), new Range(position(range.start), position(range.end)))),
+    toPosition(position),
+    locations.map(({ uri: file, range }) => new Location(Uri.parse(file, true), toRange(range))),
   );
 }
 
-function position({ line, character }: ProtocolPosition): Position {
+function toRange({ start, end }: ProtocolLocation["range"]): Range {
+  return new Range(toPosition(start), toPosition(end));
+}
+
+function toPosition({ line, character }: ProtocolPosition): Position {
   return new Position(line, character);
 }

@@ -1,10 +1,10 @@
 import { ExecuteCommandRequest, type LanguageClient } from "vscode-languageclient/node";
 import type { Candidate } from "../server/candidates.js";
-import { extended, shown } from "../server/command.js";
+import { appendArguments, formatCommand } from "../server/command.js";
 import { findServer, type Search } from "../server/finder.js";
 import { probe } from "../server/probe.js";
-import { makeClient, type Shared } from "./client.js";
-import { folders, places } from "./places.js";
+import { createClient, type SharedResources } from "./client.js";
+import { createPlaces, listFolders } from "./places.js";
 
 /** The command of the language server that serves the page of a robot. */
 const SHOW_ROBOT = "linkwright.showRobot";
@@ -13,73 +13,74 @@ const SHOW_ROBOT = "linkwright.showRobot";
 export class Server {
   private client: LanguageClient | undefined;
   private candidate: Candidate | undefined;
-  private work: Promise<unknown> = Promise.resolve();
+  private lastOperation: Promise<unknown> = Promise.resolve();
 
-  /** @param notFound is called with a search that found nothing. */
+  /** @param onNotFound called with a search that found no server. */
   constructor(
-    private readonly shared: Shared,
-    private readonly notFound: (search: Search) => void,
+    private readonly resources: SharedResources,
+    private readonly onNotFound: (search: Search) => void,
   ) {}
 
-  /** Start the server unless it runs; return the command that runs Linkwright, if there is one. */
+  /** Start the server unless it runs; return its candidate, or undefined if no server was found. */
   start(): Promise<Candidate | undefined> {
-    return this.inTurn(async () => {
-      if (this.candidate === undefined) await this.startFound(await this.search(this.notFound));
+    return this.runInTurn(async () => {
+      if (this.candidate === undefined) await this.startCandidate(await this.search(this.onNotFound));
       return this.candidate;
     });
   }
 
   /**
-   * Return the address of the page of a robot, which follows the texts and the cursor of VS Code.
+   * Return the address of a robot's page, which follows the documents and the cursor of VS Code.
    *
-   * @returns undefined if there is no server, which the user has been told.
+   * @returns undefined if no server was found; `onNotFound` was called.
    */
-  async robotAddress(uri: string): Promise<string | undefined> {
+  async requestRobotAddress(uri: string): Promise<string | undefined> {
     await this.start();
     return this.client?.sendRequest(ExecuteCommandRequest.type, { command: SHOW_ROBOT, arguments: [uri, false] }) as
       | Promise<string>
       | undefined;
   }
 
-  /** Search for Linkwright again, and start its server anew. */
+  /** Stop the server, search for Linkwright again, and start the server that was found. */
   restart(): Promise<void> {
-    return this.inTurn(async () => {
+    return this.runInTurn(async () => {
       await this.stopNow();
-      await this.startFound(await this.search(this.notFound));
+      await this.startCandidate(await this.search(this.onNotFound));
     });
   }
 
-  /** Search for Linkwright again; if another one is found, start its server instead. */
+  /** Search for Linkwright again; if the search finds another one, replace the server by that of the other one. */
   refresh(): Promise<void> {
-    return this.inTurn(async () => {
-      const found = await this.search(() => undefined);
-      if (found === undefined || (this.candidate && shown(found.command) === shown(this.candidate.command))) return;
+    return this.runInTurn(async () => {
+      const candidate = await this.search(() => undefined);
+      if (candidate === undefined) return;
+      if (this.candidate !== undefined && formatCandidate(candidate) === formatCandidate(this.candidate)) return;
       await this.stopNow();
-      await this.startFound(found);
+      await this.startCandidate(candidate);
     });
   }
 
   /** Stop the server. */
   stop(): Promise<void> {
-    return this.inTurn(() => this.stopNow());
+    return this.runInTurn(() => this.stopNow());
   }
 
-  private async search(notFound: (search: Search) => void): Promise<Candidate | undefined> {
-    const search = await findServer(places(), (command) => probe(command, folders()[0]));
-    for (const { candidate, reason } of search.failures) this.shared.output.warn(`${lineOf(candidate)}: ${reason}`);
-    if (search.found === undefined) notFound(search);
-    return search.found;
+  private async search(onNotFound: (search: Search) => void): Promise<Candidate | undefined> {
+    const search = await findServer(createPlaces(), (command) => probe(command, listFolders()[0]));
+    for (const { candidate, reason } of search.failures) this.resources.output.warn(`${formatCandidate(candidate)}: ${reason}`);
+    if (search.candidate === undefined) onNotFound(search);
+    return search.candidate;
   }
 
-  private async startFound(found: Candidate | undefined): Promise<void> {
-    if (found === undefined) return;
-    this.shared.output.info(lineOf(found));
-    this.candidate = found;
-    this.client = makeClient(found.command, folders()[0], this.shared);
+  private async startCandidate(candidate: Candidate | undefined): Promise<void> {
+    if (candidate === undefined) return;
+    this.resources.output.info(formatCandidate(candidate));
+    this.candidate = candidate;
+    this.client = createClient(candidate.command, listFolders()[0], this.resources);
     try {
       await this.client.start();
     } catch (error) {
-      this.shared.output.error(`${lineOf(found)}: ${String(error)}`); // the client has shown it, too
+      this.resources.output.error(`${formatCandidate(candidate)}: ${String(error)}`); // the client has shown the error to the user
     }
   }
 
@@ -90,18 +91,18 @@ export class Server {
     try {
       await client?.dispose();
     } catch (error) {
-      this.shared.output.warn(String(error)); // it had not started, or had ended by itself
+      this.resources.output.warn(String(error)); // the server had not started, or had ended by itself
     }
   }
 
-  /** Run work after what was asked before, so that no two clients start at once. */
-  private inTurn<T>(work: () => Promise<T>): Promise<T> {
-    const result = this.work.then(work);
-    this.work = result.catch(() => undefined);
+  /** Run an operation after the earlier ones have ended, so that two clients never start at once. */
+  private runInTurn<T>(operation: () => Promise<T>): Promise<T> {
+    const result = this.lastOperation.then(operation);
+    this.lastOperation = result.catch(() => undefined);
     return result;
   }
 }
 
-function lineOf({ command }: Candidate): string {
-  return shown(extended(command, "lsp"));
+function formatCandidate({ command }: Candidate): string {
+  return formatCommand(appendArguments(command, "lsp"));
 }

@@ -3,11 +3,11 @@ import { workspace } from "vscode";
 export const INTERPRETER = "linkwright.interpreter";
 
 /** Return the setting `linkwright.interpreter`. */
-export function interpreter(): string {
+export function readInterpreter(): string {
   return workspace.getConfiguration().get(INTERPRETER, "");
 }
 
 /** Return the setting `linkwright.package`. */
-export function packageSource(): string {
+export function readPackageSource(): string {
   return workspace.getConfiguration().get("linkwright.package", "");
 }

@@ -1,7 +1,7 @@
 import { button, coalesce, h } from "../../dom";
 import { icon, type IconName } from "../../icons";
 import type { ComparedItem, ComparedPlace } from "../../protocol";
-import { groupDifferences, MARK_COLORS, usedMarks, type DifferenceGroup } from "../../state/comparison";
+import { groupDifferences, MARK_COLORS, listUsedMarks, type DifferenceGroup } from "../../state/comparison";
 import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -20,7 +20,7 @@ export class ComparisonPanel implements Panel {
   private readonly oldSwitch = this.switchOf("old", strings.comparison.old, strings.comparison.showOld);
   private readonly new = this.switchOf("new", strings.comparison.new, strings.comparison.showNew);
   private readonly alpha = h("input", { class: "slider", title: strings.comparison.alpha, aria: { label: strings.comparison.alpha } });
-  private readonly marks = createTickBox(strings.comparison.marks, strings.comparison.marksHint, (isTicked) => (this.session.comparison.marks = isTicked));
+  private readonly marks = createTickBox(strings.comparison.marks, strings.comparison.marksHint, (isTicked) => (this.session.comparison.areMarksShown = isTicked));
   private readonly legend = h("ul", { class: "comparison-legend" });
   private readonly count = h("p", { class: "comparison-count", role: "status" });
   private readonly list = h("div", { class: "comparison-list", role: "list", aria: { label: strings.comparison.list } });
@@ -83,7 +83,7 @@ export class ComparisonPanel implements Panel {
       if (file) file.textContent = shortenPlace(label);
       tick.title = `${tick === this.oldSwitch ? texts.showOld : texts.showNew}\n${label}`;
     }
-    const marks = usedMarks([compared.new, compared.old]);
+    const marks = listUsedMarks([compared.new, compared.old]);
     this.legend.replaceChildren(
       ...marks.map((mark) => {
         const swatch = h("span", { class: "comparison-swatch" });
@@ -111,7 +111,7 @@ export class ComparisonPanel implements Panel {
     this.alpha.disabled = !this.oldSwitch.box.checked;
     this.alpha.value = String(alpha);
     this.alpha.style.setProperty("--part", String(alpha));
-    this.marks.box.checked = this.session.comparison.marks;
+    this.marks.box.checked = this.session.comparison.areMarksShown;
   }
 
   /** Marks the group of the selected element. */
@@ -152,22 +152,22 @@ export class ComparisonPanel implements Panel {
     return group;
   }
 
-  private createItem(createItem: ComparedItem, choose: () => void): HTMLElement {
+  private createItem(item: ComparedItem, choose: () => void): HTMLElement {
     const texts = strings.comparison;
-    const textOrNothing = (text: string | null): string => text ?? texts.nothing;
+    const formatValue = (text: string | null): string => text ?? texts.nothing;
     const line =
-      createItem.property === ""
+      item.property === ""
         ? null
         : h(
             "div",
             { class: "difference-values" },
-            icon(KIND_ICONS[createItem.kind]),
-            h("span", { class: "difference-property" }, createItem.property),
-            h("span", { class: "difference-value" }, h("del", {}, textOrNothing(createItem.old)), " → ", h("ins", {}, [textOrNothing(createItem.new), createItem.unit].filter((part) => part !== "").join(" "))),
+            icon(KIND_ICONS[item.kind]),
+            h("span", { class: "difference-property" }, item.property),
+            h("span", { class: "difference-value" }, h("del", {}, formatValue(item.old)), " → ", h("ins", {}, [formatValue(item.new), item.unit].filter((part) => part !== "").join(" "))),
           );
     line?.addEventListener("click", choose);
-    const places = [this.createPlace(createItem.old_place, "old"), this.createPlace(createItem.new_place, "new")].filter((place) => place !== null);
-    return h("div", { class: "difference" }, line, places.length > 0 ? h("div", { class: "difference-places" }, ...places) : null);
+    const placeElements = [this.createPlace(item.old_place, "old"), this.createPlace(item.new_place, "new")].filter((element) => element !== null);
+    return h("div", { class: "difference" }, line, placeElements.length > 0 ? h("div", { class: "difference-places" }, ...placeElements) : null);
   }
 
   /** Returns the place in the text: a link into the Source panel if that can show it. */

@@ -8,7 +8,7 @@ import { strings } from "../../strings";
 import { PanZoom } from "../../widgets/pan-zoom";
 import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
-import { modelOfCurrentRobot } from "./current-model";
+import { getCurrentModel } from "./current-model";
 
 const SVG = "http://www.w3.org/2000/svg";
 const FONT = "12px Inter, 'Segoe UI', 'Noto Sans', sans-serif";
@@ -78,7 +78,7 @@ export class DiagramPanel implements Panel {
   }
 
   private update(): void {
-    const model = modelOfCurrentRobot(this.session);
+    const model = getCurrentModel(this.session);
     this.empty.hidden = model !== undefined;
     this.canvas.hidden = model === undefined;
     if (!model) return;

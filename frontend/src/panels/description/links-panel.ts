@@ -2,13 +2,13 @@ import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { DescriptionModel, ElementName } from "../../state/description-model";
 import { isSameElement } from "../../state/element-focus";
-import { visibleRows, LinkTreeState, type TreeRow } from "../../state/link-tree";
+import { listVisibleRows, LinkTreeState, type TreeRow } from "../../state/link-tree";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { VirtualRows } from "../../widgets/virtual-rows";
 import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
-import { modelOfCurrentRobot } from "./current-model";
+import { getCurrentModel } from "./current-model";
 
 const ROW_PX = 23;
 const FLASH_MS = 1600;
@@ -59,14 +59,14 @@ export class LinksPanel implements Panel {
   }
 
   private update(): void {
-    this.model = modelOfCurrentRobot(this.session);
+    this.model = getCurrentModel(this.session);
     const { model } = this;
     this.empty.hidden = model !== undefined;
     this.rows.element.hidden = this.search.hidden = model === undefined;
     if (!model) return;
     const { links, joints } = model;
     this.count.textContent = strings.description.count(links.size, joints.size);
-    this.shownRows = visibleRows(model, this.tree, this.search.value);
+    this.shownRows = listVisibleRows(model, this.tree, this.search.value);
     const maxDepth = this.shownRows.reduce((maximum, { depth }) => Math.max(maximum, depth), 1);
     this.rows.element.style.setProperty("--deepest", String(maxDepth));
     this.rows.refresh(this.shownRows.length);
@@ -74,14 +74,14 @@ export class LinksPanel implements Panel {
 
   /** Unfolds and reveals the row of the newly selected element. */
   private showFocus(): void {
-    const link = this.focusedLink();
+    const link = this.getFocusedLink();
     if (this.model && link !== undefined && this.search.value === "") this.tree.reveal(this.model, link);
     this.update();
     const index = this.shownRows.findIndex((row) => row.link.name === link);
     if (index >= 0) this.rows.reveal(index);
   }
 
-  private focusedLink(): string | undefined {
+  private getFocusedLink(): string | undefined {
     const { current } = this.session.focus;
     return current && current.display === this.model?.display ? this.session.focus.linkOf(current) : undefined;
   }
@@ -115,7 +115,7 @@ export class LinksPanel implements Panel {
     element.setAttribute("aria-level", String(depth + 1));
     element.setAttribute("aria-selected", String(isSameElement(focus, self)));
     if (row.hasChildren) element.setAttribute("aria-expanded", String(!isFolded));
-    element.classList.toggle("selected", link.name === this.focusedLink());
+    element.classList.toggle("selected", link.name === this.getFocusedLink());
     element.classList.toggle("flash", this.flashing.has(link.name) || (joint !== null && this.flashing.has(joint.name)));
     element.addEventListener("click", () => this.select(index, self));
     element.addEventListener("pointerenter", () => this.session.focus.setHovered(self));
@@ -155,7 +155,7 @@ export class LinksPanel implements Panel {
   }
 
   private onKeyDown(event: KeyboardEvent): void {
-    const link = this.focusedLink();
+    const link = this.getFocusedLink();
     const index = this.shownRows.findIndex((row) => row.link.name === link);
     const row = this.shownRows[index];
     const goTo = (index: number): void => {

@@ -10,7 +10,7 @@ import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { EditorPane } from "../source-editor/editor-pane";
 import { formatPlace, shortenPath, shortenPlace } from "../place";
-import { modelOfCurrentRobot } from "./current-model";
+import { getCurrentModel } from "./current-model";
 import { SourceView, type Highlight } from "./source-view";
 
 /** A place to show that is not the place of an element, such as that of a diagnostic or macro call. */
@@ -145,13 +145,13 @@ export class SourcePanel implements Panel {
 
   /** Follows the selection, or a new place of the selected element. */
   private showFocus(): void {
-    this.model = modelOfCurrentRobot(this.session);
-    const { expanded, origin } = this.writtenPlaces();
+    this.model = getCurrentModel(this.session);
+    const { expanded, origin } = this.findWrittenPlaces();
     if (expanded) this.pendingReveal.expanded = expanded.line;
     const { current } = this.session.focus;
-    const stays = this.editor.isShown && (this.followsCursor || isSameElement(current, this.focusedElement));
+    const isScrollKept = this.editor.isShown && (this.followsCursor || isSameElement(current, this.focusedElement));
     this.focusedElement = current;
-    if (origin && !stays) {
+    if (origin && !isScrollKept) {
       this.requestedPlace = null;
       this.file = origin.file;
       this.pendingReveal.origin = origin.line;
@@ -165,13 +165,13 @@ export class SourcePanel implements Panel {
    * selection changes.
    */
   private refresh(): void {
-    const stays = this.editor.isShown || (this.requestedPlace !== null && this.requestedPlace.file === this.file);
-    if (stays) this.update();
+    const isScrollKept = this.editor.isShown || (this.requestedPlace !== null && this.requestedPlace.file === this.file);
+    if (isScrollKept) this.update();
     else this.showFocus();
   }
 
   private update(): void {
-    this.model = modelOfCurrentRobot(this.session);
+    this.model = getCurrentModel(this.session);
     const { model } = this;
     const faulty = this.session.diagnostics.flatMap((item) => (item.file === null ? [] : [item.file]));
     const files = [...new Set([...(model?.description.files ?? []), ...faulty, ...this.editor.files, ...(this.requestedPlace ? [this.requestedPlace.file] : [])])];
@@ -185,13 +185,13 @@ export class SourcePanel implements Panel {
 
   private show(): void {
     const display = this.model?.display ?? "";
-    const { expanded, origin } = this.writtenPlaces();
+    const { expanded, origin } = this.findWrittenPlaces();
     const texts = strings.description.source;
     if (this.model) this.fill(this.expandedView, this.session.description.textOf(display, EXPANDED), focusMarks(expanded), "expanded");
     const text = this.file === "" ? null : this.session.description.textOf(this.requestedPlace?.file === this.file ? (this.requestedPlace.display ?? display) : display, this.file);
     const originMarks = origin?.file === this.file ? focusMarks(origin) : [];
     if (this.requestedPlace?.file === this.file) originMarks.push({ firstLine: this.requestedPlace.line, lastLine: this.requestedPlace.line, kind: this.requestedPlace.look });
-    const highlights = [...originMarks, ...this.problemMarks()];
+    const highlights = [...originMarks, ...this.createProblemMarks()];
     const isWorkingFile = this.file !== "" && (this.requestedPlace?.file !== this.file || (this.requestedPlace.display ?? display) === display);
     const isEdited = this.editor.show(isWorkingFile ? this.file : null, isWorkingFile ? highlights : [], this.pendingReveal.origin);
     if (isEdited) this.pendingReveal.origin = null;
@@ -212,14 +212,14 @@ export class SourcePanel implements Panel {
     this.pendingReveal[pane] = null;
   }
 
-  private writtenPlaces(): { expanded: SourceRange | null; origin: SourceRange | null; calls: readonly CallSite[] } {
+  private findWrittenPlaces(): { expanded: SourceRange | null; origin: SourceRange | null; calls: readonly CallSite[] } {
     const { current } = this.session.focus;
     const places = current && this.model?.display === current.display ? this.model.placesOf(current) : undefined;
     return places ?? { expanded: null, origin: null, calls: [] };
   }
 
   /** Returns the findings in the file shown. */
-  private problemMarks(): Highlight[] {
+  private createProblemMarks(): Highlight[] {
     return this.session.diagnostics.flatMap(({ file, line, end_line }) =>
       file === this.file && line !== null ? [{ firstLine: line, lastLine: end_line ?? line, kind: "problem" as const }] : [],
     );
@@ -240,14 +240,14 @@ export class SourcePanel implements Panel {
 
   private openFile(file: string): void {
     this.file = file;
-    this.pendingReveal.origin = this.writtenPlaces().origin?.file === file ? (this.writtenPlaces().origin?.line ?? 1) : 1;
+    this.pendingReveal.origin = this.findWrittenPlaces().origin?.file === file ? (this.findWrittenPlaces().origin?.line ?? 1) : 1;
     this.update();
   }
 
   /** Shows the macro calls and includes that lead to the element, each as a link to its place. */
   private showTrail(): void {
     const texts = strings.description.source;
-    const { origin, calls } = this.writtenPlaces();
+    const { origin, calls } = this.findWrittenPlaces();
     const steps = calls.map(({ macro, file, line, column }) => {
       const text = texts.call(macro, formatPlace(shortenPath(file, 1), line, null));
       return button(formatPlace(file, line, column), () => this.reveal(file, line, { look: "focus" }), "trail-step", text);

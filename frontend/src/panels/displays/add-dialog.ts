@@ -1,8 +1,8 @@
 import { button, h } from "../../dom";
-import { displayIcon, icon } from "../../icons";
+import { iconNameOf, icon } from "../../icons";
 import type { DisplayClass, TopicChoice } from "../../protocol";
 import type { DisplayState } from "../../state/displays";
-import { obviousDisplay } from "../../state/obvious-display";
+import { findObviousDisplay } from "../../state/obvious-display";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
@@ -129,7 +129,7 @@ export class AddDialog {
     return this.offeredChoices.classes
       .map(({ cls, messages }) => ({ cls, about: describeDisplay(cls), messages }))
       .filter(({ cls, about, messages }) => [cls, about, ...messages].some((text) => text.toLowerCase().includes(query)))
-      .map(({ cls, about }) => this.createChoice(cls, null, shortName(cls), about));
+      .map(({ cls, about }) => this.createChoice(cls, null, shortNameOf(cls), about));
   }
 
   private listTopics(query: string): HTMLElement[] {
@@ -138,9 +138,9 @@ export class AddDialog {
     const listedTopics = this.offeredChoices.topics.filter((topicChoice) => topicChoice.classes.length > 0 || this.showAll.checked);
     return listedTopics.filter(matches).map((topicChoice) => {
       const { topic, message, classes } = topicChoice;
-      const first = obviousDisplay(topicChoice);
+      const first = findObviousDisplay(topicChoice);
       const sortedClasses = [...classes].sort((a, b) => Number(b === first) - Number(a === first));
-      const rows = sortedClasses.map((cls) => this.createChoice(cls, topic, shortName(cls), describeDisplay(cls)));
+      const rows = sortedClasses.map((cls) => this.createChoice(cls, topic, shortNameOf(cls), describeDisplay(cls)));
       const [obvious] = rows;
       const name = h("div", { class: "topic-name" }, topic, h("span", { class: "topic-type" }, message));
       // A click on the name chooses the display that most users want.
@@ -156,7 +156,7 @@ export class AddDialog {
     const element = h(
       "div",
       { class: "choice-row", role: "option", tabIndex: -1, aria: { selected: "false" } },
-      icon(displayIcon(cls)),
+      icon(iconNameOf(cls)),
       h("strong", {}, name),
       h("span", { class: "about" }, about),
     );
@@ -179,7 +179,7 @@ export class AddDialog {
     this.dialog.isReady = choice !== null;
     // Keep a name that the user typed.
     if (choice && (this.name.value === "" || this.name.value === this.suggestedName)) {
-      this.suggestedName = shortName(choice.cls);
+      this.suggestedName = shortNameOf(choice.cls);
       this.name.value = this.suggestedName;
     }
     choice?.element.scrollIntoView({ block: "nearest" });
@@ -202,16 +202,16 @@ export class AddDialog {
   private accept(): boolean {
     if (!this.chosenChoice) return false;
     const { cls, topic } = this.chosenChoice;
-    this.session.configuration.add(cls, this.name.value.trim() || shortName(cls), this.group?.id ?? null, topic);
+    this.session.configuration.add(cls, this.name.value.trim() || shortNameOf(cls), this.group?.id ?? null, topic);
     return true;
   }
 }
 
 /** Returns the purpose of a display class, in one sentence. */
 function describeDisplay(cls: string): string {
-  return (strings.displays.about as Readonly<Record<string, string | undefined>>)[shortName(cls)] ?? cls;
+  return (strings.displays.about as Readonly<Record<string, string | undefined>>)[shortNameOf(cls)] ?? cls;
 }
 
-function shortName(cls: string): string {
+function shortNameOf(cls: string): string {
   return cls.split("/").pop() ?? cls;
 }

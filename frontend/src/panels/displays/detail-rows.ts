@@ -1,7 +1,7 @@
 import type { JointScene } from "../../protocol";
 import type { DisplayState } from "../../state/displays";
 import type { FrameStore } from "../../state/frames";
-import { compose, computeRelativePose, type PoseNumbers } from "../../state/pose-numbers";
+import { composePoses, computeRelativePose, type PoseNumbers } from "../../state/pose-numbers";
 import type { PropertyNode } from "../../state/properties";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -32,15 +32,15 @@ export function createDetailRows(node: PropertyNode, display: DisplayState, sess
 }
 
 function frameRows({ id, name }: PropertyNode, frames: FrameStore): TreeItem[] {
-  const parentRow = (): number => frames.parents[frames.rowOf(name)] ?? -1;
-  const poseInParent = (): PoseNumbers | null => {
-    const [parentPose, framePose] = [poseOf(frames, parentRow()), poseOf(frames, frames.rowOf(name))];
+  const findParentRow = (): number => frames.parents[frames.rowOf(name)] ?? -1;
+  const computePoseInParent = (): PoseNumbers | null => {
+    const [parentPose, framePose] = [poseOf(frames, findParentRow()), poseOf(frames, frames.rowOf(name))];
     return parentPose && framePose ? computeRelativePose(parentPose, framePose) : null;
   };
   return [
-    createTextRow(`${id}#Parent`, "Parent", () => frames.names[parentRow()] ?? ""),
+    createTextRow(`${id}#Parent`, "Parent", () => frames.names[findParentRow()] ?? ""),
     ...createPoseRows(id, () => poseOf(frames, frames.rowOf(name))),
-    ...createPoseRows(id, poseInParent, "Relative "),
+    ...createPoseRows(id, computePoseInParent, "Relative "),
   ];
 }
 
@@ -48,7 +48,7 @@ function createJointRows({ id, name }: PropertyNode, display: DisplayState, sess
   const joint = session.robots.get(display.id)?.joints.find((candidate) => candidate.name === name);
   if (!joint) return [];
   const rows = [
-    ...createPoseRows(id, () => jointPose(joint, display, session)),
+    ...createPoseRows(id, () => computeJointPose(joint, display, session)),
     createTextRow(`${id}#Type`, "Type", () => joint.kind),
   ];
   if (joint.lower !== null) rows.push(numberRow(`${id}#Lower Limit`, "Lower Limit", () => joint.lower));
@@ -60,21 +60,21 @@ function createJointRows({ id, name }: PropertyNode, display: DisplayState, sess
 }
 
 function createEffortRows({ id, name }: PropertyNode, display: DisplayState, session: Session): TreeItem[] {
-  const latestEffort = (): { effort: number; limit: number } | null => {
-    let newest: { effort: number; limit: number } | null = null;
+  const findLatestEffort = (): { effort: number; limit: number } | null => {
+    let newestEffort: { effort: number; limit: number } | null = null;
     let stamp = -Infinity;
     for (const { content, stamp: contentStamp } of session.data.contentsOf(display.id)) {
       if (content.kind !== "effort_rings" || contentStamp < stamp) continue;
       const i = content.joints.indexOf(name);
       if (i < 0) continue;
-      newest = { effort: content.efforts[i] ?? 0, limit: content.limits[i] ?? 0 };
+      newestEffort = { effort: content.efforts[i] ?? 0, limit: content.limits[i] ?? 0 };
       stamp = contentStamp;
     }
-    return newest;
+    return newestEffort;
   };
   return [
-    numberRow(`${id}#Effort`, "Effort", () => latestEffort()?.effort ?? 0),
-    numberRow(`${id}#Max Effort`, "Max Effort", () => latestEffort()?.limit ?? 0),
+    numberRow(`${id}#Effort`, "Effort", () => findLatestEffort()?.effort ?? 0),
+    numberRow(`${id}#Max Effort`, "Max Effort", () => findLatestEffort()?.limit ?? 0),
   ];
 }
 
@@ -133,11 +133,11 @@ function linkPose(name: string, display: DisplayState, { robots, frames }: Sessi
   return link ? poseOf(frames, frames.rowOf(link.frame)) : null;
 }
 
-function jointPose(joint: JointScene, display: DisplayState, session: Session): PoseNumbers | null {
+function computeJointPose(joint: JointScene, display: DisplayState, session: Session): PoseNumbers | null {
   const parentPose = linkPose(joint.parent, display, session);
   const [x = 0, y = 0, z = 0] = joint.position;
   const [qx = 0, qy = 0, qz = 0, qw = 1] = joint.quaternion;
-  return parentPose && compose(parentPose, [x, y, z, qx, qy, qz, qw]);
+  return parentPose && composePoses(parentPose, [x, y, z, qx, qy, qz, qw]);
 }
 
 function poseOf(frames: FrameStore, row: number): PoseNumbers | null {

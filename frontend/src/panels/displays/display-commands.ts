@@ -10,12 +10,12 @@ import { AddDialog } from "./add-dialog";
 export class DisplayCommands {
   constructor(
     private readonly session: Session,
-    private readonly selectedDisplay: () => DisplayState | null,
-    private readonly selectedDisplays: () => readonly DisplayState[],
+    private readonly getSelectedDisplay: () => DisplayState | null,
+    private readonly listSelectedDisplays: () => readonly DisplayState[],
   ) {}
 
   add(): void {
-    const display = this.selectedDisplay();
+    const display = this.getSelectedDisplay();
     new AddDialog(this.session, display?.isGroup === true ? display : null).open();
   }
 
@@ -30,7 +30,7 @@ export class DisplayCommands {
   }
 
   rename(): void {
-    const display = this.selectedDisplay();
+    const display = this.getSelectedDisplay();
     if (!display) return;
     const { configuration } = this.session;
     const texts = strings.displays;
@@ -43,12 +43,12 @@ export class DisplayCommands {
   }
 
   private get ids(): string[] {
-    return this.selectedDisplays().map(({ id }) => id);
+    return this.listSelectedDisplays().map(({ id }) => id);
   }
 
   /** Moves the display past its neighbor above or below, within its group. */
   move(isUpward: boolean): void {
-    const display = this.selectedDisplay();
+    const display = this.getSelectedDisplay();
     if (!display) return;
     const { displays, configuration } = this.session;
     const siblings = displays.childrenOf(display.group);
@@ -84,7 +84,7 @@ export class DisplayCommands {
         label: display.isChecked ? texts.disable : texts.enable,
         icon: "check",
         run: () => {
-          for (const candidate of this.selectedDisplays()) session.setProperty(candidate.enabledId, !display.isChecked);
+          for (const candidate of this.listSelectedDisplays()) session.setProperty(candidate.enabledId, !display.isChecked);
         },
       },
       { label: texts.addHint, icon: "add", keys: formatShortcut(SHORTCUTS.add), hasLineAbove: true, run: () => this.add() },

@@ -11,18 +11,18 @@ export interface DropPlace {
 /** Returns the new place of a display that is dropped on another; null where it cannot go. */
 export function dropPlace(
   displays: readonly DisplayState[],
-  dragged: DisplayState,
+  draggedDisplay: DisplayState,
   target: DisplayState,
   part: DropPart,
 ): DropPlace | null {
-  if (target === dragged || target.isWithin(dragged)) return null;
+  if (target === draggedDisplay || target.isWithin(draggedDisplay)) return null;
   if (part === "inside") {
-    const first = displays.find((display) => display.group === target && display !== dragged);
+    const first = displays.find((display) => display.group === target && display !== draggedDisplay);
     return target.isGroup ? { group: target.id, nextSibling: first?.id ?? null } : null;
   }
   const group = target.group?.id ?? null;
   if (part === "before") return { group, nextSibling: target.id };
-  const siblings = displays.filter((display) => display.group === target.group && display !== dragged);
+  const siblings = displays.filter((display) => display.group === target.group && display !== draggedDisplay);
   return { group, nextSibling: siblings[siblings.indexOf(target) + 1]?.id ?? null };
 }
 
@@ -37,8 +37,8 @@ interface Tree {
   readonly element: HTMLElement;
   /** Returns the display that an element belongs to, and its row if the element is in the display's own row. */
   displayAt(target: EventTarget | null): { display: DisplayState; row: HTMLElement | null } | null;
-  displays(): readonly DisplayState[];
-  move(display: DisplayState, place: DropPlace): void;
+  listDisplays(): readonly DisplayState[];
+  move(display: DisplayState, dropPlace: DropPlace): void;
 }
 
 /** Makes the rows of displays draggable. */
@@ -87,7 +87,7 @@ export class DisplayDrag {
     const { display, row } = item;
     const box = row?.getBoundingClientRect();
     const part = box ? dropPart(event.clientY - box.top, box.height, display.isGroup) : "after";
-    const place = dropPlace(this.tree.displays(), this.draggedDisplay, display, part);
+    const place = dropPlace(this.tree.listDisplays(), this.draggedDisplay, display, part);
     return place && { place, part, row };
   }
 

@@ -1,9 +1,9 @@
-import { displayIcon } from "../../icons";
+import { iconNameOf } from "../../icons";
 import type { PropertyValue, StatusRow } from "../../protocol";
 import { DRAWINGS } from "../../scene/displays/registry";
 import type { DisplayState, ShownLevel } from "../../state/displays";
 import type { Session } from "../../state/session";
-import { shortName } from "../../state/views/catalog";
+import { shortNameOf } from "../../state/views/catalog";
 import { strings } from "../../strings";
 import { createPropertyItem } from "../../tree/property-item";
 import type { TreeItem } from "../../tree/tree-item";
@@ -44,7 +44,7 @@ function createDisplayItem(
     const name = `${strings.tree.status}: ${strings.tree.levels[level]}`;
     status.push(createStatusItem(`${display.id}#status`, name, level, display.status, false));
   }
-  const childItems = (): TreeItem[] =>
+  const createChildItems = (): TreeItem[] =>
     session.displays.childrenOf(display).map((child) => createDisplayItem(session, child, set));
   const addTopics = (item: TreeItem): TreeItem =>
     item.kind === "topic" ? { ...item, requestNames: (show) => offerTopics(session, display, item.name, show) } : item;
@@ -54,15 +54,15 @@ function createDisplayItem(
     kind: "bool",
     value: display.isChecked,
     description: describe(display, hasDrawing),
-    icon: hasDrawing ? displayIcon(display.drawing) : "unknown",
+    icon: hasDrawing ? iconNameOf(display.drawing) : "unknown",
     isStrong: true,
     isMultiSelectable: true,
     isMuted: !hasDrawing || !display.isEnabled,
-    ...(hasDrawing && display.isEnabled ? { level: worstLevelIn(session, display) } : {}),
+    ...(hasDrawing && display.isEnabled ? { level: findWorstLevel(session, display) } : {}),
     ...(display.problems.length > 0 ? { hint: [display.name, ...display.problems.map(formatTrouble)].join("\n") } : {}),
     ...(hasDrawing ? {} : { badge: strings.tree.notDrawn }),
     isExpanded: display.isGroup || (display.isEnabled && isOnlyContent(session, display)),
-    children: () => [...status, ...createDisplayRows(display, session, set).map(addTopics), ...childItems()],
+    children: () => [...status, ...createDisplayRows(display, session, set).map(addTopics), ...createChildItems()],
     set: (value) => set(display.enabledId, value),
   };
 }
@@ -116,11 +116,11 @@ const SCENERY = ["Grid", "Axes", "TF", "Group"];
  */
 function isOnlyContent(session: Session, display: DisplayState): boolean {
   if (!display.cls.endsWith("/RobotModel")) return false;
-  return session.displays.displays.every((other) => other === display || SCENERY.includes(shortName(other.cls)));
+  return session.displays.displays.every((otherDisplay) => otherDisplay === display || SCENERY.includes(shortNameOf(otherDisplay.cls)));
 }
 
 /** Returns the worst status of a display and, for a group, of its members. */
-function worstLevelIn(session: Session, display: DisplayState): ShownLevel {
+function findWorstLevel(session: Session, display: DisplayState): ShownLevel {
   const levels = [display, ...session.displays.displays.filter((child) => child.isWithin(display))]
     .filter((child) => child.isEnabled)
     .map((child) => child.level);

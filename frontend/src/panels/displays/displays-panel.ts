@@ -105,7 +105,7 @@ export class DisplaysPanel implements Panel {
     });
     displays.rowRequested.on((display) => {
       this.filter.value = "";
-      this.tree.reveal(pathTo(display));
+      this.tree.reveal(findPath(display));
       this.explainDisplay(display);
       this.enableButtons();
     });
@@ -162,7 +162,7 @@ export class DisplaysPanel implements Panel {
         const display = this.displayOf(item?.item.key ?? null);
         return item && display && { display, row: item.item.key === display.id ? item.element : null };
       },
-      displays: () => session.displays.displays,
+      listDisplays: () => session.displays.displays,
       move: (display, { group, nextSibling }) => session.configuration.move([display.id], group, nextSibling),
     });
   }
@@ -212,6 +212,6 @@ export class DisplaysPanel implements Panel {
 }
 
 /** Returns the keys of the rows from the outermost group to a display. */
-function pathTo(display: DisplayState): string[] {
-  return [...(display.group ? pathTo(display.group) : []), display.id];
+function findPath(display: DisplayState): string[] {
+  return [...(display.group ? findPath(display.group) : []), display.id];
 }

@@ -38,7 +38,7 @@ export function createDisplayRows(display: DisplayState, session: Session, set: 
 export function linkRowPath(display: DisplayState, session: Session, link: string): string[] | null {
   const robot = session.robots.get(display.id);
   if (!robot || !display.rows.find("Links")) return null;
-  return new RobotTree(display, session, robot, () => undefined).pathTo(link);
+  return new RobotTree(display, session, robot, () => undefined).findPath(link);
 }
 
 /** Returns the display and link whose row has this key. */
@@ -87,10 +87,10 @@ class RobotTree {
     this.options = display.rows.find("Links");
     const standard = { title: "Links", isTree: false, hasLinks: true, hasJoints: false };
     this.style = STYLES[display.rows.text("", "Links", STYLE)] ?? standard;
-    const nodesByName = (group: string): ReadonlyMap<string, PropertyNode> =>
+    const mapNodes = (group: string): ReadonlyMap<string, PropertyNode> =>
       new Map(display.rows.find(group)?.children.filter((row) => row.details).map((row) => [row.name, row]));
-    this.links = nodesByName("Links");
-    this.joints = nodesByName("Joints");
+    this.links = mapNodes("Links");
+    this.joints = mapNodes("Joints");
     for (const joint of robot.joints) {
       const siblings = this.jointsByParent.get(joint.parent);
       if (siblings) siblings.push(joint);
@@ -119,7 +119,7 @@ class RobotTree {
     };
   }
 
-  pathTo(link: string): string[] | null {
+  findPath(link: string): string[] | null {
     const parents = new Map(this.robot.joints.map((joint) => [joint.child, joint]));
     const path: string[] = [];
     for (let name: string | undefined = link; name !== undefined; ) {
@@ -143,8 +143,8 @@ class RobotTree {
 
   private linkRow(link: string): TreeItem[] {
     const node = this.links.get(link);
-    const childRows = (): TreeItem[] => (this.jointsByParent.get(link) ?? []).flatMap((joint) => this.createJointRow(joint));
-    return node ? [this.createRow(node, childRows)] : childRows();
+    const createChildRows = (): TreeItem[] => (this.jointsByParent.get(link) ?? []).flatMap((joint) => this.createJointRow(joint));
+    return node ? [this.createRow(node, createChildRows)] : createChildRows();
   }
 
   private createJointRow(joint: JointScene): TreeItem[] {
@@ -154,11 +154,11 @@ class RobotTree {
   }
 
   /** Returns the row of a link or joint. In a tree, its details are below a row of their own. */
-  private createRow(node: PropertyNode, childRows: () => TreeItem[]): TreeItem {
+  private createRow(node: PropertyNode, createChildRows: () => TreeItem[]): TreeItem {
     const { rows } = this.display;
     const { isTree } = this.style;
     const isOpen = rows.bool(false, "Links", node.details === "link" ? LINK_DETAILS : JOINT_DETAILS);
-    const details = (): TreeItem[] => [
+    const createDetails = (): TreeItem[] => [
       ...node.children.map((child) => createPropertyItem(child, this.set)),
       ...createDetailRows(node, this.display, this.session),
     ];
@@ -169,12 +169,12 @@ class RobotTree {
       value: null,
       description: strings.details.Details,
       isExpanded: isOpen,
-      children: details,
+      children: createDetails,
     };
     return {
       ...createPropertyItem(node, this.set),
       isExpanded: isTree ? rows.bool(false, "Links", TREE) : isOpen,
-      children: () => (isTree ? [group, ...childRows()] : details()),
+      children: () => (isTree ? [group, ...createChildRows()] : createDetails()),
     };
   }
 }

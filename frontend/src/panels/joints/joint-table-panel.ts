@@ -6,7 +6,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { UnitSwitch } from "../../widgets/unit-switch";
 import { holdWhileVisible } from "../../widgets/visibility";
-import { modelOfCurrentRobot } from "../description/current-model";
+import { getCurrentModel } from "../description/current-model";
 import type { Panel } from "../panel";
 
 /** A table of all joints of the robot with their properties in the description. */
@@ -40,7 +40,7 @@ export class JointTablePanel implements Panel {
   }
 
   private update(): void {
-    this.model = modelOfCurrentRobot(this.session);
+    this.model = getCurrentModel(this.session);
     const joints = this.model?.description.joints ?? [];
     this.empty.hidden = this.model !== undefined;
     this.box.hidden = this.model === undefined;

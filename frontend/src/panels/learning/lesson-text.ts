@@ -7,7 +7,7 @@ import { sanitizeHtml } from "../source-editor/safe-html";
 /** The class of blocks that show output. */
 const OUTPUT_CLASS = "language-text";
 
-/** Returns the text of a lesson as an element; code blocks get a button that copies them, unless they show output. */
+/** Returns the text of a lesson as an element; code blocks get a button that copies them, unless they show output, and tables scroll. */
 export function createLessonText(html: string, className: string): HTMLElement {
   const element = h("div", { class: className });
   element.innerHTML = sanitizeHtml(html, { allowsImages: true });
@@ -19,11 +19,16 @@ export function createLessonText(html: string, className: string): HTMLElement {
     box.append(button(strings.learning.copyHint, () => void copyText(code.textContent), "tool bare lesson-copy", icon("copy")));
   }
   for (const code of element.querySelectorAll(":not(pre) > code")) divideAtSlashes(code);
+  for (const table of element.querySelectorAll("table")) {
+    const box = h("div", { class: "lesson-table", role: "group", tabIndex: 0, aria: { label: strings.learning.table } });
+    table.replaceWith(box);
+    box.append(table);
+  }
   return element;
 }
 
-/** Allows line breaks after the slashes of a long path, so that punctuation after it stays with its last part. */
+/** Allows line breaks after the inner slashes of a long path, so that punctuation after it stays with its last part. */
 function divideAtSlashes(code: Element): void {
-  const parts = code.textContent.split(/(?<=\/)/);
+  const parts = code.textContent.split(/(?<=[^/]\/)/);
   code.replaceChildren(...parts.flatMap((part, index) => (index === 0 ? [part] : [h("wbr"), part])));
 }

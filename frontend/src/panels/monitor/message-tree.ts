@@ -20,7 +20,7 @@ export class MessageTree {
   private fields: readonly MessageField[] = [];
 
   /** `plot` is called with the path of a numeric field whose plot button is clicked. */
-  constructor(private readonly plotField: (path: string) => void) {}
+  constructor(private readonly onPlotField: (path: string) => void) {}
 
   show(fields: readonly MessageField[]): void {
     // Short messages are unfolded from the start.
@@ -64,7 +64,7 @@ export class MessageTree {
       h("span", { class: "message-name" }, field.name),
       value,
       h("span", { class: "note kind" }, field.kind),
-      isNumber ? button(strings.monitor.topics.plot, () => this.plotField(path), "tool bare", icon("plot")) : null,
+      isNumber ? button(strings.monitor.topics.plot, () => this.onPlotField(path), "tool bare", icon("plot")) : null,
     );
     const omittedNote = h("div", { class: "note" });
     const node = { element: h("div", {}, head, children), value, children, toggle, omittedNote };

@@ -84,13 +84,13 @@ export class NodeGraphDrawing {
   private placeDrawing(): void {
     if (this.viewMode === "all") this.fit();
     if (this.viewMode !== "legible" || this.element.clientWidth === 0) return;
-    const box = this.boxes.get(this.markedId ?? "") ?? this.busiestBox();
+    const box = this.boxes.get(this.markedId ?? "") ?? this.findBusiestBox();
     this.pan.showLegibly(...this.size, TEXT_PX, [box?.x ?? 0, box?.y ?? 0]);
     this.viewMode = "legible";
   }
 
   /** Returns the box of the vertex with the most edges. */
-  private busiestBox(): PlacedBox | undefined {
+  private findBusiestBox(): PlacedBox | undefined {
     const degrees = new Map<string, number>();
     for (const id of this.graph.edges.flatMap(({ source, target }) => [source, target])) degrees.set(id, (degrees.get(id) ?? 0) + 1);
     const [first] = [...degrees].sort(([, a], [, b]) => b - a);
@@ -147,10 +147,10 @@ function labelOf(vertex: GraphVertex | undefined): string {
 }
 
 function drawRoute({ source, target, points }: Route, topics: string): SVGElement {
-  const [first, ...others] = points;
-  let [x, y] = first ?? [0, 0];
+  const [firstPoint, ...otherPoints] = points;
+  let [x, y] = firstPoint ?? [0, 0];
   let path = `M${x} ${y}`;
-  for (const [nextX, nextY] of others) {
+  for (const [nextX, nextY] of otherPoints) {
     const bend = (nextX - x) / 2;
     path += `C${x + bend} ${y} ${nextX - bend} ${nextY} ${nextX} ${nextY}`;
     [x, y] = [nextX, nextY];

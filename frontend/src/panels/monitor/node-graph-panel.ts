@@ -18,9 +18,9 @@ export class NodeGraphPanel implements Panel {
   private readonly empty = h("p", { class: "empty" }, strings.monitor.graph.none);
   private readonly options: GraphOptions & { openGroups: Set<string> } = {
     mode: "active",
-    debug: false,
-    tf: true,
-    grouped: false,
+    showsDebug: false,
+    showsTf: true,
+    groupsNamespaces: false,
     openGroups: new Set<string>(),
   };
   private chosenId: string | null = null;
@@ -38,7 +38,7 @@ export class NodeGraphPanel implements Panel {
       this.show();
     });
     mode.value = this.options.mode;
-    const tick = (name: "debug" | "tf" | "grouped", text: string, hint: string): HTMLElement => {
+    const createTick = (name: "showsDebug" | "showsTf" | "groupsNamespaces", text: string, hint: string): HTMLElement => {
       const label = createTickBox(text, hint, (isTicked) => {
         this.options[name] = isTicked;
         this.options.openGroups.clear();
@@ -51,9 +51,9 @@ export class NodeGraphPanel implements Panel {
       "div",
       { class: "toolbar" },
       mode,
-      tick("tf", texts.tf, texts.tfHint),
-      tick("debug", texts.debug, texts.debugHint),
-      tick("grouped", texts.groups, texts.groupsHint),
+      createTick("showsTf", texts.tf, texts.tfHint),
+      createTick("showsDebug", texts.debug, texts.debugHint),
+      createTick("groupsNamespaces", texts.groups, texts.groupsHint),
       h("span", { class: "spacer" }),
       button(texts.fitHint, () => this.drawing.fit(), "tool", icon("center"), texts.fit),
     );

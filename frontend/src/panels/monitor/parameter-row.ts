@@ -57,7 +57,7 @@ export class ParameterLine {
   show(row: ParameterRow): void {
     this.row = row;
     if (row.kind === "bool") this.editor.checked = row.values[0] === "true";
-    else if (document.activeElement !== this.editor) this.editor.value = this.editorText();
+    else if (document.activeElement !== this.editor) this.editor.value = this.formatEditorText();
     if (this.slider && document.activeElement !== this.slider) this.slider.value = row.values[0] ?? "0";
   }
 
@@ -71,7 +71,7 @@ export class ParameterLine {
     if (this.slider) this.slider.value = this.row.values[0] ?? "0";
   }
 
-  private editorText(): string {
+  private formatEditorText(): string {
     return this.row.kind === "not_set" ? strings.monitor.parameters.notSet : formatParameter(this.row.kind, this.row.values);
   }
 
@@ -97,7 +97,7 @@ export class ParameterLine {
     this.editor.addEventListener("change", () => this.sendText());
     this.editor.addEventListener("keydown", (event) => {
       if (event.key === "Escape") {
-        this.editor.value = this.editorText();
+        this.editor.value = this.formatEditorText();
         this.showResult(true, "");
         this.editor.blur();
       } else if (event.key === "Enter") this.sendText();
@@ -105,7 +105,7 @@ export class ParameterLine {
   }
 
   private sendText(): void {
-    if (this.editor.value === this.editorText()) return;
+    if (this.editor.value === this.formatEditorText()) return;
     const values = parseParameter(this.row.kind, this.editor.value);
     if (values === null) this.showResult(false, strings.monitor.parameters.unreadable);
     else this.send(values);

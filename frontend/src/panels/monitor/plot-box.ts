@@ -7,7 +7,7 @@ import type { TopicsState } from "../../state/monitor/topics";
 import { strings } from "../../strings";
 import { createNumberField } from "../../widgets/controls";
 import { saveText } from "../../widgets/save-file";
-import { PlotChart, seriesColor } from "./plot-chart";
+import { PlotChart, seriesColorOf } from "./plot-chart";
 import { PlotPicker } from "./plot-picker";
 
 /** One plot with its series and their values. */
@@ -54,7 +54,7 @@ export class PlotBox {
       this.values.set(series, value);
       const name = formatField(series);
       const mark = h("span", { class: "plot-mark" });
-      mark.style.background = seriesColor(index);
+      mark.style.background = seriesColorOf(index);
       const remove = button(texts.removeSeries(name), () => this.state.removeSeries(this.plot, series), "tool bare", icon("close"));
       const hint = series.error ?? name;
       return h("span", { class: series.error === null ? "chip" : "chip wrong", title: hint }, mark, name, value, remove);
@@ -124,10 +124,10 @@ export class PlotBox {
 
   /** Returns the range of the visible values, rounded, as the initial fixed range. */
   private readShownRange(): [number, number] {
-    const [from, end] = this.state.window ?? [0, 0];
+    const [startTime, endTime] = this.state.window ?? [0, 0];
     const shownSeries = this.plot.series.flatMap(({ buffer }) => {
-      const start = buffer.indexFrom(this.state.source, from);
-      return [...buffer.values.subarray(start, buffer.indexFrom(this.state.source, end) + 1)].filter(Number.isFinite);
+      const start = buffer.indexFrom(this.state.source, startTime);
+      return [...buffer.values.subarray(start, buffer.indexFrom(this.state.source, endTime) + 1)].filter(Number.isFinite);
     });
     if (shownSeries.length === 0) return [-1, 1];
     const low = shownSeries.reduce((a, b) => Math.min(a, b));

@@ -11,7 +11,7 @@ const Y_AXIS_PX = 58;
 const MIN_CALENDAR_TIME = 1e8;
 
 /** Returns the color of a plot's series, as a CSS variable. */
-export function seriesColor(index: number): string {
+export function seriesColorOf(index: number): string {
   return `var(--plot-${(index % COLORS) + 1})`;
 }
 

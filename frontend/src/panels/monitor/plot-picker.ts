@@ -70,7 +70,7 @@ export class PlotPicker {
   }
 
   private onInput(): void {
-    const topic = this.typedTopic();
+    const topic = this.parseTypedTopic();
     if (topic !== this.requestedTopic) {
       this.requestedTopic = topic;
       this.fields = null;
@@ -81,7 +81,7 @@ export class PlotPicker {
   }
 
   /** Returns the topic whose fields are to be offered: the text before the dot. */
-  private typedTopic(): string | null {
+  private parseTypedTopic(): string | null {
     const dot = this.input.value.indexOf(".");
     return dot > 0 ? this.input.value.slice(0, dot).trim() : null;
   }
@@ -136,8 +136,8 @@ export class PlotPicker {
   private enter(): void {
     const field = parseField(this.input.value);
     const offer = this.offers[this.activeIndex];
-    const written = this.offers.find(({ text }) => text === this.input.value.trim());
-    if (offer && !written) this.choose(offer);
+    const writtenOffer = this.offers.find(({ text }) => text === this.input.value.trim());
+    if (offer && !writtenOffer) this.choose(offer);
     else if (field) this.accept(field);
     else if (offer) this.choose(offer);
   }

@@ -1,4 +1,4 @@
-import { obviousDisplay } from "../../state/obvious-display";
+import { findObviousDisplay } from "../../state/obvious-display";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { showNotice } from "../../widgets/dialog";
@@ -10,7 +10,7 @@ export function showTopic(session: Session, topic: string): void {
   const stop = configuration.choicesArrived.on(() => {
     stop();
     const choice = configuration.choices?.topics.find((candidate) => candidate.topic === topic && candidate.classes.length > 0);
-    const cls = choice ? obviousDisplay(choice) : null;
+    const cls = choice ? findObviousDisplay(choice) : null;
     if (cls === null) showNotice(topic, strings.displays.topicNotShown);
     else configuration.add(cls, cls.slice(cls.lastIndexOf("/") + 1), null, topic);
   });

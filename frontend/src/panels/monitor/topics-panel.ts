@@ -22,7 +22,7 @@ export class TopicsPanel implements Panel {
 
   constructor(
     private readonly state: TopicsState,
-    private readonly plotField: (topic: string, path: string) => void,
+    private readonly onPlotField: (topic: string, path: string) => void,
     private readonly showInScene: (topic: string) => void,
   ) {
     const texts = strings.monitor.topics;
@@ -98,7 +98,7 @@ export class TopicsPanel implements Panel {
         setMember(this.unfoldedTopics, topic, isOpen);
         this.watch();
       },
-      onPlotted: (topic, path) => this.plotField(topic, path),
+      onPlotted: (topic, path) => this.onPlotField(topic, path),
       onShown: (topic) => this.showInScene(topic),
     });
     this.lines.set(name, line);

@@ -1,8 +1,8 @@
 import { button, coalesce, h } from "../../dom";
 import { icon } from "../../icons";
 import type { TopicChoice } from "../../protocol";
-import { largestRoot } from "../../state/frame-tree";
-import { obviousDisplay } from "../../state/obvious-display";
+import { findLargestRoot } from "../../state/frame-tree";
+import { findObviousDisplay } from "../../state/obvious-display";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 
@@ -29,7 +29,7 @@ export class FrameNotice {
     displays.statusChanged.on(updateFrame);
     displays.valueChanged.on(updateFrame);
     configuration.choicesArrived.on(({ topics }) => {
-      this.robotTopic = topics.find((topic) => topic.classes.length > 0 && obviousDisplay(topic) === ROBOT_MODEL) ?? null;
+      this.robotTopic = topics.find((topic) => topic.classes.length > 0 && findObviousDisplay(topic) === ROBOT_MODEL) ?? null;
       if (!this.element.hidden) this.show();
     });
   }
@@ -55,7 +55,7 @@ export class FrameNotice {
 
   private show(): void {
     const texts = strings.scene.frame;
-    const root = largestRoot(this.session.frames);
+    const root = findLargestRoot(this.session.frames);
     if (this.reportedFrame === null || root === null) return;
     const closeButton = button(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", icon("close"));
     const { robotTopic } = this;

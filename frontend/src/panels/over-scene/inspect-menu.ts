@@ -5,7 +5,7 @@ import { formatGeneral } from "../../state/number-text";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { closeOutside } from "../../widgets/popover";
-import { modelOfCurrentRobot } from "../description/current-model";
+import { getCurrentModel } from "../description/current-model";
 
 const CHOICES = ["centers", "boxes", "ellipsoids", "joints", "contrast", "frames"] as const;
 /** The ends of the slider are powers of two: a quarter of the size, and four times the size. */
@@ -88,7 +88,7 @@ export class InspectMenu {
 
   private show(): void {
     const { inspect } = this.session;
-    const model = modelOfCurrentRobot(this.session);
+    const model = getCurrentModel(this.session);
     for (const [property, box] of this.boxes) box.checked = inspect.current[property];
     this.openButton.classList.toggle("on", inspect.isActive);
     const maxDepth = model?.maxDepth ?? 0;
@@ -127,7 +127,7 @@ export class InspectMenu {
 
   private createMassFacts(): HTMLElement[] {
     const texts = strings.description.inspect;
-    const model = modelOfCurrentRobot(this.session);
+    const model = getCurrentModel(this.session);
     const { centers, boxes, ellipsoids } = this.session.inspect.current;
     if (!model || !(centers || boxes || ellipsoids)) return [];
     const mass = [...model.links.values()].reduce((sum, { inertia }) => sum + (inertia?.mass ?? 0), 0);

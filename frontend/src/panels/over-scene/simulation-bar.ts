@@ -30,7 +30,7 @@ export class SimulationBar {
     this.playButton = button(texts.pause, () => simulation.sendControl(simulation.isPaused ? "play" : "pause"), "scene-tool small", icon("pause"));
     this.stepButton = button(texts.step, () => simulation.sendControl("step"), "scene-tool small", icon("step"));
     const resetButton = button(texts.reset, () => simulation.sendControl("reset"), "scene-tool small", icon("reset"));
-    const addButton = button(texts.spawn, () => this.askSpawn(simulation.freePlace()), "scene-tool small", icon("plus"));
+    const addButton = button(texts.spawn, () => this.askSpawn(simulation.findFreePlace()), "scene-tool small", icon("plus"));
     this.modelButton = button(strings.modeling.begin, () => modeling.setActive(!modeling.isActive), "scene-tool small", icon("build"));
     const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: texts.label } }, this.playButton, this.stepButton, resetButton, addButton, this.modelButton, this.factor, this.time);
     this.element = h("div", { class: "simulation-bar" }, bar, new ModelingBar(modeling, commands).element, this.notice);

@@ -56,8 +56,8 @@ export class CodeActions {
     this.client.sync();
     const { doc } = view.state;
     const range = { start: placeOf(doc, from), end: placeOf(doc, to) };
-    const [first, last] = [range.start.line, range.end.line];
-    const diagnostics = this.findingsOf(shownDocument.uri).filter((finding) => finding.range.start.line <= last && finding.range.end.line >= first);
+    const [firstLine, lastLine] = [range.start.line, range.end.line];
+    const diagnostics = this.findingsOf(shownDocument.uri).filter((finding) => finding.range.start.line <= lastLine && finding.range.end.line >= firstLine);
     const request = { textDocument: { uri: shownDocument.uri }, range, context: { diagnostics } };
     const actions = (await this.client.request<object, CodeAction[] | null>("textDocument/codeAction", request)) ?? [];
     if (shownDocument !== this.documents.shownDocument) return;
@@ -97,7 +97,7 @@ export class CodeActions {
 }
 
 function groupOf({ kind = "" }: CodeAction): number {
-  return KINDS.findIndex((known) => kind === known || kind.startsWith(`${known}.`)) < 2 ? 0 : 1;
+  return KINDS.findIndex((knownKind) => kind === knownKind || kind.startsWith(`${knownKind}.`)) < 2 ? 0 : 1;
 }
 
 function rankOf(action: CodeAction): number {

@@ -31,6 +31,6 @@ export interface MergedChange {
  */
 export function mergeChanges(disk: ChangeSet, unsavedChanges: ChangeSet): MergedChange | null {
   const touched: boolean[] = [];
-  unsavedChanges.iterChangedRanges((from, to) => void touched.push(disk.touchesRange(from, to) !== false));
+  unsavedChanges.iterChangedRanges((start, end) => void touched.push(disk.touchesRange(start, end) !== false));
   return touched.includes(true) ? null : { edit: disk.map(unsavedChanges), unsavedChanges: unsavedChanges.map(disk, true) };
 }

@@ -81,9 +81,9 @@ export class LiveTexts {
     const document = this.documents.open.find((candidate) => candidate.path === path);
     if (!document) return;
     document.endShowing(number, outcome === "shown");
-    const newest = this.newestRequests.get(path);
-    if (newest?.number !== number) return;
-    if (newest.isRemoval) {
+    const newestRequest = this.newestRequests.get(path);
+    if (newestRequest?.number !== number) return;
+    if (newestRequest.isRemoval) {
       this.outcomes.delete(path);
       this.newestRequests.delete(path);
       document.described = null;

@@ -22,8 +22,8 @@ export const markedLines: Extension = marks;
 export function marksOf(document: SourceDocument, highlights: readonly Highlight[]): StateEffect<DecorationSet> {
   const ranges: Range<Decoration>[] = [];
   for (const { firstLine, lastLine, kind } of highlights) {
-    const [first, last] = [firstLine, lastLine].map((line) => document.state.doc.lineAt(document.currentLineOf(line)).number);
-    for (let line = first ?? 1; line <= (last ?? 0); line += 1) ranges.push(LOOKS[kind].range(document.state.doc.line(line).from));
+    const [firstNumber, lastNumber] = [firstLine, lastLine].map((line) => document.state.doc.lineAt(document.currentLineOf(line)).number);
+    for (let line = firstNumber ?? 1; line <= (lastNumber ?? 0); line += 1) ranges.push(LOOKS[kind].range(document.state.doc.line(line).from));
   }
   return setMarks.of(Decoration.set(ranges, true));
 }

@@ -37,8 +37,8 @@ class HintWidget extends WidgetType {
     super();
   }
 
-  override eq(other: HintWidget): boolean {
-    return other.label === this.label;
+  override eq(otherWidget: HintWidget): boolean {
+    return otherWidget.label === this.label;
   }
 
   toDOM(): HTMLElement {
@@ -56,8 +56,8 @@ class ColorWidget extends WidgetType {
     super();
   }
 
-  override eq(other: ColorWidget): boolean {
-    return JSON.stringify(other.writtenColor) === JSON.stringify(this.writtenColor);
+  override eq(otherWidget: ColorWidget): boolean {
+    return JSON.stringify(otherWidget.writtenColor) === JSON.stringify(this.writtenColor);
   }
 
   toDOM(view: EditorView): HTMLElement {

@@ -43,9 +43,9 @@ export class Navigation {
   goToDefinition(view: EditorView, position = view.state.selection.main.head): boolean {
     const texts = strings.sourceEditor;
     void this.ask(view, "textDocument/definition", position, {}).then(async (locations) => {
-      const [first, ...others] = locations;
-      if (!first) this.tell(texts.noDefinition);
-      else if (others.length === 0) await this.open(first);
+      const [firstLocation, ...otherLocations] = locations;
+      if (!firstLocation) this.tell(texts.noDefinition);
+      else if (otherLocations.length === 0) await this.open(firstLocation);
       else await this.show(texts.definitions(locations.length), locations);
     }).catch((error: unknown) => this.tell(messageOf(error)));
     return true;
@@ -71,9 +71,9 @@ export class Navigation {
 
   /** Remembers the place of the cursor, to which `goBack` returns. */
   leave(): void {
-    const bookmark = this.currentBookmark();
-    const last = this.history.at(-1);
-    if (!bookmark || this.isReturning || (last?.document === bookmark.document && last.position === bookmark.position)) return;
+    const bookmark = this.createBookmark();
+    const lastBookmark = this.history.at(-1);
+    if (!bookmark || this.isReturning || (lastBookmark?.document === bookmark.document && lastBookmark.position === bookmark.position)) return;
     this.history.push(bookmark);
     this.forward.length = 0;
     if (this.history.length > MAX_BACK) this.history.shift();
@@ -104,7 +104,7 @@ export class Navigation {
   }
 
   private goTo(source: Bookmark[], destination: Bookmark[]): boolean {
-    const bookmark = this.currentBookmark();
+    const bookmark = this.createBookmark();
     const target = source.pop();
     if (!target) return true;
     if (bookmark) destination.push(bookmark);
@@ -113,7 +113,7 @@ export class Navigation {
     return true;
   }
 
-  private currentBookmark(): Bookmark | null {
+  private createBookmark(): Bookmark | null {
     const { shownDocument, view } = this.documents;
     return shownDocument && { document: shownDocument, position: view.state.selection.main.head };
   }

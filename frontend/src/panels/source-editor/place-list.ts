@@ -86,8 +86,8 @@ export class PlaceList {
   private onKeyDown(event: KeyboardEvent): void {
     const { options } = this;
     const index = options.findIndex((option) => option.tabIndex === 0);
-    const last = options.length - 1;
-    const next = { ArrowDown: Math.min(index + 1, last), ArrowUp: Math.max(index - 1, 0), Home: 0, End: last }[event.key];
+    const lastIndex = options.length - 1;
+    const next = { ArrowDown: Math.min(index + 1, lastIndex), ArrowUp: Math.max(index - 1, 0), Home: 0, End: lastIndex }[event.key];
     if (next !== undefined) this.focus(next);
     else if (event.key === "Enter" || event.key === " ") this.choose(index);
     else if (event.key === "Escape") this.close();

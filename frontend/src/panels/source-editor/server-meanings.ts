@@ -31,9 +31,9 @@ export function decodeTokens(doc: Text, data: readonly number[], { tokenTypes, t
     character = lines === 0 ? character + characters : characters;
     line += lines;
     const names = [tokenTypes[type] ?? "", ...tokenModifiers.filter((_, bit) => (modifiers >> bit) & 1)];
-    const from = offsetOf(doc, { line, character });
-    const to = offsetOf(doc, { line, character: character + length });
-    if (to > from) ranges.push({ from, to, names });
+    const start = offsetOf(doc, { line, character });
+    const end = offsetOf(doc, { line, character: character + length });
+    if (end > start) ranges.push({ from: start, to: end, names });
   }
   return ranges;
 }

@@ -111,8 +111,8 @@ export class SourceDocument {
   onRobotEdited(content: string, base: number): TransactionSpec | null {
     const formerText = this.sentTexts.get(base);
     const edit = findSmallestChange(formerText?.text ?? this.diskText, textOf(content));
-    const merged = mergeChanges(edit, formerText?.changes ?? this.unsavedChanges);
-    return merged && { changes: merged.edit, annotations: [isolateHistory.of("full")], userEvent: "robot" };
+    const mergedChanges = mergeChanges(edit, formerText?.changes ?? this.unsavedChanges);
+    return mergedChanges && { changes: mergedChanges.edit, annotations: [isolateHistory.of("full")], userEvent: "robot" };
   }
 
   /** Records a transaction that was applied to the text. */
@@ -139,14 +139,14 @@ export class SourceDocument {
     }
     const disk = findSmallestChange(this.diskText, text);
     if (disk.empty && this.conflict === null) return null;
-    const merged = mergeChanges(disk, this.unsavedChanges);
-    if (merged === null) {
+    const mergedChanges = mergeChanges(disk, this.unsavedChanges);
+    if (mergedChanges === null) {
       this.conflict = { text, version };
       return null;
     }
     this.diskText = text;
     this.conflict = null;
-    return { changes: merged.edit, annotations: [fromDisk.of(merged.unsavedChanges), isolateHistory.of("full")], userEvent: "disk" };
+    return { changes: mergedChanges.edit, annotations: [fromDisk.of(mergedChanges.unsavedChanges), isolateHistory.of("full")], userEvent: "disk" };
   }
 
   /** Settles a conflict for the edited text, which is unsaved then. */

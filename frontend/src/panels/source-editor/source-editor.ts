@@ -83,7 +83,8 @@ export class SourceEditor implements Documents {
     const buttons = [files, symbols, this.save, actions, format, this.list];
     const bar = h("div", { class: "editor-bar", role: "toolbar", aria: { label: texts.label } }, ...buttons, this.scene, this.status);
     this.tree.shownChanged.on((isShown) => files.setAttribute("aria-expanded", String(isShown)));
-    this.view = new EditorView({ extensions: EditorView.editable.of(false), dispatchTransactions: (transactions, view) => this.dispatch(transactions, view) });
+    const withoutFile = [EditorView.editable.of(false), EditorView.contentAttributes.of({ "aria-label": texts.label })];
+    this.view = new EditorView({ extensions: withoutFile, dispatchTransactions: (transactions, view) => this.dispatch(transactions, view) });
     const body = h("div", { class: "editor-body" }, this.tree.element, this.view.dom);
     this.element = h("div", { class: "source-editor" }, bar, this.notice, body, this.places.element);
     // The page's own keys would change the scene or save the configuration.

@@ -1,6 +1,6 @@
 import { button, h } from "../../dom";
 import type { ProgramPage } from "../../protocol";
-import { withSettings } from "../../requested-settings";
+import { addSettings } from "../../requested-settings";
 import type { TerminalsState } from "../../state/terminals";
 import type { ThemeState } from "../../state/theme";
 import { language, strings } from "../../strings";
@@ -60,7 +60,7 @@ export class ProgramPanel implements Panel {
   private load(): void {
     for (const { id, url } of this.state.programs) {
       const frame = this.frames.get(id);
-      const address = withSettings(url, { language, theme: this.theme.choice });
+      const address = addSettings(url, { language, theme: this.theme.choice });
       if (frame && frame.src !== address) frame.src = address;
     }
   }

@@ -72,7 +72,7 @@ export class TimePanel implements Panel {
   }
 
   private updateTimes(): void {
-    const times = document.hidden ? null : this.time.currentTimes();
+    const times = document.hidden ? null : this.time.computeTimes();
     if (!times) return;
     for (const { name, output } of this.figures) {
       const text = times[name].toFixed(2);

@@ -3,7 +3,7 @@ import { icon } from "../../icons";
 import type { Property, PropertyValue } from "../../protocol";
 import type { Session } from "../../state/session";
 import { FIXED_FRAME, type ViewState } from "../../state/view";
-import { shortName } from "../../state/views/catalog";
+import { shortNameOf } from "../../state/views/catalog";
 import type { ViewValues } from "../../state/views/view-controller";
 import { strings } from "../../strings";
 import { formatPoint } from "../../tree/numbers";
@@ -58,7 +58,7 @@ export class ViewsPanel implements Panel {
       h(
         "div",
         { class: "toolbar bottom" },
-        button(texts.saveHint, () => view.save(shortName(view.current.cls)), "tool", texts.save),
+        button(texts.saveHint, () => view.save(shortNameOf(view.current.cls)), "tool", texts.save),
         this.removeButton,
         this.renameButton,
         this.nameField,
@@ -85,7 +85,7 @@ export class ViewsPanel implements Panel {
   private update(): void {
     const { classes, current } = this.view;
     if (this.typeSelect.options.length !== classes.length) {
-      this.typeSelect.replaceChildren(...classes.map(({ cls }) => new Option(shortName(cls), cls)));
+      this.typeSelect.replaceChildren(...classes.map(({ cls }) => new Option(shortNameOf(cls), cls)));
     }
     this.typeSelect.value = current.cls;
     this.removeButton.disabled = this.renameButton.disabled = this.chosenId === null;
@@ -100,7 +100,7 @@ export class ViewsPanel implements Panel {
         key: CURRENT,
         name: strings.views.current,
         kind: "group",
-        value: shortName(current.cls),
+        value: shortNameOf(current.cls),
         description: "",
         isStrong: true,
         isExpanded: true,
@@ -110,7 +110,7 @@ export class ViewsPanel implements Panel {
         key: id,
         name: savedView.name,
         kind: "group",
-        value: shortName(savedView.cls),
+        value: shortNameOf(savedView.cls),
         description: strings.views.useHint,
         activate: () => view.use(id),
         children: () =>

@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { meterShare } from "../../state/voice/level";
+import { computeMeterShare } from "../../state/voice/level";
 import { strings } from "../../strings";
 
 /** Sound clips at this peak and above. */
@@ -17,7 +17,7 @@ export class LevelMeter {
 
   /** Shows a peak from 0 to 1; null while there is no microphone. */
   show(peak: number | null): void {
-    const fraction = meterShare(peak ?? 0);
+    const fraction = computeMeterShare(peak ?? 0);
     this.bar.style.width = `${Math.round(100 * fraction)}%`;
     this.bar.classList.toggle("clipped", (peak ?? 0) >= CLIPPING_PEAK);
     this.element.setAttribute("aria-valuenow", String(Math.round(100 * fraction)));

@@ -1,6 +1,6 @@
 import { Box3, Group, Mesh, MeshLambertMaterial } from "three";
 import { FIXED_FRAME } from "../../state/view";
-import { axesGeometry } from "../objects/geometries";
+import { createAxes } from "../objects/geometries";
 import { framePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
@@ -21,7 +21,7 @@ export class AxesDrawing implements Drawing {
   onPropertiesChanged(): void {
     const { rows } = this.context.display;
     this.mesh.geometry.dispose();
-    this.mesh.geometry = axesGeometry(rows.number(1, "Length"), rows.number(0.1, "Radius"), SEGMENTS);
+    this.mesh.geometry = createAxes(rows.number(1, "Length"), rows.number(0.1, "Radius"), SEGMENTS);
     this.frame = rows.text(FIXED_FRAME, "Reference Frame");
   }
 

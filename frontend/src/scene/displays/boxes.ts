@@ -1,6 +1,6 @@
 import { BoxGeometry, EdgesGeometry, Matrix4, Vector3, type Box3 } from "three";
 import { CopyBatch } from "../objects/copy-batch";
-import { cubeGeometry } from "../objects/geometries";
+import { createCube } from "../objects/geometries";
 import { LabelBatch } from "../objects/label-batch";
 import { WideLines } from "../objects/wide-lines";
 import { ContentDrawing } from "./content-drawing";
@@ -14,7 +14,7 @@ const TEXT_HEIGHTS = [0.05, 0.5] as const;
 
 /** The displays of vision_msgs_rviz_plugins: boxes or their edges only, in the colors of their classes. */
 export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
-  private readonly boxes = new CopyBatch(this.root, cubeGeometry());
+  private readonly boxes = new CopyBatch(this.root, createCube());
   private readonly edges = new WideLines();
   private readonly labels = new LabelBatch();
   private texts: string[] = [];
@@ -30,7 +30,7 @@ export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
     this.labels.dispose();
   }
 
-  protected override drawnState(): object {
+  protected override inspectContents(): object {
     return { boxes: this.latest?.sizes.length ? this.latest.sizes.length / 3 : 0, solid: this.boxes.size, texts: [...this.texts] };
   }
 
@@ -45,13 +45,13 @@ export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
     const alpha = rows.number(1, "Alpha");
     // Boxes without classes arrive in white and get the display's color.
     const displayColor = rows.text("", "Color") === "" ? null : colorOf(rows, "#ffff00", "Color");
-    const [posedContent] = this.posedContents();
+    const [posedContent] = this.listPosedContents();
     const content = posedContent?.content;
     const count = content ? content.sizes.length / 3 : 0;
     const segments: number[] = [];
     const colors: number[] = [];
     this.texts = [];
-    const anchors: { at: Vector3; height: number }[] = [];
+    const anchors: { position: Vector3; height: number }[] = [];
     this.boxes.begin(hasEdgesOnly ? 0 : count);
     for (let i = 0; i < count && content; i++) {
       const size = new Vector3().fromArray(content.sizes, 3 * i);
@@ -70,13 +70,13 @@ export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
       if (score < 0 || !rows.bool(false, "Show Score")) continue;
       const height = Math.min(TEXT_HEIGHTS[1], Math.max(TEXT_HEIGHTS[0], size.z / 3));
       this.texts.push(`${content.names[i] ?? ""} ${score.toFixed(2)}`.trim());
-      anchors.push({ at: center.setZ(center.z + 0.6 * size.z + height), height });
+      anchors.push({ position: center.setZ(center.z + 0.6 * size.z + height), height });
     }
     this.boxes.end();
     this.edges.setStyle(0xffffff, alpha, rows.number(0.05, "Line Width"));
     this.edges.setSegments(Float32Array.from(segments), Float32Array.from(colors));
     this.labels.begin(this.texts.join("").length);
-    anchors.forEach(({ at, height }, i) => this.labels.add(this.texts[i] ?? "", at, height, 0, 1));
+    anchors.forEach(({ position, height }, i) => this.labels.add(this.texts[i] ?? "", position, height, 0, 1));
     this.labels.end();
   }
 }

@@ -2,12 +2,12 @@ import { Camera, Group, Matrix4 } from "three";
 import type { DisplayData } from "../../connection/data";
 import type { CameraModel } from "../../protocol";
 import { strings } from "../../strings";
-import { cameraInImageFrame, computeZoom, createProjection } from "../images/camera-projection";
+import { createCameraPose, computeZoom, createProjection } from "../images/camera-projection";
 import { OwnPanel } from "../images/own-panel";
 import { ImageCanvas } from "../images/image-canvas";
 import { SceneImage } from "../images/scene-image";
 import { isShownInCamera } from "../images/shown-in-camera";
-import { dataPose } from "../pose";
+import { readDataPose } from "../pose";
 import type { Drawing, DrawingContext, DrawnScene } from "./drawing";
 
 /** rviz_default_plugins/Camera: a panel with the scene as a camera sees it, combined with the camera's image. */
@@ -65,11 +65,11 @@ export class CameraDrawing implements Drawing {
     const { element } = this.panel;
     if (!data || !model || !this.panel.isVisible || !this.isDue()) return;
     const startMs = performance.now();
-    if (!dataPose(this.context.session.frames, data, this.camera.matrix)) return;
+    if (!readDataPose(this.context.session.frames, data, this.camera.matrix)) return;
     const { rows } = this.context.display;
     const [width, height] = [element.clientWidth, element.clientHeight];
     const zoom = computeZoom(model, rows.number(1, "Zoom Factor"), width, height);
-    this.camera.matrix.multiply(cameraInImageFrame(model));
+    this.camera.matrix.multiply(createCameraPose(model));
     this.camera.matrixWorldNeedsUpdate = true;
     this.camera.projectionMatrix.copy(createProjection(model, zoom, rows.number(100, "Far Plane Distance")));
     this.camera.projectionMatrixInverse.copy(this.camera.projectionMatrix).invert();

@@ -5,7 +5,7 @@ import { PointBatch } from "../objects/point-batch";
 import type { PointLook, PointStyle } from "../objects/point-material";
 import { WireBoxes } from "../objects/wire-boxes";
 import type { DescriptionRow, Hit, SelectionBox } from "../picking";
-import { dataPose } from "../pose";
+import { readDataPose } from "../pose";
 import { describePoint } from "./cloud-description";
 import type { Drawing, DrawingContext } from "./drawing";
 import { PointFieldStore } from "./point-fields";
@@ -43,7 +43,7 @@ export class CloudDrawing implements Drawing {
   }
 
   onPropertiesChanged(): void {
-    for (const cloud of this.clouds.values()) cloud.batch.setLook(this.look(cloud));
+    for (const cloud of this.clouds.values()) cloud.batch.setLook(this.readLook(cloud));
     this.markSelection();
   }
 
@@ -55,9 +55,9 @@ export class CloudDrawing implements Drawing {
       cloud.data = data;
       cloud.perDepth = content.pixel;
       cloud.step = content.step;
-      cloud.batch.setLook(this.look(cloud));
+      cloud.batch.setLook(this.readLook(cloud));
     } else {
-      const look = this.look({ perDepth: content.pixel });
+      const look = this.readLook({ perDepth: content.pixel });
       cloud = { data, batch: new PointBatch(look), perDepth: content.pixel, step: content.step };
       cloud.batch.root.matrixAutoUpdate = false;
       this.clouds.set(data.key, cloud);
@@ -81,7 +81,7 @@ export class CloudDrawing implements Drawing {
   update(): void {
     const { frames } = this.context.session;
     for (const { batch, data } of this.clouds.values()) {
-      batch.root.visible = dataPose(frames, data, batch.root.matrix);
+      batch.root.visible = readDataPose(frames, data, batch.root.matrix);
       batch.root.matrixWorldNeedsUpdate = true;
     }
   }
@@ -99,35 +99,35 @@ export class CloudDrawing implements Drawing {
       inverse.copy(cloud.batch.root.matrix).invert();
       origin.copy(ray.ray.origin).applyMatrix4(inverse);
       direction.copy(ray.ray.direction).transformDirection(inverse);
-      const { style, size } = this.look(cloud);
+      const { style, size } = this.readLook(cloud);
       const radius = (style === "Points" ? 0 : size[0] / 2) + (isOrthographic ? pointerRadius : 0);
       const { positions } = cloud.batch;
-      const found = findNearestPoint(positions, origin.toArray(), direction.toArray(), radius, isOrthographic ? 0 : pointerRadius);
-      if (!found || (nearestHit && nearestHit.distance <= found.distance)) continue;
-      const point = new Vector3().fromArray(positions, found.index * 3).applyMatrix4(cloud.batch.root.matrix);
-      nearestHit = { key: `${key}:${found.index}`, distance: found.distance, point };
+      const nearestPoint = findNearestPoint(positions, origin.toArray(), direction.toArray(), radius, isOrthographic ? 0 : pointerRadius);
+      if (!nearestPoint || (nearestHit && nearestHit.distance <= nearestPoint.distance)) continue;
+      const point = new Vector3().fromArray(positions, nearestPoint.index * 3).applyMatrix4(cloud.batch.root.matrix);
+      nearestHit = { key: `${key}:${nearestPoint.index}`, distance: nearestPoint.distance, point };
     }
     if (nearestHit && !this.context.display.rows.bool(true, "Selectable")) nearestHit.isGround = true;
     return nearestHit;
   }
 
   pickBox(box: SelectionBox): readonly string[] {
-    const found: string[] = [];
-    if (!this.context.display.rows.bool(true, "Selectable")) return found;
-    const at = new Vector3();
+    const keys: string[] = [];
+    if (!this.context.display.rows.bool(true, "Selectable")) return keys;
+    const position = new Vector3();
     for (const [key, { batch }] of this.clouds) {
-      for (let i = 0; i < batch.count && found.length < MAX_SELECTED; i++) {
-        at.fromArray(batch.positions, i * 3).applyMatrix4(batch.root.matrix);
-        if (box.hasPoint(at.x, at.y, at.z)) found.push(`${key}:${i}`);
+      for (let i = 0; i < batch.count && keys.length < MAX_SELECTED; i++) {
+        position.fromArray(batch.positions, i * 3).applyMatrix4(batch.root.matrix);
+        if (box.hasPoint(position.x, position.y, position.z)) keys.push(`${key}:${i}`);
       }
     }
-    return found;
+    return keys;
   }
 
   describe(key: string): DescriptionRow | null {
-    const found = this.find(key);
-    if (!found) return null;
-    const { cloud, cloudKey, index } = found;
+    const item = this.find(key);
+    if (!item) return null;
+    const { cloud, cloudKey, index } = item;
     const position = cloud.batch.positions.subarray(index * 3, index * 3 + 3);
     // The server numbers the points of the full cloud, also when the cloud is thinned for a slow connection.
     const number = index * cloud.step;
@@ -135,10 +135,10 @@ export class CloudDrawing implements Drawing {
   }
 
   positionOf(key: string): Vector3 | null {
-    const found = this.find(key);
-    if (!found) return null;
-    const { positions, root } = found.cloud.batch;
-    return new Vector3().fromArray(positions, found.index * 3).applyMatrix4(root.matrix);
+    const item = this.find(key);
+    if (!item) return null;
+    const { positions, root } = item.cloud.batch;
+    return new Vector3().fromArray(positions, item.index * 3).applyMatrix4(root.matrix);
   }
 
   highlight(keys: ReadonlySet<string>): void {
@@ -149,7 +149,7 @@ export class CloudDrawing implements Drawing {
   inspect(): object {
     this.update();
     const clouds = [...this.clouds.values()];
-    const corners = bounds(clouds);
+    const corners = computeBounds(clouds);
     const [first] = clouds;
     return {
       messages: clouds.length,
@@ -157,7 +157,7 @@ export class CloudDrawing implements Drawing {
       bounds: corners,
       step: first?.step ?? 1,
       firstColor: first ? [...first.batch.colors.subarray(0, 4)] : [],
-      style: this.look({ perDepth: 0 }).style,
+      style: this.readLook({ perDepth: 0 }).style,
     };
   }
 
@@ -167,7 +167,7 @@ export class CloudDrawing implements Drawing {
     this.marks.dispose();
   }
 
-  private look({ perDepth }: { perDepth: number }): PointLook {
+  private readLook({ perDepth }: { perDepth: number }): PointLook {
     const { rows } = this.context.display;
     const size = rows.number(0.01, "Size (m)");
     return {
@@ -181,8 +181,8 @@ export class CloudDrawing implements Drawing {
   }
 
   private find(key: string): { cloud: Cloud; cloudKey: string; index: number } | null {
-    const at = key.lastIndexOf(":");
-    const [cloudKey, index] = [key.slice(0, at), Number(key.slice(at + 1))];
+    const separator = key.lastIndexOf(":");
+    const [cloudKey, index] = [key.slice(0, separator), Number(key.slice(separator + 1))];
     const cloud = this.clouds.get(cloudKey);
     return cloud && index < cloud.batch.count ? { cloud, cloudKey, index } : null;
   }
@@ -190,22 +190,22 @@ export class CloudDrawing implements Drawing {
   /** Draws boxes around the selected points. */
   private markSelection(): void {
     const centers = [...this.selectedKeys].flatMap((key) => this.positionOf(key)?.toArray() ?? []);
-    const { style, size } = this.look({ perDepth: 0 });
+    const { style, size } = this.readLook({ perDepth: 0 });
     this.marks.set(centers, style === "Points" ? POINT_MARK : size[0]);
     this.context.invalidate();
   }
 }
 
 /** Returns the minimum and maximum corner of all points in the fixed frame, m; null if there are none. */
-function bounds(clouds: readonly Cloud[]): [number[], number[]] | null {
+function computeBounds(clouds: readonly Cloud[]): [number[], number[]] | null {
   const minimum = new Vector3(Infinity, Infinity, Infinity);
   const maximum = minimum.clone().negate();
-  const at = new Vector3();
+  const position = new Vector3();
   for (const { batch } of clouds) {
     for (let i = 0; i < batch.count; i++) {
-      at.fromArray(batch.positions, i * 3).applyMatrix4(batch.root.matrix);
-      minimum.min(at);
-      maximum.max(at);
+      position.fromArray(batch.positions, i * 3).applyMatrix4(batch.root.matrix);
+      minimum.min(position);
+      maximum.max(position);
     }
   }
   return minimum.x === Infinity ? null : [minimum.toArray(), maximum.toArray()];

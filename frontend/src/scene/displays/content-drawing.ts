@@ -1,7 +1,7 @@
 import { Box3, Group, Matrix4 } from "three";
 import type { DisplayData } from "../../connection/data";
 import type { DataContent } from "../../protocol";
-import { dataPose } from "../pose";
+import { readDataPose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
 type Kind = DataContent["kind"];
@@ -59,7 +59,7 @@ export abstract class ContentDrawing<K extends Kind> implements Drawing {
     const box = new Box3();
     this.expandBox(box);
     const bounds = box.isEmpty() ? null : { min: box.min.toArray(), max: box.max.toArray() };
-    return { contents: this.contents.size, bounds, ...this.drawnState() };
+    return { contents: this.contents.size, bounds, ...this.inspectContents() };
   }
 
   abstract dispose(): void;
@@ -67,22 +67,22 @@ export abstract class ContentDrawing<K extends Kind> implements Drawing {
   protected abstract expandBox(box: Box3): void;
 
   /** Returns further results for `inspect`. */
-  protected drawnState(): object {
+  protected inspectContents(): object {
     return {};
   }
 
   /** The newest content. */
   protected get latest(): ContentOf<K> | null {
-    const newest = [...this.contents.values()].at(-1);
-    return newest ? (newest.content as ContentOf<K>) : null;
+    const newestContent = [...this.contents.values()].at(-1);
+    return newestContent ? (newestContent.content as ContentOf<K>) : null;
   }
 
   /** Returns the contents whose frame has a pose, with new matrices. */
-  protected posedContents(): PosedContent<ContentOf<K>>[] {
+  protected listPosedContents(): PosedContent<ContentOf<K>>[] {
     const result: PosedContent<ContentOf<K>>[] = [];
     for (const data of this.contents.values()) {
       const pose = new Matrix4();
-      if (!dataPose(this.context.session.frames, data, pose)) continue;
+      if (!readDataPose(this.context.session.frames, data, pose)) continue;
       result.push({ key: data.key, frame: data.frame, content: data.content as ContentOf<K>, pose });
     }
     return result;

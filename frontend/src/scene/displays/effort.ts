@@ -1,5 +1,5 @@
 import { Matrix4, Vector3, type Box3 } from "three";
-import { alongX, ArrowBatch } from "../objects/arrow-batch";
+import { poseAlongX, ArrowBatch } from "../objects/arrow-batch";
 import { WideLines } from "../objects/wide-lines";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
@@ -26,7 +26,7 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
     this.heads.dispose();
   }
 
-  protected override drawnState(): object {
+  protected override inspectContents(): object {
     return { rings: this.heads.size, joints: this.latest?.joints ?? [], efforts: [...(this.latest?.efforts ?? [])] };
   }
 
@@ -39,7 +39,7 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
     const { rows } = this.context.display;
     const [scale, width, alpha] = [rows.number(1, "Scale"), rows.number(0.02, "Width"), rows.number(1, "Alpha")];
     const headShape = { shaftLength: 0, shaftDiameter: 2 * width, headLength: 2 * width, headDiameter: 4 * width };
-    const contents = this.posedContents();
+    const contents = this.listPosedContents();
     const strips: Float32Array[] = [];
     const colors: Float32Array[] = [];
     const [pose, arrow] = [new Matrix4(), new Matrix4()];
@@ -48,13 +48,13 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
       content.joints.forEach((joint, i) => {
         if (!rows.bool(true, "Joints", joint)) return;
         const effort = content.efforts[i] ?? 0;
-        const share = usedShare(effort, content.limits[i] ?? 0) + MIN_RADIUS;
+        const share = computeUsedShare(effort, content.limits[i] ?? 0) + MIN_RADIUS;
         const radius = MIN_RADIUS + (share * scale) / 2;
-        const [r, g, b] = rainbow(share);
+        const [r, g, b] = rainbowColorOf(share);
         poseAt(content.poses, i, pose);
-        strips.push(ring(pose, radius, Math.sign(effort)));
+        strips.push(createRing(pose, radius, Math.sign(effort)));
         colors.push(new Float32Array(Array.from({ length: POINTS }, () => [r, g, b, 1]).flat()));
-        alongX(new Vector3(0, radius, 0), new Vector3(effort > 0 ? -1 : 1, 0, 0), arrow);
+        poseAlongX(new Vector3(0, radius, 0), new Vector3(effort > 0 ? -1 : 1, 0, 0), arrow);
         const color = (Math.round(r * 255) << 16) | (Math.round(g * 255) << 8) | Math.round(b * 255);
         this.heads.add(arrow.premultiply(pose), headShape, { color, alpha });
       });
@@ -66,11 +66,11 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
 }
 
 /** Returns the used share of an effort's limit, at most 1; for a joint without a limit, the effort itself. */
-function usedShare(effort: number, limit: number): number {
+function computeUsedShare(effort: number, limit: number): number {
   return limit === 0 ? Math.abs(effort) : Math.min(Math.abs(effort) / limit, 1);
 }
 
-function ring(pose: Matrix4, radius: number, direction: number): Float32Array {
+function createRing(pose: Matrix4, radius: number, direction: number): Float32Array {
   const strip = new Float32Array(POINTS * 3);
   const point = new Vector3();
   for (let i = 0; i < POINTS; i++) {
@@ -82,7 +82,7 @@ function ring(pose: Matrix4, radius: number, direction: number): Float32Array {
 }
 
 /** Returns RViz's color of an effort: from violet for 0 via blue, green and yellow to red for 1. */
-export function rainbow(value: number): [number, number, number] {
+export function rainbowColorOf(value: number): [number, number, number] {
   const hue = Math.min(1, Math.max(0, value)) * 5 + 1;
   const sector = Math.floor(hue);
   const fraction = hue - sector;

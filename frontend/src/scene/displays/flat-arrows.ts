@@ -14,7 +14,7 @@ const FLAT_ARROW = [
 /**
  * Returns line arrows at poses in a frame, as segments in the fixed frame; `lengthOf` returns each arrow's length, m.
  */
-export function flatArrows(poses: Float32Array, frame: Matrix4, lengthOf: (pose: number) => number): Float32Array {
+export function createFlatArrows(poses: Float32Array, frame: Matrix4, lengthOf: (pose: number) => number): Float32Array {
   const count = poses.length / 7;
   const result = new Float32Array(count * FLAT_ARROW.length * 3);
   const [matrix, point] = [new Matrix4(), new Vector3()];

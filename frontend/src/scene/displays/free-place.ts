@@ -17,11 +17,11 @@ const SIDES = [[1, 0], [0, 1], [-1, 0], [0, -1]] as const;
  * @param world - the pose of the world in the fixed frame.
  * @param center - the center of the robots, in the fixed frame, m; null for the origin of the world.
  */
-export function freePlace(boxes: readonly Box3[], world: Matrix4, center: Vector3 | null = null): number[] {
+export function findFreePlace(boxes: readonly Box3[], world: Matrix4, center: Vector3 | null = null): number[] {
   const toWorld = world.clone().invert();
   const { x: startX, y: startY } = center === null ? new Vector3() : center.clone().applyMatrix4(toWorld).round();
-  const isFree = (place: readonly number[]): boolean => {
-    const [x, y, z] = new Vector3().fromArray(place).applyMatrix4(world).toArray();
+  const isFree = (position: readonly number[]): boolean => {
+    const [x, y, z] = new Vector3().fromArray(position).applyMatrix4(world).toArray();
     const room = new Box3(new Vector3(x - HALF_SIDE, y - HALF_SIDE, z + FLOOR_HEIGHT), new Vector3(x + HALF_SIDE, y + HALF_SIDE, z + 2 * HALF_SIDE));
     return !boxes.some((box) => box.intersectsBox(room));
   };

@@ -4,7 +4,7 @@ import { findNearestPoint } from "../objects/nearest-point";
 import { PointBatch } from "../objects/point-batch";
 import type { PointLook } from "../objects/point-material";
 import type { Hit } from "../picking";
-import { dataPose } from "../pose";
+import { readDataPose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
 /** rviz_default_plugins/GridCells: flat cells in the xy plane of their frame. */
@@ -15,13 +15,13 @@ export class GridCellsDrawing implements Drawing {
   private readonly batch: PointBatch;
 
   constructor(private readonly context: DrawingContext) {
-    this.batch = new PointBatch(this.look());
+    this.batch = new PointBatch(this.readLook());
     this.root.matrixAutoUpdate = false;
     this.root.add(this.batch.root);
   }
 
   onPropertiesChanged(): void {
-    this.batch.setLook(this.look());
+    this.batch.setLook(this.readLook());
   }
 
   onDataChanged(data: DisplayData): void {
@@ -29,7 +29,7 @@ export class GridCellsDrawing implements Drawing {
     if (content.kind !== "cell_grid") return;
     this.data = data;
     this.sides = [content.width, content.height];
-    this.batch.setLook(this.look());
+    this.batch.setLook(this.readLook());
     this.batch.setPoints(content.positions, new Uint8Array(0), false);
   }
 
@@ -40,7 +40,7 @@ export class GridCellsDrawing implements Drawing {
 
   update(): void {
     if (!this.data) return;
-    dataPose(this.context.session.frames, this.data, this.root.matrix);
+    readDataPose(this.context.session.frames, this.data, this.root.matrix);
     this.root.matrixWorldNeedsUpdate = true;
   }
 
@@ -48,10 +48,10 @@ export class GridCellsDrawing implements Drawing {
     const inverse = this.root.matrix.clone().invert();
     const origin = ray.origin.clone().applyMatrix4(inverse).toArray();
     const direction = ray.direction.clone().transformDirection(inverse).toArray();
-    const nearest = findNearestPoint(this.batch.positions, origin, direction, Math.max(...this.sides) / 2, 0);
-    if (!nearest) return null;
-    const point = new Vector3().fromArray(this.batch.positions, nearest.index * 3).applyMatrix4(this.root.matrix);
-    return { key: "", distance: nearest.distance, point, isGround: true };
+    const nearestPoint = findNearestPoint(this.batch.positions, origin, direction, Math.max(...this.sides) / 2, 0);
+    if (!nearestPoint) return null;
+    const point = new Vector3().fromArray(this.batch.positions, nearestPoint.index * 3).applyMatrix4(this.root.matrix);
+    return { key: "", distance: nearestPoint.distance, point, isGround: true };
   }
 
   inspect(): object {
@@ -64,7 +64,7 @@ export class GridCellsDrawing implements Drawing {
     this.batch.dispose();
   }
 
-  private look(): PointLook {
+  private readLook(): PointLook {
     const { rows } = this.context.display;
     return {
       style: "Tiles",

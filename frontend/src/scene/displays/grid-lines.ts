@@ -10,19 +10,19 @@ export interface GridShape {
  * Returns both ends (x y z, x y z) of every line of a grid centered on the origin, as in RViz's Grid: `normalCells` + 1
  * layers of `cells` x `cells` cells, connected by lines along the normal.
  */
-export function gridLines({ cells, normalCells, cellSize, plane }: GridShape): Float32Array {
+export function createGridLines({ cells, normalCells, cellSize, plane }: GridShape): Float32Array {
   const points: number[] = [];
   const extent = (cells * cellSize) / 2;
   const top = (normalCells * cellSize) / 2;
   const addLine = (a: readonly number[], b: readonly number[]): void => {
-    points.push(...inPlane(a, plane), ...inPlane(b, plane));
+    points.push(...placeInPlane(a, plane), ...placeInPlane(b, plane));
   };
   for (let layer = 0; layer <= normalCells; layer++) {
     const z = top - layer * cellSize;
     for (let i = 0; i <= cells; i++) {
-      const at = extent - i * cellSize;
-      addLine([at, -extent, z], [at, extent, z]);
-      addLine([-extent, at, z], [extent, at, z]);
+      const offset = extent - i * cellSize;
+      addLine([offset, -extent, z], [offset, extent, z]);
+      addLine([-extent, offset, z], [extent, offset, z]);
     }
   }
   if (normalCells > 0) {
@@ -42,15 +42,15 @@ export function gridLines({ cells, normalCells, cellSize, plane }: GridShape): F
  */
 export function splitLines(lines: Float32Array, pieces: number): Float32Array {
   const result = new Float32Array(lines.length * pieces);
-  let at = 0;
+  let index = 0;
   for (let line = 0; line < lines.length; line += 6) {
     const [ax = 0, ay = 0, az = 0, bx = 0, by = 0, bz = 0] = lines.subarray(line, line + 6);
     for (let end = 0; end < 2 * pieces; end++) {
       const share = (end + 1) >> 1;
       const ratio = share / pieces;
-      result[at++] = ax + (bx - ax) * ratio;
-      result[at++] = ay + (by - ay) * ratio;
-      result[at++] = az + (bz - az) * ratio;
+      result[index++] = ax + (bx - ax) * ratio;
+      result[index++] = ay + (by - ay) * ratio;
+      result[index++] = az + (bz - az) * ratio;
     }
   }
   return result;
@@ -60,7 +60,7 @@ export function splitLines(lines: Float32Array, pieces: number): Float32Array {
  * Returns the colors (r g b a) of line ends around the origin, which fade out with the distance, as the ground has no
  * edge.
  */
-export function fadedColors(ends: Float32Array): Float32Array {
+export function createFadedColors(ends: Float32Array): Float32Array {
   const colors = new Float32Array((ends.length / 3) * 4).fill(1);
   const distanceAt = (i: number): number => Math.hypot(ends[i] ?? 0, ends[i + 1] ?? 0, ends[i + 2] ?? 0);
   const maxDistance = ends.reduce((maximum, end) => Math.max(maximum, Math.abs(end)), 0);
@@ -68,7 +68,7 @@ export function fadedColors(ends: Float32Array): Float32Array {
   return colors;
 }
 
-function inPlane([a = 0, b = 0, normal = 0]: readonly number[], plane: string): [number, number, number] {
+function placeInPlane([a = 0, b = 0, normal = 0]: readonly number[], plane: string): [number, number, number] {
   if (plane === "XZ") return [a, normal, b];
   if (plane === "YZ") return [normal, a, b];
   return [a, b, normal];

@@ -20,7 +20,7 @@ export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
     for (const surface of [...this.surfaces.keys()]) this.remove(surface);
   }
 
-  protected override drawnState(): object {
+  protected override inspectContents(): object {
     const meshes = [...this.surfaces.values()];
     const triangles = meshes.reduce((sum, { geometry, visible }) => sum + (visible ? (geometry.index?.count ?? 0) / 3 : 0), 0);
     return { triangles, lines: this.lines.root.visible ? this.lines.count : 0 };
@@ -34,7 +34,7 @@ export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
   protected arrange(): void {
     const { rows } = this.context.display;
     const alpha = rows.number(1, "Alpha");
-    const posedContents = this.posedContents();
+    const posedContents = this.listPosedContents();
     const surfaces = new Set(posedContents.map(({ content }) => content));
     for (const surface of [...this.surfaces.keys()]) if (!surfaces.has(surface)) this.remove(surface);
     for (const { content, pose } of posedContents) {

@@ -3,7 +3,7 @@ import { FIXED_FRAME } from "../../state/view";
 import { WideLines } from "../objects/wide-lines";
 import { framePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
-import { gridLines, splitLines, fadedColors } from "./grid-lines";
+import { createGridLines, splitLines, createFadedColors } from "./grid-lines";
 
 /** The maximum number of pieces of a line; up to it, a line has one piece for each cell. */
 const MAX_PIECES = 20;
@@ -25,7 +25,7 @@ export class GridDrawing implements Drawing {
   onPropertiesChanged(): void {
     const { rows } = this.context.display;
     const cells = rows.number(10, "Plane Cell Count");
-    const segments = gridLines({
+    const segments = createGridLines({
       cells,
       normalCells: rows.number(0, "Normal Cell Count"),
       cellSize: rows.number(1, "Cell Size"),
@@ -44,7 +44,7 @@ export class GridDrawing implements Drawing {
     this.lines.geometry.dispose();
     this.lines.geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(pieces, 3));
     this.isFading = this.context.session.displays.hasBackdrop;
-    const colors = this.isFading ? fadedColors(pieces) : null;
+    const colors = this.isFading ? createFadedColors(pieces) : null;
     if (colors) this.lines.geometry.setAttribute("color", new Float32BufferAttribute(colors, 4));
     this.lines.material.vertexColors = colors !== null;
     this.lines.material.color.set(color);

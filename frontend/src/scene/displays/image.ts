@@ -99,13 +99,13 @@ export class ImageDrawing implements Drawing {
   /** Sends the panel's size to the server, which need not send more pixels than that. */
   private sendSize(): void {
     const { display, session } = this.context;
-    const pixels = (points: number): number => Math.ceil(points * window.devicePixelRatio);
+    const toPixels = (points: number): number => Math.ceil(points * window.devicePixelRatio);
     const { clientWidth, clientHeight } = this.panel.element;
     session.connection.send({
       type: "image_size",
       display: display.id,
-      width: pixels(clientWidth),
-      height: pixels(clientHeight),
+      width: toPixels(clientWidth),
+      height: toPixels(clientHeight),
     });
   }
 }

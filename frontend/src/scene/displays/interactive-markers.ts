@@ -7,7 +7,7 @@ import { describePose } from "../described-pose";
 import type { ControlHandle } from "../interactive/control-handle";
 import { MarkerHandle } from "../interactive/marker-handle";
 import type { DescriptionRow, Hit, Interaction, ScenePointer } from "../picking";
-import { poseMatrix } from "../pose";
+import { setPoseMatrix } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
 /** ms; while a marker is dragged, its pose is sent at most once in this interval. */
@@ -62,31 +62,31 @@ export class InteractiveMarkersDrawing implements Drawing {
   }
 
   pick(ray: Raycaster): Hit | null {
-    let nearest: Hit | null = null;
+    let nearestHit: Hit | null = null;
     for (const [name, marker] of this.markers) {
       const hit = marker.root.visible ? marker.hit(ray) : null;
-      if (hit && (nearest === null || hit.distance < nearest.distance)) {
-        nearest = { key: `${hit.control}/${name}`, distance: hit.distance, point: hit.point };
+      if (hit && (nearestHit === null || hit.distance < nearestHit.distance)) {
+        nearestHit = { key: `${hit.control}/${name}`, distance: hit.distance, point: hit.point };
       }
     }
-    return nearest;
+    return nearestHit;
   }
 
   describe(key: string): DescriptionRow | null {
-    const found = this.find(key);
-    if (!found) return null;
+    const handles = this.find(key);
+    if (!handles) return null;
     return {
-      name: `Interactive Marker ${found.marker.shape.name}`,
+      name: `Interactive Marker ${handles.marker.shape.name}`,
       children: [
-        ...describePose(poseMatrix(found.marker.values, new Matrix4())),
-        { name: "Control", value: found.control.control.name },
+        ...describePose(setPoseMatrix(handles.marker.values, new Matrix4())),
+        { name: "Control", value: handles.control.control.name },
       ],
     };
   }
 
   objectsOf(key: string): readonly Object3D[] {
-    const found = this.find(key);
-    return found ? [found.control.root] : [];
+    const handles = this.find(key);
+    return handles ? [handles.control.root] : [];
   }
 
   onInteractionChanged(interaction: Interaction): void {
@@ -95,9 +95,9 @@ export class InteractiveMarkersDrawing implements Drawing {
   }
 
   onPointer(event: ScenePointer): boolean {
-    const found = event.hit && this.find(event.hit.key);
-    if (!event.hit || !found) return false;
-    const { marker, control } = found;
+    const handles = event.hit && this.find(event.hit.key);
+    if (!event.hit || !handles) return false;
+    const { marker, control } = handles;
     const { invalidate, camera } = this.context;
     switch (event.type) {
       case "enter":
@@ -140,7 +140,7 @@ export class InteractiveMarkersDrawing implements Drawing {
   private onPointerDown(event: ScenePointer, hit: Hit, marker: MarkerHandle, control: ControlHandle): boolean {
     const { menu } = marker.shape;
     if (menu.length > 0 && (event.button === "right" || control.control.mode === "menu")) {
-      this.context.session.sceneMenu.emit({ x: event.x, y: event.y, choices: this.choices(marker, control, menu, 0) });
+      this.context.session.sceneMenu.emit({ x: event.x, y: event.y, choices: this.listChoices(marker, control, menu, 0) });
       return true;
     }
     if (event.button !== "left") return false;
@@ -160,7 +160,7 @@ export class InteractiveMarkersDrawing implements Drawing {
     this.context.invalidate();
   }
 
-  private choices(
+  private listChoices(
     marker: MarkerHandle,
     control: ControlHandle,
     menu: readonly MarkerMenuEntry[],
@@ -169,7 +169,7 @@ export class InteractiveMarkersDrawing implements Drawing {
     return menu
       .filter((entry) => entry.parent === parent && entry.id !== parent)
       .map((entry) => {
-        const choices = this.choices(marker, control, menu, entry.id);
+        const choices = this.listChoices(marker, control, menu, entry.id);
         const run = (): void => {
           this.context.session.connection.send(marker.createFeedback(control, "menu_select", entry.id));
         };

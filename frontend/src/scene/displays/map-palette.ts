@@ -15,16 +15,16 @@ export function mapPalette(scheme: MapScheme, threshold: number | null): Uint8Ar
 type Rgba = readonly [number, number, number, number];
 
 function colorOf(scheme: MapScheme, value: number, threshold: number | null): Rgba {
-  if (scheme === "raw") return gray(threshold === null ? value : value < threshold ? 0 : 255);
+  if (scheme === "raw") return createGray(threshold === null ? value : value < threshold ? 0 : 255);
   if (value === 255) return UNKNOWN;
   // Invalid values: green above 100, red to yellow below -1.
   if (value >= 128) return [255, Math.floor((255 * (value - 128)) / 126), 0, 255];
   if (value > 100) return [0, 255, 0, 255];
   if (threshold !== null) {
-    if (scheme === "map") return gray(value < threshold ? 255 : 0);
+    if (scheme === "map") return createGray(value < threshold ? 255 : 0);
     return value < threshold ? [0, 0, 255, 255] : [255, 0, 0, 255];
   }
-  if (scheme === "map") return gray(255 - Math.floor((255 * value) / 100));
+  if (scheme === "map") return createGray(255 - Math.floor((255 * value) / 100));
   if (value === 0) return [0, 0, 0, 0];
   if (value === 99) return [0, 255, 255, 255];
   if (value === 100) return [255, 0, 255, 255];
@@ -32,6 +32,6 @@ function colorOf(scheme: MapScheme, value: number, threshold: number | null): Rg
   return [heat, 0, 255 - heat, 255];
 }
 
-function gray(value: number): Rgba {
+function createGray(value: number): Rgba {
   return [value, value, value, 255];
 }

@@ -3,7 +3,7 @@ import type { DisplayData } from "../../connection/data";
 import type { OccupancyMap } from "../../protocol";
 import { CellPlane } from "../objects/cell-plane";
 import type { Hit } from "../picking";
-import { dataPose } from "../pose";
+import { readDataPose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 import { mapPalette, type MapScheme } from "./map-palette";
 
@@ -56,7 +56,7 @@ export class MapDrawing implements Drawing {
 
   update(): void {
     if (!this.data) return;
-    this.plane.root.visible = dataPose(this.context.session.frames, this.data, this.root.matrix);
+    this.plane.root.visible = readDataPose(this.context.session.frames, this.data, this.root.matrix);
     this.root.matrix.multiply(this.origin);
     this.root.matrixWorldNeedsUpdate = true;
   }
@@ -78,12 +78,12 @@ export class MapDrawing implements Drawing {
   }
 
   /** Returns the bounding box of the map in the fixed frame, m; empty if no map is shown. */
-  bounds(): Box3 {
+  computeBounds(): Box3 {
     this.update();
-    return this.plane.root.visible ? new Box3().setFromPoints(this.corners()) : new Box3();
+    return this.plane.root.visible ? new Box3().setFromPoints(this.computeCorners()) : new Box3();
   }
 
-  private corners(): Vector3[] {
+  private computeCorners(): Vector3[] {
     if (!this.map) return [];
     const { width, height, resolution } = this.map;
     const [x, y] = [width * resolution, height * resolution];
@@ -94,7 +94,7 @@ export class MapDrawing implements Drawing {
     this.update();
     if (!this.map) return { cells: 0 };
     const { width, height, cells } = this.map;
-    const [minimum, , , maximum] = this.corners().map((corner) => corner.toArray());
+    const [minimum, , , maximum] = this.computeCorners().map((corner) => corner.toArray());
     const counts: Record<number, number> = {};
     for (const value of cells) counts[value] = (counts[value] ?? 0) + 1;
     const colors = Object.keys(counts).map((value) => [

@@ -5,7 +5,7 @@ import { describeNumbers, describePose } from "../described-pose";
 import { makeMarkerObject, type MarkerObject } from "../markers/marker-object";
 import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
 import type { DescriptionRow, Hit, SelectionBox } from "../picking";
-import { framePose, poseMatrix } from "../pose";
+import { framePose, setPoseMatrix } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
 interface MarkerEntry {
@@ -72,15 +72,15 @@ export class MarkersDrawing implements Drawing {
   }
 
   pick(ray: Raycaster): Hit | null {
-    let nearest: Hit | null = null;
+    let nearestHit: Hit | null = null;
     for (const [key, entry] of this.entries) {
       if (this.hiddenNamespaces.has(entry.marker.namespace)) continue;
       const [hit] = ray.intersectObjects(this.surfacesOf(entry), true);
-      if (hit && (nearest === null || hit.distance < nearest.distance)) {
-        nearest = { key, distance: hit.distance, point: hit.point };
+      if (hit && (nearestHit === null || hit.distance < nearestHit.distance)) {
+        nearestHit = { key, distance: hit.distance, point: hit.point };
       }
     }
-    return nearest;
+    return nearestHit;
   }
 
   pickBox(box: SelectionBox): readonly string[] {
@@ -153,7 +153,7 @@ export class MarkersDrawing implements Drawing {
   }
 
   private show(marker: MarkerShape): void {
-    const pose = poseMatrix(marker.pose, new Matrix4());
+    const pose = setPoseMatrix(marker.pose, new Matrix4());
     const previous = this.entries.get(marker.id);
     if (previous?.object && hasSameMesh(previous.marker, marker)) {
       this.entries.set(marker.id, { marker, pose, object: previous.object, surfaces: null });

@@ -4,7 +4,7 @@ import { AxesBatch } from "../objects/axes-batch";
 import { ThinLines } from "../objects/thin-lines";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
-import { flatArrows } from "./flat-arrows";
+import { createFlatArrows } from "./flat-arrows";
 import { colorOf, poseAt } from "./styles";
 
 /** Dimensions of an arrow relative to the length of its shaft; axes are as thick as the shaft. */
@@ -28,7 +28,7 @@ export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
     for (const batch of [this.lines, this.arrows, this.axes]) batch.dispose();
   }
 
-  protected override drawnState(): object {
+  protected override inspectContents(): object {
     return { arrows: this.arrows.size, axes: this.axes.size };
   }
 
@@ -38,12 +38,12 @@ export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
 
   protected arrange(): void {
     const { rows } = this.context.display;
-    const [posedContent] = this.posedContents();
+    const [posedContent] = this.listPosedContents();
     const frame = posedContent?.pose ?? new Matrix4();
     const weights: Float32Array = posedContent?.content.weights ?? new Float32Array(0);
     const poses = raiseByWeight(posedContent?.content.poses ?? new Float32Array(0), weights, rows.number(5, "Arrow Height Scale"));
-    const [shortest, longest] = [rows.number(0.02, "Min Arrow Length"), rows.number(0.3, "Max Arrow Length")];
-    const lengthOf = (i: number): number => shortest + (longest - shortest) * Math.min(Math.max(weights[i] ?? 0, 0), 1);
+    const [minLength, maxLength] = [rows.number(0.02, "Min Arrow Length"), rows.number(0.3, "Max Arrow Length")];
+    const lengthOf = (i: number): number => minLength + (maxLength - minLength) * Math.min(Math.max(weights[i] ?? 0, 0), 1);
     const look = { color: colorOf(rows, "#ff1900", "Color"), alpha: rows.number(1, "Alpha") };
     const shape = rows.text("Arrow (Flat)", "Shape");
     const matrix = new Matrix4();
@@ -58,7 +58,7 @@ export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
     this.arrows.end();
     this.axes.end();
     this.lines.setStyle(look.color, look.alpha);
-    this.lines.setSegments(shape === "Arrow (Flat)" ? flatArrows(poses, frame, lengthOf) : new Float32Array(0));
+    this.lines.setSegments(shape === "Arrow (Flat)" ? createFlatArrows(poses, frame, lengthOf) : new Float32Array(0));
   }
 }
 

@@ -26,7 +26,7 @@ export class PathDrawing extends ContentDrawing<"pose_marks"> {
     for (const batch of [this.thinLines, this.wideLines, this.arrows, this.axes]) batch.dispose();
   }
 
-  protected override drawnState(): object {
+  protected override inspectContents(): object {
     return { points: this.pointCount, arrows: this.arrows.size, axes: this.axes.size, wide: this.wideLines.root.visible };
   }
 
@@ -37,7 +37,7 @@ export class PathDrawing extends ContentDrawing<"pose_marks"> {
   protected arrange(): void {
     const { rows } = this.context.display;
     const offset = new Vector3(...rows.vector("Offset"));
-    const paths = this.posedContents().map(({ content, pose }) => {
+    const paths = this.listPosedContents().map(({ content, pose }) => {
       const matrices = Array.from({ length: content.poses.length / 7 }, (_, i) => {
         const matrix = poseAt(content.poses, i, new Matrix4()).premultiply(pose);
         return matrix.setPosition(new Vector3().setFromMatrixPosition(matrix).add(offset));

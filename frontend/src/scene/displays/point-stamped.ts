@@ -1,6 +1,6 @@
 import { Matrix4, type Box3 } from "three";
 import { CopyBatch } from "../objects/copy-batch";
-import { sphereGeometry } from "../objects/geometries";
+import { createSphere } from "../objects/geometries";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { colorOf } from "./styles";
@@ -9,7 +9,7 @@ const SEGMENTS = 16;
 
 /** rviz_default_plugins/PointStamped: spheres at the points; like RViz, this uses the property Radius as a diameter. */
 export class PointStampedDrawing extends ContentDrawing<"point_marks"> {
-  private readonly balls = new CopyBatch(this.root, sphereGeometry(SEGMENTS));
+  private readonly balls = new CopyBatch(this.root, createSphere(SEGMENTS));
 
   constructor(context: DrawingContext) {
     super(context, "point_marks");
@@ -19,7 +19,7 @@ export class PointStampedDrawing extends ContentDrawing<"point_marks"> {
     this.balls.dispose();
   }
 
-  protected override drawnState(): object {
+  protected override inspectContents(): object {
     return { points: this.balls.size };
   }
 
@@ -32,7 +32,7 @@ export class PointStampedDrawing extends ContentDrawing<"point_marks"> {
     const size = rows.number(0.2, "Radius");
     const alpha = rows.number(1, "Alpha");
     const color = colorOf(rows, "#cc29cc", "Color");
-    const contents = this.posedContents();
+    const contents = this.listPosedContents();
     const matrix = new Matrix4();
     this.balls.begin(contents.reduce((sum, { content }) => sum + content.positions.length / 3, 0));
     for (const { content, pose } of contents) {

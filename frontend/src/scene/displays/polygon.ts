@@ -18,7 +18,7 @@ export class PolygonDrawing extends ContentDrawing<"polygon_line"> {
     this.lines.dispose();
   }
 
-  protected override drawnState(): object {
+  protected override inspectContents(): object {
     return { corners: this.cornerCount };
   }
 
@@ -28,7 +28,7 @@ export class PolygonDrawing extends ContentDrawing<"polygon_line"> {
 
   protected arrange(): void {
     const { rows } = this.context.display;
-    const strips = this.posedContents().map(({ content, pose }) => {
+    const strips = this.listPosedContents().map(({ content, pose }) => {
       const ring = new Float32Array([...content.points, ...content.points.subarray(0, 3)]);
       for (let i = 0; i < ring.length; i += 3) new Vector3().fromArray(ring, i).applyMatrix4(pose).toArray(ring, i);
       return ring;

@@ -4,7 +4,7 @@ import { AxesBatch } from "../objects/axes-batch";
 import { ThinLines } from "../objects/thin-lines";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
-import { flatArrows } from "./flat-arrows";
+import { createFlatArrows } from "./flat-arrows";
 import { colorOf, poseAt } from "./styles";
 
 /** A low number of segments, because thousands of poses are particles. */
@@ -25,7 +25,7 @@ export class PoseArrayDrawing extends ContentDrawing<"pose_marks"> {
     for (const batch of [this.lines, this.arrows, this.axes]) batch.dispose();
   }
 
-  protected override drawnState(): object {
+  protected override inspectContents(): object {
     return { arrows: this.arrows.size, axes: this.axes.size };
   }
 
@@ -36,7 +36,7 @@ export class PoseArrayDrawing extends ContentDrawing<"pose_marks"> {
   protected arrange(): void {
     const { rows } = this.context.display;
     const shape = rows.text("Arrow (Flat)", "Shape");
-    const [posedContent] = this.posedContents();
+    const [posedContent] = this.listPosedContents();
     const poses: Float32Array = posedContent?.content.poses ?? new Float32Array(0);
     const frame = posedContent?.pose ?? new Matrix4();
     const count = poses.length / 7;
@@ -61,6 +61,6 @@ export class PoseArrayDrawing extends ContentDrawing<"pose_marks"> {
     this.axes.end();
     this.lines.setStyle(color, alpha);
     const length = rows.number(0.3, "Arrow Length");
-    this.lines.setSegments(shape === "Arrow (Flat)" ? flatArrows(poses, frame, () => length) : new Float32Array(0));
+    this.lines.setSegments(shape === "Arrow (Flat)" ? createFlatArrows(poses, frame, () => length) : new Float32Array(0));
   }
 }

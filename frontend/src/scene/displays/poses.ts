@@ -7,7 +7,7 @@ import { CovarianceBatch } from "../objects/covariance-batch";
 import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { ContentDrawing, type PosedContent } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
-import { colorOf, covarianceStyle, poseArrow, poseAt } from "./styles";
+import { colorOf, readCovarianceStyle, readArrowShape, poseAt } from "./styles";
 
 /** rviz_default_plugins/Pose, PoseWithCovariance and Odometry: poses as arrows or axes, with their covariances. */
 export class PosesDrawing extends ContentDrawing<"pose_marks"> {
@@ -51,9 +51,9 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
     ];
     const { covariances } = drawnContent.content;
     if (covariances.length > 0) {
-      const variance = (i: number): number => covariances[i * 7] ?? 0;
-      children.push(describeNumbers("Covariance Position", { X: variance(0), Y: variance(1), Z: variance(2) }));
-      children.push(describeNumbers("Covariance Orientation", { X: variance(3), Y: variance(4), Z: variance(5) }));
+      const varianceOf = (i: number): number => covariances[i * 7] ?? 0;
+      children.push(describeNumbers("Covariance Position", { X: varianceOf(0), Y: varianceOf(1), Z: varianceOf(2) }));
+      children.push(describeNumbers("Covariance Orientation", { X: varianceOf(3), Y: varianceOf(4), Z: varianceOf(5) }));
     }
     return { name: `Pose ${this.context.display.name}`, children };
   }
@@ -62,7 +62,7 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
     for (const batch of [this.arrows, this.axes, this.covariances]) batch.dispose();
   }
 
-  protected override drawnState(): object {
+  protected override inspectContents(): object {
     return { arrows: this.arrows.size, axes: this.axes.size };
   }
 
@@ -75,10 +75,10 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
     // In Odometry, the sizes are below Shape.
     const parentPath = rows.find("Shape")?.children.length ? ["Shape"] : [];
     const areArrows = rows.text("Arrow", "Shape") === "Arrow";
-    const shape = poseArrow(rows, parentPath);
+    const shape = readArrowShape(rows, parentPath);
     const look = { color: colorOf(rows, "#ff1900", ...parentPath, "Color"), alpha: rows.number(1, ...parentPath, "Alpha") };
-    const style = covarianceStyle(rows);
-    const contents = this.posedContents();
+    const style = readCovarianceStyle(rows);
+    const contents = this.listPosedContents();
     this.drawnContents = contents;
     const count = contents.reduce((sum, { content }) => sum + content.poses.length / 7, 0);
     const matrix = new Matrix4();

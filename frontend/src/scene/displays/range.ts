@@ -1,6 +1,6 @@
 import { Matrix4, type Box3 } from "three";
 import { CopyBatch } from "../objects/copy-batch";
-import { coneGeometry } from "../objects/geometries";
+import { createCone } from "../objects/geometries";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { colorOf } from "./styles";
@@ -9,7 +9,7 @@ const SEGMENTS = 32;
 
 /** rviz_default_plugins/Range: cones with their apex at the sensor. */
 export class RangeDrawing extends ContentDrawing<"range_cone"> {
-  private readonly cones = new CopyBatch(this.root, coneGeometry(SEGMENTS));
+  private readonly cones = new CopyBatch(this.root, createCone(SEGMENTS));
 
   constructor(context: DrawingContext) {
     super(context, "range_cone");
@@ -19,7 +19,7 @@ export class RangeDrawing extends ContentDrawing<"range_cone"> {
     this.cones.dispose();
   }
 
-  protected override drawnState(): object {
+  protected override inspectContents(): object {
     return { cones: this.cones.size };
   }
 
@@ -31,7 +31,7 @@ export class RangeDrawing extends ContentDrawing<"range_cone"> {
     const { rows } = this.context.display;
     const color = colorOf(rows, "#ffffff", "Color");
     const alpha = rows.number(0.5, "Alpha");
-    const contents = this.posedContents();
+    const contents = this.listPosedContents();
     const [shape, size] = [new Matrix4(), new Matrix4()];
     this.cones.begin(contents.length);
     for (const { content, pose } of contents) {

@@ -62,17 +62,17 @@ export class RobotModelDrawing implements Drawing {
   /**
    * Returns the bounding box of the visible parts in the fixed frame, m; of the links' origins if nothing is visible.
    */
-  bounds(): Box3 {
-    return this.drawing?.bounds() ?? new Box3();
+  computeBounds(): Box3 {
+    return this.drawing?.computeBounds() ?? new Box3();
   }
 
   /** Returns the height of the ground below the robot in the fixed frame, m. */
-  ground(): number {
-    return this.drawing?.ground() ?? 0;
+  computeGround(): number {
+    return this.drawing?.computeGround() ?? 0;
   }
 
-  roughBounds(): Box3 {
-    return this.drawing?.roughBounds() ?? new Box3();
+  computeRoughBounds(): Box3 {
+    return this.drawing?.computeRoughBounds() ?? new Box3();
   }
 
   /** The visible meshes. */
@@ -110,7 +110,7 @@ export class RobotModelDrawing implements Drawing {
       if (hasPose) this.displacement?.link?.(link.name, matrix);
       return hasPose;
     };
-    this.drawing?.updatePoses(computePose, this.hiddenDuplicates());
+    this.drawing?.updatePoses(computePose, this.createDuplicateFilter());
     this.drawing?.chooseDetail(this.context.camera());
   }
 
@@ -161,7 +161,7 @@ export class RobotModelDrawing implements Drawing {
    * Returns a predicate for the links of an old description that are not drawn, because they look the same in the new
    * one and have the same pose.
    */
-  private hiddenDuplicates(): ((link: LinkScene) => boolean) | undefined {
+  private createDuplicateFilter(): ((link: LinkScene) => boolean) | undefined {
     const { display, session } = this.context;
     const { comparison, displays, frames, robots } = session;
     const newDisplay = comparison.isOld(display.id) ? (comparison.compared?.new.display ?? "") : "";
@@ -169,7 +169,7 @@ export class RobotModelDrawing implements Drawing {
     const frameOf = new Map(robots.get(newDisplay)?.links.map(({ name, frame }) => [name, frame]));
     return ({ name, frame }) => {
       const twin = comparison.twinOf(display.id, name);
-      return twin !== undefined && frames.difference(frame, frameOf.get(twin) ?? "") < COINCIDENCE;
+      return twin !== undefined && frames.computeDifference(frame, frameOf.get(twin) ?? "") < COINCIDENCE;
     };
   }
 

@@ -1,5 +1,5 @@
 import { Matrix4, Vector3, type Box3 } from "three";
-import { alongX, ArrowBatch } from "../objects/arrow-batch";
+import { poseAlongX, ArrowBatch } from "../objects/arrow-batch";
 import { WideLines } from "../objects/wide-lines";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
@@ -30,7 +30,7 @@ export class ScrewDrawing extends ContentDrawing<"screw"> {
     this.circles.dispose();
   }
 
-  protected override drawnState(): object {
+  protected override inspectContents(): object {
     return { arrows: this.arrows.size };
   }
 
@@ -48,7 +48,7 @@ export class ScrewDrawing extends ContentDrawing<"screw"> {
     const linearColor = colorOf(rows, "#cc3333", `${linear} Color`);
     const angularColor = colorOf(rows, "#cccc33", `${angular} Color`);
     const scaleOf = (name: string): number => rows.number(2, `${name} Arrow Scale`);
-    const contents = this.posedContents();
+    const contents = this.listPosedContents();
     const circles: Float32Array[] = [];
     const direction = new Vector3();
     this.arrows.begin(contents.length * 3);
@@ -66,14 +66,14 @@ export class ScrewDrawing extends ContentDrawing<"screw"> {
   }
 
   private addVector(pose: Matrix4, direction: Vector3, length: number, width: number, look: Look): void {
-    const matrix = alongX(new Vector3(), direction, new Matrix4()).premultiply(pose);
+    const matrix = poseAlongX(new Vector3(), direction, new Matrix4()).premultiply(pose);
     this.arrows.add(matrix.multiply(new Matrix4().makeScale(length, width, width)), ARROW, look);
   }
 
   /** Returns the points of a circle around the middle of the vector, and adds its arrow head to the arrows. */
   private addCircle(pose: Matrix4, direction: Vector3, length: number, width: number, look: Look): Float32Array {
     // The vector is along x here, so that the circle turns from y to z.
-    const matrix = alongX(new Vector3(), direction, new Matrix4()).premultiply(pose);
+    const matrix = poseAlongX(new Vector3(), direction, new Matrix4()).premultiply(pose);
     const radius = length / 4;
     const point = new Vector3();
     const strip = new Float32Array((CIRCLE.to - CIRCLE.from + 1) * 3);

@@ -10,8 +10,8 @@ export function colorOf(rows: PropertyRows, fallback: string, ...path: string[])
   return new Color(rows.text(fallback, ...path)).getHex();
 }
 
-/** Returns the arrow of Pose, PoseWithCovariance and Odometry; RViz's radius is a thickness, see `axesGeometry`. */
-export function poseArrow(rows: PropertyRows, parentPath: readonly string[]): ArrowShape {
+/** Returns the arrow of Pose, PoseWithCovariance and Odometry; RViz's radius is a thickness, see `createAxes`. */
+export function readArrowShape(rows: PropertyRows, parentPath: readonly string[]): ArrowShape {
   return {
     shaftLength: rows.number(1, ...parentPath, "Shaft Length"),
     shaftDiameter: rows.number(0.05, ...parentPath, "Shaft Radius"),
@@ -21,7 +21,7 @@ export function poseArrow(rows: PropertyRows, parentPath: readonly string[]): Ar
 }
 
 /** Returns the style of the Covariance property; null if it is off or the display has none. */
-export function covarianceStyle(rows: PropertyRows): CovarianceStyle | null {
+export function readCovarianceStyle(rows: PropertyRows): CovarianceStyle | null {
   if (!rows.bool(false, "Covariance")) return null;
   const pathOf = (name: string): string[] => ["Covariance", name];
   const position = rows.bool(true, ...pathOf("Position")) && {

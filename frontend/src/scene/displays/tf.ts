@@ -1,6 +1,6 @@
 import { Box3, Group, Matrix4, Vector3, type Raycaster } from "three";
 import { describePose } from "../described-pose";
-import { alongX } from "../objects/arrow-batch";
+import { poseAlongX } from "../objects/arrow-batch";
 import { LabelBatch } from "../objects/label-batch";
 import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { framePose } from "../pose";
@@ -53,25 +53,25 @@ export class TfDrawing implements Drawing {
   update(): void {
     const { rows } = this.context.display;
     const scale = rows.number(1, "Marker Scale");
-    const fades = this.visibleFrames();
+    const fades = this.listVisibleFrames();
     const [pose, size] = [new Matrix4(), new Matrix4().makeScale(scale, scale, scale)];
     const position = new Vector3();
     const { frames } = this.context.session;
-    const showAxes = rows.bool(true, "Show Axes");
-    const showNames = rows.bool(false, "Show Names");
+    const showsAxes = rows.bool(true, "Show Axes");
+    const showsNames = rows.bool(false, "Show Names");
     this.markers.refine(fades.length > MANY_FRAMES ? COARSE_SEGMENTS : FINE_SEGMENTS);
     const { axes } = this.markers;
     axes.begin(fades.length);
     this.nameCount = 0;
     this.axesNames = [];
-    this.names.begin(showNames ? fades.reduce((sum, [row]) => sum + (frames.names[row]?.length ?? 0), 0) : 0);
+    this.names.begin(showsNames ? fades.reduce((sum, [row]) => sum + (frames.names[row]?.length ?? 0), 0) : 0);
     for (const [row, fade] of fades) {
       if (!framePose(frames, row, pose)) continue;
-      if (showAxes) {
+      if (showsAxes) {
         axes.add(pose.clone().multiply(size), fade.gray, fade.alpha);
         this.axesNames.push(frames.names[row] ?? "");
       }
-      if (!showNames) continue;
+      if (!showsNames) continue;
       this.nameCount += 1;
       this.names.add(
         frames.names[row] ?? "",
@@ -84,7 +84,7 @@ export class TfDrawing implements Drawing {
     axes.end();
     this.names.end();
     this.drawArrows(rows.bool(true, "Show Arrows") ? fades : [], scale);
-    this.drawnAgeKey = this.ageKey();
+    this.drawnAgeKey = this.createAgeKey();
   }
 
   /** Picks frames by their axes, as in RViz. */
@@ -153,12 +153,12 @@ export class TfDrawing implements Drawing {
         headLength,
         headDiameter: HEAD_DIAMETER * scale,
       };
-      arrows.add(alongX(start, direction, pose), shape, { color: SHAFT_COLOR, headColor: HEAD_COLOR, alpha, gray });
+      arrows.add(poseAlongX(start, direction, pose), shape, { color: SHAFT_COLOR, headColor: HEAD_COLOR, alpha, gray });
     }
     arrows.end();
   }
 
-  private visibleFrames(): (readonly [number, Fade])[] {
+  private listVisibleFrames(): (readonly [number, Fade])[] {
     const { frames } = this.context.session;
     const timeout = this.context.display.rows.number(15, "Frame Timeout");
     const result: (readonly [number, Fade])[] = [];
@@ -172,10 +172,10 @@ export class TfDrawing implements Drawing {
 
   /** Requests a frame only if the fading of some frame changed by a step. */
   private onAgesChanged(): void {
-    if (this.context.display.isEnabled && this.ageKey() !== this.drawnAgeKey) this.context.invalidate();
+    if (this.context.display.isEnabled && this.createAgeKey() !== this.drawnAgeKey) this.context.invalidate();
   }
 
-  private ageKey(): string {
+  private createAgeKey(): string {
     const { ages } = this.context.session.frames;
     const timeout = this.context.display.rows.number(15, "Frame Timeout");
     const steps: number[] = [];

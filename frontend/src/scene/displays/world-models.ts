@@ -24,13 +24,13 @@ export class Displacement {
   }
 
   /** Clears the displacement if the actual pose of a displaced model has changed. */
-  clearIfPosesChanged(before: Float32Array, after: Float32Array, rowOf: ReadonlyMap<string, number>): void {
+  clearIfPosesChanged(oldPoses: Float32Array, newPoses: Float32Array, rowOf: ReadonlyMap<string, number>): void {
     if (this.models.size === 0) return;
     for (const [link, row] of rowOf) {
       if (!this.models.has(modelOf(link))) continue;
       const start = row * POSE_SIZE;
       for (let i = start; i < start + POSE_SIZE; i++) {
-        if (before[i] === after[i]) continue;
+        if (oldPoses[i] === newPoses[i]) continue;
         this.models = new Map();
         return;
       }

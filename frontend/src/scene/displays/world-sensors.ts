@@ -63,7 +63,7 @@ export class WorldSensors {
   }
 
   /** Moves the lines to the poses of their links in the fixed frame. */
-  place(poseOf: (link: string) => Matrix4 | null): void {
+  placeSensors(poseOf: (link: string) => Matrix4 | null): void {
     for (const { sensor, localPose, lines } of [...this.lidars.values(), ...this.cameras]) {
       if (!lines.root.visible) continue;
       const pose = poseOf(sensor.link);

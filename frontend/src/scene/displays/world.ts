@@ -2,14 +2,14 @@ import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "th
 import type { DisplayData } from "../../connection/data";
 import type { WorldPoses, WorldScene } from "../../protocol";
 import type { DescriptionRow, Hit, SelectionBox } from "../picking";
-import { dataPose, poseMatrix } from "../pose";
+import { readDataPose, setPoseMatrix } from "../pose";
 import type { MovingView } from "../robot/moving-meshes";
 import { RobotDrawing } from "../robot/robot-drawing";
 import type { OwnLight } from "../surroundings";
 import { WorldLights } from "../world-lights";
 import type { Lighting } from "../light";
 import type { Drawing, DrawingContext } from "./drawing";
-import { freePlace } from "./free-place";
+import { findFreePlace } from "./free-place";
 import { Displacement, modelOf } from "./world-models";
 import { WorldSensors } from "./world-sensors";
 
@@ -81,9 +81,9 @@ export class WorldDrawing implements Drawing {
       this.sensors.style(context.display.rows);
     }
     if (this.isStyleStale || this.isPoseStale) {
-      this.place(drawing);
-      this.sensors.place((link) => this.poseOf(link));
-      this.lights.updatePoses(this.worldPose(), (link) => this.poseOf(link), () => this.boxForShadows(drawing));
+      this.placeLinks(drawing);
+      this.sensors.placeSensors((link) => this.poseOf(link));
+      this.lights.updatePoses(this.computeWorldPose(), (link) => this.poseOf(link), () => this.chooseShadowBox(drawing));
     }
     this.isStyleStale = this.isPoseStale = false;
     drawing.chooseDetail(context.camera());
@@ -120,8 +120,8 @@ export class WorldDrawing implements Drawing {
     return this.drawing?.isSettled ?? true;
   }
 
-  bounds(): Box3 {
-    return this.drawing?.bounds() ?? new Box3();
+  computeBounds(): Box3 {
+    return this.drawing?.computeBounds() ?? new Box3();
   }
 
   get hasRobots(): boolean {
@@ -132,8 +132,8 @@ export class WorldDrawing implements Drawing {
    * Returns the bounding boxes of the robots and of everything but grounds, without what has fallen, in the fixed
    * frame, m.
    */
-  boundsByKind(): { robots: Box3; world: Box3 } {
-    const [robots, world, everything] = [new Box3(), new Box3(), new Box3()];
+  computeBoundsByKind(): { robots: Box3; world: Box3 } {
+    const [robots, world, all] = [new Box3(), new Box3(), new Box3()];
     const names = new Set(this.scene?.robots);
     const boxes = [...(this.drawing?.boundsOfLinks() ?? [])].filter(([, box]) => !box.isEmpty());
     const lowest = Math.min(0, ...boxes.map(([link, box]) => (names.has(modelOf(link)) ? 0 : box.min.z)));
@@ -142,26 +142,26 @@ export class WorldDrawing implements Drawing {
       if (names.has(modelOf(link)) && box.max.z >= lowest + FALLEN_Z) robots.union(box);
       if (box.max.z < FALLEN_Z) continue;
       if (!isLikeGround(box)) world.union(box);
-      everything.union(box);
+      all.union(box);
     }
-    return { robots, world: world.isEmpty() ? everything : world };
+    return { robots, world: world.isEmpty() ? all : world };
   }
 
   /** Returns a free position for a model, near the robots, in the frame of the world, m. */
-  freePlace(): number[] {
-    const { robots } = this.boundsByKind();
+  findFreePlace(): number[] {
+    const { robots } = this.computeBoundsByKind();
     const robotCenter = robots.isEmpty() ? null : robots.getCenter(new Vector3());
     const names = new Set(this.scene?.robots);
     // Ignore walls around the robot: their box contains the whole room.
     const surrounds = (link: string, box: Box3): boolean => robotCenter !== null && !names.has(modelOf(link)) && box.containsPoint(robotCenter);
     const boxes = [...(this.drawing?.boundsOfLinks() ?? [])].filter(([link, box]) => !box.isEmpty() && !this.isFlat(link) && !isLikeGround(box) && !surrounds(link, box));
-    return freePlace(boxes.map(([, box]) => box), this.worldPose(), robotCenter);
+    return findFreePlace(boxes.map(([, box]) => box), this.computeWorldPose(), robotCenter);
   }
 
   /** Returns the pose of the file's camera, which looks along x, in the fixed frame; null if the file has none. */
-  cameraOfFile(): Matrix4 | null {
+  readCameraOfFile(): Matrix4 | null {
     const camera = this.scene?.camera;
-    return camera ? poseMatrix(camera, new Matrix4()).premultiply(this.worldPose()) : null;
+    return camera ? setPoseMatrix(camera, new Matrix4()).premultiply(this.computeWorldPose()) : null;
   }
 
   /** Whether a ray hits a robot, or nothing within its range. */
@@ -218,20 +218,20 @@ export class WorldDrawing implements Drawing {
   }
 
   /** Converts a direction from the fixed frame to the frame of the world. */
-  directionToWorld(direction: Vector3): Vector3 {
+  transformToWorld(direction: Vector3): Vector3 {
     const length = direction.length();
-    return direction.clone().transformDirection(this.worldPose().invert()).multiplyScalar(length);
+    return direction.clone().transformDirection(this.computeWorldPose().invert()).multiplyScalar(length);
   }
 
   /** Converts a point from the fixed frame to the frame of the world, m. */
   pointToWorld(point: readonly number[]): number[] {
-    return new Vector3().fromArray(point).applyMatrix4(this.worldPose().invert()).toArray();
+    return new Vector3().fromArray(point).applyMatrix4(this.computeWorldPose().invert()).toArray();
   }
 
   /** Returns the pose of the world in the fixed frame. */
-  worldPose(): Matrix4 {
+  computeWorldPose(): Matrix4 {
     const pose = new Matrix4();
-    if (this.poses) dataPose(this.context.session.frames, this.poses.data, pose);
+    if (this.poses) readDataPose(this.context.session.frames, this.poses.data, pose);
     return pose;
   }
 
@@ -246,26 +246,26 @@ export class WorldDrawing implements Drawing {
   }
 
   /** Returns the box for shadows. It is computed from all vertices only when a link has left it, not for each pose. */
-  private boxForShadows(drawing: RobotDrawing): Box3 {
+  private chooseShadowBox(drawing: RobotDrawing): Box3 {
     const origins = (this.scene?.links ?? []).flatMap(({ name, visuals }) => (visuals.length > 0 ? drawing.positionOf(name) ?? [] : []));
     if (this.isStyleStale || !origins.every((origin) => this.shadowBox.containsPoint(origin))) {
-      this.visibleBox = drawing.bounds();
+      this.visibleBox = drawing.computeBounds();
       this.shadowBox = this.visibleBox.clone();
       for (const origin of origins) this.shadowBox.expandByPoint(origin);
     }
     return this.visibleBox;
   }
 
-  private place(drawing: RobotDrawing): void {
+  private placeLinks(drawing: RobotDrawing): void {
     const { poses: posed, scene } = this;
     const pose = new Matrix4();
-    const hasPoses = posed !== null && posed.content.revision === scene?.revision && dataPose(this.context.session.frames, posed.data, pose);
+    const hasPoses = posed !== null && posed.content.revision === scene?.revision && readDataPose(this.context.session.frames, posed.data, pose);
     if (!hasPoses) return;
     const { poses } = posed.content;
     drawing.updatePoses((link, matrix) => {
       const row = this.rowOf.get(link.name);
       if (row === undefined) return false;
-      this.displacement.apply(link.name, poseMatrix(poses, matrix, row * 7)).premultiply(pose);
+      this.displacement.apply(link.name, setPoseMatrix(poses, matrix, row * 7)).premultiply(pose);
       return true;
     });
   }

@@ -1,13 +1,13 @@
 import { BufferGeometry, Line, LineBasicMaterial, Matrix4, Quaternion, Vector3 } from "three";
 import type { EditablePart } from "../../protocol";
 import type { Draft, EditingState } from "../../state/editing/editing";
-import { nearestRpy, quaternionOf } from "../../state/editing/rotation";
+import { findNearestRpy, quaternionOf } from "../../state/editing/rotation";
 import { snap } from "../../state/modeling/snapping";
 import type { Session } from "../../state/session";
 import { RobotModelDrawing } from "../displays/robot-model";
 import { Gizmo } from "../modeling/gizmo";
 import { spanOf } from "../initial-view";
-import { framePose, poseMatrix } from "../pose";
+import { framePose, setPoseMatrix } from "../pose";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
 
@@ -96,7 +96,7 @@ export class PartHandles {
       this.axis.visible = false;
       return;
     }
-    const pose = base.clone().multiply(partMatrix(shownPart, currentDraft));
+    const pose = base.clone().multiply(createPartMatrix(shownPart, currentDraft));
     if (editing.frame === "parent" && shownPart.part !== "axis") {
       const rotation = new Quaternion().setFromRotationMatrix(base);
       pose.compose(new Vector3().setFromMatrixPosition(pose), rotation, ONE);
@@ -140,7 +140,7 @@ export class PartHandles {
     const { start, gizmo, editing } = this;
     const { chosenPart } = editing;
     const base = chosenPart && this.basePoseOf(chosenPart);
-    const steps = editing.snapping.currentSteps(event.ctrl);
+    const steps = editing.snapping.chooseSteps(event.ctrl);
     gizmo.drag(event, { length: 0, angle: steps.angle });
     if (!start || !base) return;
     // Express the motion of the handles in the frame of the part's values.
@@ -150,12 +150,12 @@ export class PartHandles {
   }
 
   private moveDraft(part: EditablePart, draft: Draft, motion: Matrix4, steps: { length: number; angle: number }): Draft {
-    const oldPose = partMatrix(part, draft);
+    const oldPose = createPartMatrix(part, draft);
     const newPose = motion.clone().multiply(oldPose);
     const [position, rotation] = [new Vector3(), new Quaternion()];
     newPose.decompose(position, rotation, new Vector3());
     if (this.editing.mode === "rotate") {
-      const rpy = nearestRpy([rotation.x, rotation.y, rotation.z, rotation.w], draft.rpy);
+      const rpy = findNearestRpy([rotation.x, rotation.y, rotation.z, rotation.w], draft.rpy);
       return { xyz: draft.xyz, rpy: roundChanged(rpy, draft.rpy, steps.angle > 0 ? 0 : ANGLE_ROUNDING) };
     }
     const step = steps.length || LENGTH_ROUNDING;
@@ -184,9 +184,9 @@ export class PartHandles {
       stage.loop.invalidate();
       return;
     }
-    const [oldPose, newPose] = [partMatrix(part, part), partMatrix(part, currentDraft)];
+    const [oldPose, newPose] = [createPartMatrix(part, part), createPartMatrix(part, currentDraft)];
     if (part.part === "joint") {
-      const links = this.linksBelow(display, part.name);
+      const links = this.listLinksBelow(display, part.name);
       this.robotOf(display)?.displace({
         link: (name, matrix) => {
           const base = links.has(name) ? this.basePoseOf(part) : null;
@@ -206,7 +206,7 @@ export class PartHandles {
   }
 
   /** Returns the links that a joint carries. */
-  private linksBelow(display: string, joint: string): ReadonlySet<string> {
+  private listLinksBelow(display: string, joint: string): ReadonlySet<string> {
     const joints = this.session.robots.get(display)?.joints ?? [];
     const links = new Set<string>();
     const stack = joints.filter(({ name }) => name === joint).map(({ child }) => child);
@@ -228,12 +228,12 @@ export class PartHandles {
 }
 
 /** Returns the pose of a part; for an axis, the rotation from x to its direction. */
-function partMatrix(part: EditablePart, { xyz, rpy }: Draft): Matrix4 {
+function createPartMatrix(part: EditablePart, { xyz, rpy }: Draft): Matrix4 {
   if (part.part === "axis") {
     const rotation = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0), new Vector3().fromArray(xyz).normalize());
     return new Matrix4().makeRotationFromQuaternion(rotation);
   }
-  return poseMatrix([...xyz, ...quaternionOf(rpy)], new Matrix4());
+  return setPoseMatrix([...xyz, ...quaternionOf(rpy)], new Matrix4());
 }
 
 function turnAxis({ xyz }: Draft, motion: Matrix4): Draft {

@@ -32,6 +32,6 @@ export function createProjection(camera: CameraModel, zoom: readonly [number, nu
  * Returns the pose of the camera in the frame of its image, rotated from the image's axes (z forward) to the scene's (z
  * backward).
  */
-export function cameraInImageFrame({ offset_x, offset_y }: CameraModel): Matrix4 {
+export function createCameraPose({ offset_x, offset_y }: CameraModel): Matrix4 {
   return new Matrix4().makeRotationX(Math.PI).setPosition(offset_x, offset_y, 0);
 }

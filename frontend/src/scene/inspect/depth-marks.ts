@@ -1,6 +1,6 @@
 import { Color, Matrix4, Vector3, type Object3D } from "three";
 import { CopyBatch } from "../objects/copy-batch";
-import { axesGeometry, sphereGeometry } from "../objects/geometries";
+import { createAxes, createSphere } from "../objects/geometries";
 import { LabelBatch } from "../objects/label-batch";
 import { linkPose, type InspectedRobot } from "./inspected-robot";
 
@@ -24,8 +24,8 @@ export class DepthMarks {
   private levels: number[] = [];
 
   constructor(parent: Object3D) {
-    this.axes = new CopyBatch(parent, axesGeometry(1, 0.06, 8), { isOverlay: true });
-    this.balls = new CopyBatch(parent, sphereGeometry(12), { isOverlay: true });
+    this.axes = new CopyBatch(parent, createAxes(1, 0.06, 8), { isOverlay: true });
+    this.balls = new CopyBatch(parent, createSphere(12), { isOverlay: true });
     parent.add(this.labels.root);
   }
 
@@ -48,8 +48,8 @@ export class DepthMarks {
       if (!linkPose(robot, link, pose)) continue;
       const size = robot.unit * Math.max(MIN_SIZE, SIZE_RATIO ** depth);
       this.labels.add(textOf(depth, link), new Vector3().setFromMatrixPosition(pose), LABEL_SIZE * size, 0, 1);
-      this.axes.add(pose.clone().scale(cube(AXES_SIZE * size)));
-      this.balls.add(pose.scale(cube(BALL_SIZE * size)), 0, 1, levelColor(depth));
+      this.axes.add(pose.clone().scale(uniformScale(AXES_SIZE * size)));
+      this.balls.add(pose.scale(uniformScale(BALL_SIZE * size)), 0, 1, levelColorOf(depth));
       this.levels[depth] = (this.levels[depth] ?? 0) + 1;
     }
     for (const batch of [this.axes, this.balls, this.labels]) batch.end();
@@ -62,10 +62,10 @@ export class DepthMarks {
 }
 
 /** Returns the color of a level of the tree, 0xrrggbb. */
-function levelColor(depth: number): number {
+function levelColorOf(depth: number): number {
   return new Color().setHSL((0.58 + depth * HUE_STEP) % 1, 0.85, 0.6).getHex();
 }
 
-function cube(size: number): Vector3 {
+function uniformScale(size: number): Vector3 {
   return new Vector3(size, size, size);
 }

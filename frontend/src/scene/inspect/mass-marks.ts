@@ -1,7 +1,7 @@
 import { BufferAttribute, Matrix4, Quaternion, Vector3, type BufferGeometry, type Object3D } from "three";
 import type { LinkInertia } from "../../protocol";
 import { CopyBatch } from "../objects/copy-batch";
-import { sphereGeometry, cubeGeometry } from "../objects/geometries";
+import { createSphere, createCube } from "../objects/geometries";
 import { LabelBatch } from "../objects/label-batch";
 import { linkPose, type InspectedRobot } from "./inspected-robot";
 import { VertexStream } from "./vertex-stream";
@@ -20,7 +20,7 @@ const LABEL_SIZE = 0.2;
  */
 const ELLIPSOID = Math.sqrt(5 / 12);
 /** The corners of a unit cube, in pairs that form its edges. */
-const EDGES = cubeEdges();
+const EDGES = createCubeEdges();
 
 /** The kinds of marks to draw. */
 export interface MassMarkChoice {
@@ -40,10 +40,10 @@ export class MassMarks {
   private totals: Vector3[] = [];
 
   constructor(parent: Object3D) {
-    this.boxes = new CopyBatch(parent, cubeGeometry(), { isOverlay: true });
-    this.ellipsoids = new CopyBatch(parent, sphereGeometry(24), { isOverlay: true });
+    this.boxes = new CopyBatch(parent, createCube(), { isOverlay: true });
+    this.ellipsoids = new CopyBatch(parent, createSphere(24), { isOverlay: true });
     this.edges = new VertexStream(parent, "lines");
-    this.balls = new CopyBatch(parent, paintQuarters(sphereGeometry(16)), { isOverlay: true });
+    this.balls = new CopyBatch(parent, paintQuarters(createSphere(16)), { isOverlay: true });
     parent.add(this.labels.root);
   }
 
@@ -88,7 +88,7 @@ export class MassMarks {
     if (!(mass > 0) || !choice.centers) return;
     const total = sum.divideScalar(mass);
     this.totals.push(total);
-    this.balls.add(scaledPose(pose.identity().setPosition(total), TOTAL_BALL_SIZE * robot.unit), 0, 1, TOTAL);
+    this.balls.add(scalePose(pose.identity().setPosition(total), TOTAL_BALL_SIZE * robot.unit), 0, 1, TOTAL);
   }
 
   private markLink(
@@ -101,14 +101,14 @@ export class MassMarks {
   ): void {
     if (choice.centers && inertia.mass !== 0) {
       const look = color === PLAUSIBLE ? 0xffffff : color;
-      this.balls.add(scaledPose(pose.clone().setPosition(center), BALL_SIZE * unit), 0, 1, look);
+      this.balls.add(scalePose(pose.clone().setPosition(center), BALL_SIZE * unit), 0, 1, look);
     }
     const [a = 0, b = 0, c = 0] = inertia.box;
     if (inertia.box.length === 0) return;
     const [qx = 0, qy = 0, qz = 0, qw = 1] = inertia.quaternion;
     const size = new Vector3(a, b, c);
     const axes = new Matrix4().compose(center, new Quaternion(), ONE);
-    axes.multiply(new Matrix4().extractRotation(pose)).multiply(rotationMatrix(qx, qy, qz, qw));
+    axes.multiply(new Matrix4().extractRotation(pose)).multiply(createRotation(qx, qy, qz, qw));
     if (choice.boxes) {
       const box = axes.clone().scale(size);
       this.boxes.add(box, 0, BOX_ALPHA, color);
@@ -122,11 +122,11 @@ export class MassMarks {
 
 const ONE = new Vector3(1, 1, 1);
 
-function scaledPose(pose: Matrix4, size: number): Matrix4 {
+function scalePose(pose: Matrix4, size: number): Matrix4 {
   return pose.scale(new Vector3(size, size, size));
 }
 
-function rotationMatrix(x: number, y: number, z: number, w: number): Matrix4 {
+function createRotation(x: number, y: number, z: number, w: number): Matrix4 {
   return new Matrix4().makeRotationFromQuaternion(new Quaternion(x, y, z, w));
 }
 
@@ -144,7 +144,7 @@ function paintQuarters(ball: BufferGeometry): BufferGeometry {
   return triangles.setIndex(new BufferAttribute(index, 1));
 }
 
-function cubeEdges(): Vector3[] {
+function createCubeEdges(): Vector3[] {
   const corners: Vector3[] = [];
   for (const axis of [0, 1, 2]) {
     for (const [u, v] of [

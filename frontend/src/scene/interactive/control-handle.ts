@@ -15,7 +15,7 @@ import type { InteractiveControl, MarkerShape } from "../../protocol";
 import { makeMarkerObject, type MarkerObject } from "../markers/marker-object";
 import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
 import type { MeshLibrary } from "../meshes/mesh-library";
-import { poseMatrix } from "../pose";
+import { setPoseMatrix } from "../pose";
 
 /** The factor and offset by which the colors of a control under the pointer are brightened. */
 const BRIGHTNESS_FACTOR = 1.4;
@@ -82,7 +82,7 @@ export class ControlHandle {
     if (mode === "inherit") this.framed.copy(orientation);
     else if (mode === "fixed") {
       this.framed.setFromAxisAngle(new Vector3(1, 0, 0).applyQuaternion(this.ownOrientation), this.rotation);
-    } else this.framed.copy(facingOrientation(this.ownOrientation, camera, reference));
+    } else this.framed.copy(computeFacingOrientation(this.ownOrientation, camera, reference));
     const isIndependent = mode === "view_facing" && this.control.independent_orientation;
     this.root.quaternion.copy(isIndependent ? orientation : this.framed);
   }
@@ -115,7 +115,7 @@ export class ControlHandle {
 }
 
 function poseOf({ pose }: MarkerShape): Matrix4 {
-  return poseMatrix(pose, new Matrix4());
+  return setPoseMatrix(pose, new Matrix4());
 }
 
 function brighten(object: Object3D, isBright: boolean): void {
@@ -130,7 +130,7 @@ function brighten(object: Object3D, isBright: boolean): void {
  * Returns the orientation that turns the control's axis along the line of sight and its z up, as RViz does for controls
  * that face the viewer.
  */
-function facingOrientation(ownOrientation: Quaternion, camera: Camera, reference: Matrix4): Quaternion {
+function computeFacingOrientation(ownOrientation: Quaternion, camera: Camera, reference: Matrix4): Quaternion {
   const view = new Quaternion().setFromRotationMatrix(camera.matrixWorld);
   const forward = new Vector3(0, 0, -1).applyQuaternion(view);
   const up = new Vector3(0, 1, 0).applyQuaternion(view);

@@ -84,7 +84,7 @@ export class Drag {
   }
 
   private moveAlongAxis(ray: Ray): boolean {
-    const distance = distanceAlongAxis(ray, this.grabPoint, this.axis);
+    const distance = computeDistanceAlongAxis(ray, this.grabPoint, this.axis);
     if (distance === null) return false;
     this.pose.position.copy(this.start.position).addScaledVector(this.axis, distance);
     return true;
@@ -98,24 +98,24 @@ export class Drag {
   }
 
   private turnAboutAxis(ray: Ray): boolean {
-    const center = this.nearestOnAxis(this.start.position);
+    const center = this.findNearestOnAxis(this.start.position);
     const point = pointOnPlane(ray, center, this.axis);
     if (!point) return false;
-    const rotation = rotationBetween(this.grabPoint.clone().sub(center), point.sub(center), this.axis);
+    const rotation = computeRotationBetween(this.grabPoint.clone().sub(center), point.sub(center), this.axis);
     this.pose.orientation.copy(rotation).multiply(this.start.orientation);
     return true;
   }
 
   /** Moves and turns the marker like a cart on a string: the grabbed point follows the mouse. */
   private moveAndTurn(ray: Ray): boolean {
-    const center = this.nearestOnAxis(this.pose.position);
+    const center = this.findNearestOnAxis(this.pose.position);
     const point = pointOnPlane(ray, center, this.axis);
     if (!point) return false;
     const arm = this.grabPoint.clone().sub(center);
     const offset = point.clone().sub(center);
     const distance = offset.length();
     if (distance === 0) return false;
-    this.pose.orientation.premultiply(rotationBetween(arm, offset, this.axis));
+    this.pose.orientation.premultiply(computeRotationBetween(arm, offset, this.axis));
     this.pose.position.addScaledVector(offset, (distance - arm.length()) / distance);
     this.grabPoint.copy(point);
     return true;
@@ -144,7 +144,7 @@ export class Drag {
   }
 
   /** Returns the point of the axis through `origin` that is nearest to the grabbed point. */
-  private nearestOnAxis(origin: Vector3): Vector3 {
+  private findNearestOnAxis(origin: Vector3): Vector3 {
     const distance = this.grabPoint.clone().sub(origin).dot(this.axis);
     return origin.clone().addScaledVector(this.axis, distance);
   }
@@ -155,7 +155,7 @@ function copyOf(pose: MarkerPose): MarkerPose {
 }
 
 /** Returns the distance along the axis through `origin` to the point nearest to the ray; null if they are parallel. */
-export function distanceAlongAxis(ray: Ray, origin: Vector3, axis: Vector3): number | null {
+export function computeDistanceAlongAxis(ray: Ray, origin: Vector3, axis: Vector3): number | null {
   const between = origin.clone().sub(ray.origin);
   const slant = axis.dot(ray.direction);
   const sine2 = 1 - slant * slant;
@@ -169,7 +169,7 @@ function pointOnPlane(ray: Ray, point: Vector3, normal: Vector3): Vector3 | null
 }
 
 /** Returns the rotation about `axis` from the direction `from` to the direction `to`. */
-export function rotationBetween(start: Vector3, end: Vector3, axis: Vector3): Quaternion {
+export function computeRotationBetween(start: Vector3, end: Vector3, axis: Vector3): Quaternion {
   const [a, b] = [start, end].map((direction) => direction.clone().projectOnPlane(axis));
   if (!a || !b) return new Quaternion();
   const angle = Math.atan2(axis.dot(a.clone().cross(b)), a.dot(b));

@@ -6,7 +6,7 @@ import { createTextSprite } from "../markers/text-sprite";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { AxesBatch } from "../objects/axes-batch";
 import type { ScenePointer } from "../picking";
-import { dataPose } from "../pose";
+import { readDataPose } from "../pose";
 import { ControlHandle } from "./control-handle";
 import { Drag, type MarkerPose } from "./dragging";
 import { VisualAid } from "./visual-aid";
@@ -86,7 +86,7 @@ export class MarkerHandle {
 
   /** Updates the poses of its objects; returns false if its frame has no transform. */
   update(frames: FrameStore, camera: Camera, options: MarkerOptions): boolean {
-    const hasPose = dataPose(frames, this.data, this.frame.matrix);
+    const hasPose = readDataPose(frames, this.data, this.frame.matrix);
     this.root.visible = hasPose;
     if (!hasPose) return false;
     this.frame.matrixWorldNeedsUpdate = true;
@@ -110,19 +110,19 @@ export class MarkerHandle {
 
   /** Returns the nearest control that a ray in the fixed frame hits. */
   hit(ray: Raycaster): { control: number; distance: number; point: Vector3 } | null {
-    let nearest: { control: number; distance: number; point: Vector3 } | null = null;
+    let nearestHit: { control: number; distance: number; point: Vector3 } | null = null;
     this.controls.forEach((control, number) => {
       const hit = control.isActive && control.root.visible ? control.hit(ray) : null;
-      if (hit && (nearest === null || hit.distance < nearest.distance)) {
-        nearest = { control: number, distance: hit.distance, point: hit.point };
+      if (hit && (nearestHit === null || hit.distance < nearestHit.distance)) {
+        nearestHit = { control: number, distance: hit.distance, point: hit.point };
       }
     });
-    return nearest;
+    return nearestHit;
   }
 
   /** Starts dragging a control at a point in the fixed frame. */
   grab(control: ControlHandle, point: Vector3): void {
-    const localPoint = point.clone().applyMatrix4(this.inverseMatrix());
+    const localPoint = point.clone().applyMatrix4(this.computeInverseMatrix());
     this.grabPoint = localPoint;
     this.drag = { drag: new Drag(control.control.mode, this.pose, localPoint, control.orientation), control };
   }
@@ -130,7 +130,7 @@ export class MarkerHandle {
   /** Follows the mouse; returns true if the marker moved. */
   follow(event: ScenePointer, camera: Camera): boolean {
     if (!this.drag) return false;
-    const inverse = this.inverseMatrix();
+    const inverse = this.computeInverseMatrix();
     const ray = event.ray.ray.clone().applyMatrix4(inverse);
     const rotation = new Quaternion().setFromRotationMatrix(inverse.clone().multiply(camera.matrixWorld));
     const newPose = this.drag.drag.followPointer({
@@ -176,7 +176,7 @@ export class MarkerHandle {
     this.title?.material.dispose();
   }
 
-  private inverseMatrix(): Matrix4 {
+  private computeInverseMatrix(): Matrix4 {
     return this.frame.matrix.clone().invert();
   }
 

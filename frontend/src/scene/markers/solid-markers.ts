@@ -1,7 +1,7 @@
 import { Color, Matrix4, Mesh, Vector3, type Box3, type BufferGeometry, type Object3D } from "three";
 import type { MarkerShape } from "../../protocol";
 import { OPAQUE_FROM } from "../materials";
-import { alongX, ArrowBatch, type ArrowShape } from "../objects/arrow-batch";
+import { poseAlongX, ArrowBatch, type ArrowShape } from "../objects/arrow-batch";
 import { CopyBatch } from "../objects/copy-batch";
 import { paint, unitBox, unitCylinder, unitSphere } from "../objects/geometries";
 
@@ -205,7 +205,7 @@ function arrowsOf(marker: MarkerShape, pose: Matrix4): Arrow[] {
     const length = direction.length();
     const headLength = head === 0 ? part * length : Math.max(0, Math.min(head, length));
     const shape = { shaftLength: length - headLength, shaftDiameter, headLength, headDiameter };
-    arrows.push({ pose: alongX(start, direction, new Matrix4()).premultiply(pose), shape, color, alpha });
+    arrows.push({ pose: poseAlongX(start, direction, new Matrix4()).premultiply(pose), shape, color, alpha });
   }
   return arrows;
 }

@@ -68,39 +68,39 @@ function weld({ positions, normals, index }: Triangles, simplifier: Simplifier):
   /**
    * The newest vertex at each position, and for each vertex the previous one at the same position; numbers plus one, 0 for none.
    */
-  const [newest, before] = [new Uint32Array(weldedVertices.length), new Uint32Array(corners)];
-  const [at, sum] = [new Float32Array(corners * COMPONENTS), new Float32Array(corners * COMPONENTS)];
+  const [newestVertices, previousVertices] = [new Uint32Array(weldedVertices.length), new Uint32Array(corners)];
+  const [positionSums, normalSums] = [new Float32Array(corners * COMPONENTS), new Float32Array(corners * COMPONENTS)];
   const first = new Float32Array(corners * COMPONENTS);
   let count = 0;
   for (let corner = 0; corner < corners; corner++) {
     const vertex = index?.[corner] ?? corner;
     const [x, y, z] = [normals[3 * vertex] ?? 0, normals[3 * vertex + 1] ?? 0, normals[3 * vertex + 2] ?? 0];
     const welded = weldedVertices[vertex] ?? vertex;
-    let candidate = newest[welded] ?? 0;
+    let candidate = newestVertices[welded] ?? 0;
     const isUnlit = x === 0 && y === 0 && z === 0;
     while (candidate > 0 && !isUnlit) {
       const i = 3 * (candidate - 1);
       if (x * (first[i] ?? 0) + y * (first[i + 1] ?? 0) + z * (first[i + 2] ?? 0) >= MIN_COSINE) break;
-      candidate = before[candidate - 1] ?? 0;
+      candidate = previousVertices[candidate - 1] ?? 0;
     }
     if (candidate === 0) {
-      before[count] = newest[welded] ?? 0;
-      at.set(positions.subarray(3 * vertex, 3 * vertex + 3), 3 * count);
+      previousVertices[count] = newestVertices[welded] ?? 0;
+      positionSums.set(positions.subarray(3 * vertex, 3 * vertex + 3), 3 * count);
       first.set([x, y, z], 3 * count);
       count += 1;
-      candidate = newest[welded] = count;
+      candidate = newestVertices[welded] = count;
     }
     const i = 3 * (candidate - 1);
-    sum[i] = (sum[i] ?? 0) + x;
-    sum[i + 1] = (sum[i + 1] ?? 0) + y;
-    sum[i + 2] = (sum[i + 2] ?? 0) + z;
+    normalSums[i] = (normalSums[i] ?? 0) + x;
+    normalSums[i + 1] = (normalSums[i + 1] ?? 0) + y;
+    normalSums[i + 2] = (normalSums[i + 2] ?? 0) + z;
     joined[corner] = candidate - 1;
   }
   for (let i = 0; i < 3 * count; i += 3) {
-    const length = Math.hypot(sum[i] ?? 0, sum[i + 1] ?? 0, sum[i + 2] ?? 0) || 1;
-    for (let j = i; j < i + 3; j++) sum[j] = (sum[j] ?? 0) / length;
+    const length = Math.hypot(normalSums[i] ?? 0, normalSums[i + 1] ?? 0, normalSums[i + 2] ?? 0) || 1;
+    for (let j = i; j < i + 3; j++) normalSums[j] = (normalSums[j] ?? 0) / length;
   }
-  return { positions: at.slice(0, 3 * count), normals: sum.slice(0, 3 * count), index: removeDegenerate(joined) };
+  return { positions: positionSums.slice(0, 3 * count), normals: normalSums.slice(0, 3 * count), index: removeDegenerate(joined) };
 }
 
 /** Returns the triangles without those that have two equal corners. */

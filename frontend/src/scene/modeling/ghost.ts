@@ -2,7 +2,7 @@ import { Mesh, MeshBasicMaterial, type BufferGeometry } from "three";
 import { isShape, type NewKind, type Placement } from "../../state/modeling/shapes";
 import { unitBox, unitCylinder, unitSphere } from "../objects/geometries";
 import { extrudePolygons } from "../objects/world-geometries";
-import { entityMatrix } from "./entity-pose";
+import { createEntityMatrix } from "./entity-pose";
 
 /** The size of the disc on the ground for entities without a shape of their own, m. */
 const DISC = [0.2, 0.2, 0.01] as const;
@@ -28,7 +28,7 @@ export class Ghost {
     const [x = 0, y = 0, z = 0] = isShape(kind) ? size : DISC;
     this.root.geometry = this.geometryOf(kind);
     const scale = kind === "sphere" ? ([x, x, x] as const) : kind === "cylinder" ? ([x, x, y] as const) : ([x, y, z] as const);
-    this.root.matrix.copy(entityMatrix(isShape(kind) ? pose : [...pose.slice(0, 2), 0, 0, 0, 0]));
+    this.root.matrix.copy(createEntityMatrix(isShape(kind) ? pose : [...pose.slice(0, 2), 0, 0, 0, 0]));
     this.root.matrix.scale(this.root.scale.set(...scale));
     this.root.matrixWorldNeedsUpdate = true;
   }

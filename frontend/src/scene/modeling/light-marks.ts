@@ -1,6 +1,6 @@
 import { Group, Matrix4, Mesh, MeshBasicMaterial, OctahedronGeometry, type Raycaster } from "three";
 import type { Modeling } from "../../state/modeling/modeling";
-import { entityMatrix } from "./entity-pose";
+import { createEntityMatrix } from "./entity-pose";
 
 /** The radius of a mark, m. */
 const RADIUS = 0.12;
@@ -29,7 +29,7 @@ export class LightMarks {
     }
     for (const { name, pose } of lights) {
       const mark = this.marks.get(name) ?? this.make(name);
-      mark.matrix.copy(entityMatrix(pose));
+      mark.matrix.copy(createEntityMatrix(pose));
       mark.matrix.premultiply(displacements.get(name) ?? new Matrix4());
       mark.material.color.setHex(selectedNames.includes(name) ? SELECTED : COLOR);
     }

@@ -1,12 +1,12 @@
 import { Matrix4, Vector3 } from "three";
 import type { WorldEntity } from "../../protocol";
 import type { Modeling } from "../../state/modeling/modeling";
-import { resizeChange, scaledSize, stretchFactors, type Change } from "../../state/modeling/shapes";
+import { resizeChange, scaleSize, computeStretchFactors, type Change } from "../../state/modeling/shapes";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
 import { Gizmo } from "./gizmo";
-import { entityMatrix, entityPose } from "./entity-pose";
-import { worldFrame } from "./world-frame";
+import { createEntityMatrix, readEntityPose } from "./entity-pose";
+import { computeWorldFrame } from "./world-frame";
 
 /** m or rad; a smaller difference does not count as a change. */
 const MIN_CHANGE = 1e-8;
@@ -33,7 +33,7 @@ export class Manipulation {
     if (this.gizmo.isHeld) return;
     const entity = modeling.isActive && modeling.placing === null ? modeling.selectedEntities.at(-1) : undefined;
     const isShown = entity && (modeling.gizmo !== "scale" || modeling.canScale);
-    this.gizmo.show(isShown ? worldFrame(this.stage).multiply(entityMatrix(entity.pose)) : null, modeling.gizmo);
+    this.gizmo.show(isShown ? computeWorldFrame(this.stage).multiply(createEntityMatrix(entity.pose)) : null, modeling.gizmo);
   }
 
   /** Handles an event; returns false if it is left to others. */
@@ -62,7 +62,7 @@ export class Manipulation {
 
   private move(event: ToolEvent): void {
     const { modeling, gizmo } = this;
-    const steps = modeling.snapping.currentSteps(event.ctrl);
+    const steps = modeling.snapping.chooseSteps(event.ctrl);
     gizmo.drag(event, steps);
     const entities = modeling.selectedEntities;
     const main = entities.at(-1);
@@ -83,9 +83,9 @@ export class Manipulation {
 
   /** Moves all selected entities together with the one that has the gizmo. */
   private moveAll(entities: readonly WorldEntity[], main: WorldEntity): void {
-    const newPose = worldFrame(this.stage).invert().multiply(this.gizmo.pose);
-    const motion = newPose.multiply(entityMatrix(main.pose).invert());
-    const changes = entities.map(({ name, pose }) => ({ name, pose: entityPose(motion.clone().multiply(entityMatrix(pose))) }));
+    const newPose = computeWorldFrame(this.stage).invert().multiply(this.gizmo.pose);
+    const motion = newPose.multiply(createEntityMatrix(main.pose).invert());
+    const changes = entities.map(({ name, pose }) => ({ name, pose: readEntityPose(motion.clone().multiply(createEntityMatrix(pose))) }));
     this.changes = areSame(changes.flatMap(({ pose }) => pose), entities.flatMap(({ pose }) => pose)) ? [] : changes;
     this.displace(new Map(entities.map(({ name }) => [name, motion])));
   }
@@ -93,11 +93,11 @@ export class Manipulation {
   private scale(entity: WorldEntity, step: number): void {
     const { name, shape, size, pose } = entity;
     if (shape === null) return;
-    const next = scaledSize(shape, size, this.gizmo.scale, step);
+    const next = scaleSize(shape, size, this.gizmo.scale, step);
     const change = resizeChange(entity, next);
-    const stretched = new Matrix4().scale(new Vector3(...stretchFactors(shape, size, next)));
+    const stretched = new Matrix4().scale(new Vector3(...computeStretchFactors(shape, size, next)));
     this.changes = areSame(size, next) ? [] : [change];
-    this.displace(new Map([[name, entityMatrix(change.pose ?? pose).multiply(stretched).multiply(entityMatrix(pose).invert())]]));
+    this.displace(new Map([[name, createEntityMatrix(change.pose ?? pose).multiply(stretched).multiply(createEntityMatrix(pose).invert())]]));
   }
 }
 

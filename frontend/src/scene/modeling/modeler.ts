@@ -9,7 +9,7 @@ import { HANDLING_TOOLS } from "../world-handling";
 import { LightMarks } from "./light-marks";
 import { Manipulation } from "./manipulation";
 import { Placer } from "./placer";
-import { worldFrame } from "./world-frame";
+import { computeWorldFrame } from "./world-frame";
 
 /** Handles the mouse while the world is modeled: selects, moves and adds models and lights. */
 export class Modeler {
@@ -134,12 +134,12 @@ export class Modeler {
   private displace(displacements: ReadonlyMap<string, Matrix4>): void {
     this.displacements = displacements;
     this.stage.world?.drawing.displace(displacements);
-    this.lights.update(worldFrame(this.stage), displacements);
+    this.lights.update(computeWorldFrame(this.stage), displacements);
   }
 
   private update(): void {
     this.manipulation.update();
-    this.lights.update(worldFrame(this.stage), this.displacements);
+    this.lights.update(computeWorldFrame(this.stage), this.displacements);
     this.stage.loop.invalidate();
   }
 

@@ -5,7 +5,7 @@ import { snap } from "../../state/modeling/snapping";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
 import { Ghost } from "./ghost";
-import { groundAt, worldFrame } from "./world-frame";
+import { groundAt, computeWorldFrame } from "./world-frame";
 
 /** Places the chosen entity on the ground: with a click, or a wall by dragging or with two clicks. */
 export class Placer {
@@ -77,12 +77,12 @@ export class Placer {
 
   private placeOnGround(x: number, y: number, isInverted: boolean): Place | null {
     const position = groundAt(this.stage, x, y);
-    const step = this.modeling.snapping.currentSteps(isInverted).length;
+    const step = this.modeling.snapping.chooseSteps(isInverted).length;
     return position && [snap(position[0], step), snap(position[1], step)];
   }
 
   private show({ kind }: Placing, placement: Placement | null): void {
-    this.world.matrix.copy(worldFrame(this.stage));
+    this.world.matrix.copy(computeWorldFrame(this.stage));
     this.ghost.show(kind, placement);
     this.stage.loop.invalidate();
   }

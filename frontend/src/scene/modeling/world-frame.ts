@@ -5,13 +5,13 @@ import type { Stage } from "../stage";
 const GROUND = new Plane(new Vector3(0, 0, 1), 0);
 
 /** Returns the pose of the world in the fixed frame. */
-export function worldFrame(stage: Stage): Matrix4 {
-  return stage.world?.drawing.worldPose() ?? new Matrix4();
+export function computeWorldFrame(stage: Stage): Matrix4 {
+  return stage.world?.drawing.computeWorldPose() ?? new Matrix4();
 }
 
 /** Returns the point of the world's ground, z = 0, at a position on the canvas, pixels. */
 export function groundAt(stage: Stage, x: number, y: number): Place | null {
-  const ray = stage.picker.rayAt(x, y).ray.clone().applyMatrix4(worldFrame(stage).invert());
+  const ray = stage.picker.rayAt(x, y).ray.clone().applyMatrix4(computeWorldFrame(stage).invert());
   const point = ray.intersectPlane(GROUND, new Vector3());
   return point && [point.x, point.y];
 }

@@ -1,6 +1,6 @@
 import { Matrix4, Quaternion, Vector3, type Box3, type Object3D, type Raycaster } from "three";
 import { CopyBatch, type CopyHit } from "./copy-batch";
-import { coneGeometry, rodGeometry } from "./geometries";
+import { createCone, createRod } from "./geometries";
 
 /** RViz's arrow: a shaft followed by a head; lengths in m. */
 export interface ArrowShape {
@@ -32,8 +32,8 @@ export class ArrowBatch {
   private readonly step = new Matrix4();
 
   constructor(parent: Object3D, segments = 20) {
-    this.shafts = new CopyBatch(parent, rodGeometry(segments, "origin"));
-    this.heads = new CopyBatch(parent, coneGeometry(segments));
+    this.shafts = new CopyBatch(parent, createRod(segments, "origin"));
+    this.heads = new CopyBatch(parent, createCone(segments));
   }
 
   /** The number of arrows drawn now. */
@@ -88,7 +88,7 @@ const rotation = new Quaternion();
 const unit = new Vector3();
 
 /** Computes a pose at `origin` whose x axis points along `direction`, which may have any length. */
-export function alongX(origin: Vector3, direction: Vector3, pose: Matrix4): Matrix4 {
+export function poseAlongX(origin: Vector3, direction: Vector3, pose: Matrix4): Matrix4 {
   rotation.setFromUnitVectors(ALONG_X, unit.copy(direction).normalize());
   return pose.compose(origin, rotation, ONE);
 }

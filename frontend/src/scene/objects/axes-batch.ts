@@ -1,6 +1,6 @@
 import type { Box3, Matrix4, Object3D, Raycaster } from "three";
 import { CopyBatch, type CopyHit } from "./copy-batch";
-import { axesGeometry } from "./geometries";
+import { createAxes } from "./geometries";
 
 /** Any number of axes of one size in one draw call: x red, y green, z blue. */
 export class AxesBatch {
@@ -21,7 +21,7 @@ export class AxesBatch {
     return this.copies.size;
   }
 
-  /** Changes the size, m; for the radius see `axesGeometry`. Must be called before `begin`. */
+  /** Changes the size, m; for the radius see `createAxes`. Must be called before `begin`. */
   setShape(length: number, radius: number, segments = 12): void {
     if (this.shapeKey === [length, radius, segments].join()) return;
     this.copies.dispose();
@@ -56,6 +56,6 @@ export class AxesBatch {
 
   private make(length: number, radius: number, segments: number): CopyBatch {
     this.shapeKey = [length, radius, segments].join();
-    return new CopyBatch(this.parent, axesGeometry(length, radius, segments));
+    return new CopyBatch(this.parent, createAxes(length, radius, segments));
   }
 }

@@ -136,16 +136,16 @@ export class CopyBatch {
 
   /** Returns the nearest copy that a ray hits. */
   pick(ray: Raycaster): CopyHit | null {
-    let nearest: CopyHit | null = null;
+    let nearestHit: CopyHit | null = null;
     const { matrixWorld } = this.mesh;
     for (let copy = 0; copy < this.count; copy++) {
       this.matrixOf(copy, this.probe.matrixWorld).premultiply(matrixWorld);
       const [hit] = ray.intersectObject(this.probe, false);
-      if (hit && (nearest === null || hit.distance < nearest.distance)) {
-        nearest = { copy, distance: hit.distance, point: hit.point };
+      if (hit && (nearestHit === null || hit.distance < nearestHit.distance)) {
+        nearestHit = { copy, distance: hit.distance, point: hit.point };
       }
     }
-    return nearest;
+    return nearestHit;
   }
 
   dispose(): void {

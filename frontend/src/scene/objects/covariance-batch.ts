@@ -1,7 +1,7 @@
 import { Matrix4, Quaternion, Vector3, type Box3, type Object3D } from "three";
 import { CopyBatch } from "./copy-batch";
 import { computePrincipalAxes } from "./eigen";
-import { sphereGeometry, cylinderGeometry, coneGeometry } from "./geometries";
+import { createSphere, createCylinder, createCone } from "./geometries";
 
 /** RViz's CovarianceProperty; null for a part that is not drawn. Colors as 0xrrggbb. */
 export interface CovarianceStyle {
@@ -37,9 +37,9 @@ export class CovarianceBatch {
   private readonly root = new Matrix4();
 
   constructor(parent: Object3D) {
-    this.balls = new CopyBatch(parent, sphereGeometry(SEGMENTS));
-    this.discs = new CopyBatch(parent, cylinderGeometry(SEGMENTS));
-    this.cones = new CopyBatch(parent, coneGeometry(SEGMENTS));
+    this.balls = new CopyBatch(parent, createSphere(SEGMENTS));
+    this.discs = new CopyBatch(parent, createCylinder(SEGMENTS));
+    this.cones = new CopyBatch(parent, createCone(SEGMENTS));
   }
 
   /** Removes all covariances; at most `expected` poses will be added. */

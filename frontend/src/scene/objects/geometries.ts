@@ -23,7 +23,7 @@ export const smallSphere = new SphereGeometry(1, 16, 10).rotateX(Math.PI / 2);
 const capsules = new Map<number, BufferGeometry>();
 
 /** Returns a capsule of radius 1 along z whose cylinder has this length. */
-export function capsuleGeometry(length: number): BufferGeometry {
+export function createCapsule(length: number): BufferGeometry {
   let geometry = capsules.get(length);
   if (!geometry) {
     geometry = new CapsuleGeometry(1, length, 12, 32).rotateX(Math.PI / 2);
@@ -36,8 +36,8 @@ export function capsuleGeometry(length: number): BufferGeometry {
  * Returns three cylinders along x, y and z in red, green and blue, as RViz's Axes; m. Like RViz, this uses the radius
  * as the thickness of the arms, so that axes of length 1 and radius 0.1 are ten times as long as they are thick.
  */
-export function axesGeometry(length: number, radius: number, segments: number): BufferGeometry {
-  const createArm = (): BufferGeometry => rodGeometry(segments).scale(length, radius, radius);
+export function createAxes(length: number, radius: number, segments: number): BufferGeometry {
+  const createArm = (): BufferGeometry => createRod(segments).scale(length, radius, radius);
   return mergeGeometries([
     paint(createArm(), 1, 0, 0),
     paint(createArm().rotateZ(Math.PI / 2), 0, 1, 0),
@@ -49,7 +49,7 @@ export function axesGeometry(length: number, radius: number, segments: number): 
  * Returns a white rod of one meter from the origin along x, with a diameter of one meter. It is closed at one end only,
  * because the other is hidden.
  */
-export function rodGeometry(segments: number, closedAt: "origin" | "end" = "end"): BufferGeometry {
+export function createRod(segments: number, closedAt: "origin" | "end" = "end"): BufferGeometry {
   const isOpen = true;
   const tube = new CylinderGeometry(0.5, 0.5, 1, segments, 1, isOpen).rotateZ(-Math.PI / 2).translate(0.5, 0, 0);
   const disc = new CircleGeometry(0.5, segments).rotateY(Math.PI / 2);
@@ -59,22 +59,22 @@ export function rodGeometry(segments: number, closedAt: "origin" | "end" = "end"
 }
 
 /** Returns a white cone with its base, one meter in diameter, at the origin, and its tip one meter along x. */
-export function coneGeometry(segments: number): BufferGeometry {
+export function createCone(segments: number): BufferGeometry {
   return paint(new ConeGeometry(0.5, 1, segments).rotateZ(-Math.PI / 2).translate(0.5, 0, 0), 1, 1, 1);
 }
 
 /** Returns a white sphere with a diameter of one meter. */
-export function sphereGeometry(segments: number): BufferGeometry {
+export function createSphere(segments: number): BufferGeometry {
   return paint(new SphereGeometry(0.5, segments, Math.ceil(segments / 2)).rotateX(Math.PI / 2), 1, 1, 1);
 }
 
 /** Returns a closed white cylinder along z, one meter long and one meter in diameter. */
-export function cylinderGeometry(segments: number): BufferGeometry {
+export function createCylinder(segments: number): BufferGeometry {
   return paint(new CylinderGeometry(0.5, 0.5, 1, segments).rotateX(Math.PI / 2), 1, 1, 1);
 }
 
 /** Returns a white unit cube. */
-export function cubeGeometry(): BufferGeometry {
+export function createCube(): BufferGeometry {
   return paint(new BoxGeometry(1, 1, 1), 1, 1, 1);
 }
 

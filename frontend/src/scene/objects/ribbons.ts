@@ -66,18 +66,18 @@ export function stripsOf(segments: Float32Array, itemSize = 3): Float32Array[] {
 }
 
 function directionAt(strip: Float32Array, i: number): [number, number, number] {
-  const incoming = directionOfSegment(strip, i - 1);
-  const outgoing = directionOfSegment(strip, i);
+  const incoming = computeSegmentDirection(strip, i - 1);
+  const outgoing = computeSegmentDirection(strip, i);
   const sum: [number, number, number] = [incoming[0] + outgoing[0], incoming[1] + outgoing[1], incoming[2] + outgoing[2]];
   // Where the line reverses, the mean of both directions is zero.
   return Math.hypot(...sum) > 1e-6 ? sum : outgoing;
 }
 
 /** Returns the unit vector from point `i` to the next; zero beyond the ends and between equal points. */
-function directionOfSegment(strip: Float32Array, i: number): [number, number, number] {
+function computeSegmentDirection(strip: Float32Array, i: number): [number, number, number] {
   if (i < 0 || (i + 2) * 3 > strip.length) return [0, 0, 0];
-  const difference = (axis: number): number => (strip[i * 3 + 3 + axis] ?? 0) - (strip[i * 3 + axis] ?? 0);
-  const [x, y, z] = [difference(0), difference(1), difference(2)];
+  const differenceAlong = (axis: number): number => (strip[i * 3 + 3 + axis] ?? 0) - (strip[i * 3 + axis] ?? 0);
+  const [x, y, z] = [differenceAlong(0), differenceAlong(1), differenceAlong(2)];
   const length = Math.hypot(x, y, z);
   return length > 0 ? [x / length, y / length, z / length] : [0, 0, 0];
 }

@@ -50,7 +50,7 @@ export function selectSubmesh(parts: readonly MeshPart[], selection: Submesh | n
  * @param columns - the number of heights in a row.
  * @param size - x, y, z of the ground, the offset of its center, and the side length that a texture covers, m.
  */
-export function heightmapGeometry(heights: Float32Array, columns: number, size: readonly number[]): BufferGeometry {
+export function createHeightmap(heights: Float32Array, columns: number, size: readonly number[]): BufferGeometry {
   const [x = 1, y = 1, z = 1, dx = 0, dy = 0, dz = 0, tile = 1] = size;
   const rows = Math.floor(heights.length / Math.max(1, columns));
   const geometry = new PlaneGeometry(x, y, Math.max(1, columns - 1), Math.max(1, rows - 1));

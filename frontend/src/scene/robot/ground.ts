@@ -16,7 +16,7 @@ export function groundOf(robot: Pick<RobotScene, "links" | "joints">, boxes: Rea
   const bounds = unionOf(boxes, [...boxes.keys()]);
   if (bounds.isEmpty()) return 0;
   const margin = STANDING_TOLERANCE * bounds.getSize(new Vector3()).length();
-  const base = unionOf(boxes, fixedLinks(robot));
+  const base = unionOf(boxes, listFixedLinks(robot));
   const standsOnGround = !base.isEmpty() && Math.abs(base.min.z) <= margin;
   return standsOnGround || bounds.min.z >= -margin ? 0 : bounds.min.z;
 }
@@ -31,7 +31,7 @@ function unionOf(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box
 }
 
 /** Returns the links that are fixed to the root. */
-function fixedLinks({ links, joints }: Pick<RobotScene, "links" | "joints">): Set<string> {
+function listFixedLinks({ links, joints }: Pick<RobotScene, "links" | "joints">): Set<string> {
   const base = new Set(links.filter((link) => link.parent_joint === null).map((link) => link.name));
   const fixed = joints.filter((joint) => joint.kind === "fixed");
   for (let hasGrown = true; hasGrown; ) {

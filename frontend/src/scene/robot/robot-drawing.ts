@@ -81,9 +81,9 @@ export class RobotDrawing {
   /**
    * Returns the bounding box of the visible parts in the fixed frame, m; of the links' origins if nothing is visible.
    */
-  bounds(): Box3 {
+  computeBounds(): Box3 {
     const box = new Box3();
-    for (const bounds of this.boundsOfLinks().values()) box.union(bounds);
+    for (const linkBox of this.boundsOfLinks().values()) box.union(linkBox);
     if (!box.isEmpty()) return box;
     for (const { pose } of this.links.values()) if (pose) box.expandByPoint(new Vector3().setFromMatrixPosition(pose));
     return box;
@@ -92,7 +92,7 @@ export class RobotDrawing {
   /**
    * Returns a box that contains all visible parts but may be larger, because it is computed without single vertices.
    */
-  roughBounds(): Box3 {
+  computeRoughBounds(): Box3 {
     const box = new Box3();
     this.root.updateWorldMatrix(true, true);
     for (const mesh of this.visibleMeshes) box.expandByObject(mesh);
@@ -105,7 +105,7 @@ export class RobotDrawing {
   }
 
   /** Returns the height of the ground below the robot in the fixed frame, m. */
-  ground(): number {
+  computeGround(): number {
     return groundOf(this.scene, this.boundsOfLinks());
   }
 

@@ -1,10 +1,10 @@
 import { Matrix4, Quaternion, Vector3, type Box3, type Object3D } from "three";
 import type { JointScene, LinkInertia, RobotScene } from "../../protocol";
 import type { PropertyNode, PropertyRows } from "../../state/properties";
-import { alongX, ArrowBatch } from "../objects/arrow-batch";
+import { poseAlongX, ArrowBatch } from "../objects/arrow-batch";
 import { AxesBatch } from "../objects/axes-batch";
 import { CopyBatch } from "../objects/copy-batch";
-import { sphereGeometry, cubeGeometry } from "../objects/geometries";
+import { createSphere, createCube } from "../objects/geometries";
 
 const AXES_LENGTH = 0.1;
 const AXES_RADIUS = 0.01;
@@ -37,9 +37,9 @@ export class RobotExtras {
   ) {
     this.axes = new AxesBatch(parent, AXES_LENGTH, AXES_RADIUS);
     this.arrows = new ArrowBatch(parent);
-    this.balls = new CopyBatch(parent, sphereGeometry(20));
-    this.boxes = new CopyBatch(parent, cubeGeometry());
-    this.joints = scene.joints.map((joint) => ({ joint, origin: jointOrigin(joint) }));
+    this.balls = new CopyBatch(parent, createSphere(20));
+    this.boxes = new CopyBatch(parent, createCube());
+    this.joints = scene.joints.map((joint) => ({ joint, origin: createJointOrigin(joint) }));
   }
 
   /** The number of marks of each kind drawn now. */
@@ -112,7 +112,7 @@ export class RobotExtras {
         if (!pose) continue;
         if (this.jointAxes.has(joint.name)) this.axes.add(matrix.multiplyMatrices(pose, origin));
         if (!this.jointArrows.has(joint.name)) continue;
-        alongX(new Vector3(), new Vector3().fromArray(joint.axis), matrix).premultiply(origin).premultiply(pose);
+        poseAlongX(new Vector3(), new Vector3().fromArray(joint.axis), matrix).premultiply(origin).premultiply(pose);
         this.arrows.add(matrix, AXIS, { color: AXIS_COLOR });
       }
     }
@@ -122,7 +122,7 @@ export class RobotExtras {
 }
 
 /** Returns a joint's frame in the frame of its parent link, at position zero. */
-function jointOrigin({ position, quaternion }: JointScene): Matrix4 {
+function createJointOrigin({ position, quaternion }: JointScene): Matrix4 {
   return new Matrix4().compose(new Vector3().fromArray(position), new Quaternion().fromArray(quaternion), ONE);
 }
 

@@ -9,9 +9,9 @@ import type { MeshLibrary } from "../meshes/mesh-library";
 import type { StandIn } from "../meshes/stand-in";
 import type { StandIns } from "../meshes/stand-ins";
 import { UNCOLORED_GRAY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
-import { extrudePolygons, heightmapGeometry, selectSubmesh } from "../objects/world-geometries";
-import { poseMatrix } from "../pose";
-import { capsuleGeometry, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
+import { extrudePolygons, createHeightmap, selectSubmesh } from "../objects/world-geometries";
+import { setPoseMatrix } from "../pose";
+import { createCapsule, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
 import { solidKindOf, type SolidKind } from "./solids";
 
 /** The tolerance for equal poses: m, and elements of rotation matrices. */
@@ -131,7 +131,7 @@ export class ShapeDrawing {
       const [material = errorMaterial] = materials;
       mesh.material = materials.length === 1 ? material : materials;
     }
-    this.batched = isLost || pool.isLit ? null : this.asSolid(override, alpha);
+    this.batched = isLost || pool.isLit ? null : this.createSolid(override, alpha);
     for (const { mesh } of this.parts) {
       if (this.batched) {
         mesh.layers.disable(0);
@@ -168,7 +168,7 @@ export class ShapeDrawing {
   /** Whether the description places the shape at a pose in its link. */
   isAt(pose: Matrix4): boolean {
     const [x = 0, y = 0, z = 0] = this.shape.position;
-    const shapePose = poseMatrix([x, y, z, ...this.shape.quaternion], new Matrix4());
+    const shapePose = setPoseMatrix([x, y, z, ...this.shape.quaternion], new Matrix4());
     return shapePose.elements.every((value, i) => Math.abs(value - (pose.elements[i] ?? NaN)) < POSE_TOLERANCE);
   }
 
@@ -218,7 +218,7 @@ export class ShapeDrawing {
         this.addPart(unitCylinder, [null]).scale.set(a, a, b);
         break;
       case "capsule":
-        this.addPart(capsuleGeometry(a > 0 ? b / a : 0), [null]).scale.setScalar(a);
+        this.addPart(createCapsule(a > 0 ? b / a : 0), [null]).scale.setScalar(a);
         break;
       case "sphere":
         this.addPart(unitSphere, [null]).scale.setScalar(a);
@@ -236,7 +236,7 @@ export class ShapeDrawing {
         this.buildPart(extrudePolygons(this.shape.outlines, a));
         break;
       case "heightmap":
-        if (this.shape.heights) this.buildPart(heightmapGeometry(this.shape.heights, this.shape.columns, this.shape.size));
+        if (this.shape.heights) this.buildPart(createHeightmap(this.shape.heights, this.shape.columns, this.shape.size));
         break;
       case "mesh":
         break;
@@ -270,7 +270,7 @@ export class ShapeDrawing {
     return mesh;
   }
 
-  private asSolid(override: LinkOverride | null, alpha: number): Solid | null {
+  private createSolid(override: LinkOverride | null, alpha: number): Solid | null {
     const kind = solidKindOf(this.shape.kind);
     const [part] = this.parts;
     const look = this.lookFor(null, alpha, override);

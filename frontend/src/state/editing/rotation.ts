@@ -13,7 +13,7 @@ export function quaternionOf([roll = 0, pitch = 0, yaw = 0]: readonly number[]):
 }
 
 /** Returns roll, pitch and yaw of a rotation: of all equivalent values, those closest to `near`. */
-export function nearestRpy([x, y, z, w]: Quaternion, reference: readonly number[]): [number, number, number] {
+export function findNearestRpy([x, y, z, w]: Quaternion, reference: readonly number[]): [number, number, number] {
   const [nearRoll = 0, nearPitch = 0, nearYaw = 0] = reference;
   const cosPitchCosYaw = 1 - 2 * (y * y + z * z);
   const cosPitchSinYaw = 2 * (x * y + z * w);
@@ -21,18 +21,18 @@ export function nearestRpy([x, y, z, w]: Quaternion, reference: readonly number[
   const pitch = Math.atan2(-2 * (x * z - y * w), level);
   if (level < GIMBAL_LOCK) {
     const yaw = Math.atan2(-2 * (x * y - z * w), 1 - 2 * (x * x + z * z));
-    return [nearRoll, nearestAngle(pitch, nearPitch), nearestAngle(pitch > 0 ? yaw + nearRoll : yaw - nearRoll, nearYaw)];
+    return [nearRoll, findNearestAngle(pitch, nearPitch), findNearestAngle(pitch > 0 ? yaw + nearRoll : yaw - nearRoll, nearYaw)];
   }
   const roll = Math.atan2(2 * (y * z + x * w), 1 - 2 * (x * x + y * y));
   const yaw = Math.atan2(cosPitchSinYaw, cosPitchCosYaw);
-  const normalizeNearest = ([r, p, h]: readonly [number, number, number]): [number, number, number] => [nearestAngle(r, nearRoll), nearestAngle(p, nearPitch), nearestAngle(h, nearYaw)];
+  const normalizeNearest = ([r, p, h]: readonly [number, number, number]): [number, number, number] => [findNearestAngle(r, nearRoll), findNearestAngle(p, nearPitch), findNearestAngle(h, nearYaw)];
   const [first, second] = [normalizeNearest([roll, pitch, yaw]), normalizeNearest([roll + Math.PI, Math.PI - pitch, yaw + Math.PI])];
-  const distanceTo = (rpy: readonly number[]): number => rpy.reduce((sum, angle, i) => sum + Math.abs(angle - (reference[i] ?? 0)), 0);
-  return distanceTo(second) < distanceTo(first) - 1e-9 ? second : first;
+  const computeDistance = (rpy: readonly number[]): number => rpy.reduce((sum, angle, i) => sum + Math.abs(angle - (reference[i] ?? 0)), 0);
+  return computeDistance(second) < computeDistance(first) - 1e-9 ? second : first;
 }
 
 /** Returns the equivalent angle within half a turn of another. */
-function nearestAngle(angle: number, reference: number): number {
+function findNearestAngle(angle: number, reference: number): number {
   const difference = angle - reference;
   return reference + Math.atan2(Math.sin(difference), Math.cos(difference));
 }

@@ -127,8 +127,8 @@ export class Modeling {
   }
 
   get canScale(): boolean {
-    const [entity, ...others] = this.selectedEntities;
-    return others.length === 0 && entity !== undefined && entity.shape !== null;
+    const [entity, ...otherEntities] = this.selectedEntities;
+    return otherEntities.length === 0 && entity !== undefined && entity.shape !== null;
   }
 
   find(name: string): WorldEntity | null {

@@ -34,7 +34,7 @@ export interface Placement {
 /** Returns the placement of a new entity on the ground. */
 export function placementAt(kind: NewKind, [x, y]: Place): Placement {
   const size = SIZES[kind] ?? [];
-  const z = LIGHT_HEIGHTS[kind] ?? (isShape(kind) ? restingHeight(kind, size) : 0);
+  const z = LIGHT_HEIGHTS[kind] ?? (isShape(kind) ? computeRestingHeight(kind, size) : 0);
   return { pose: [x, y, z, 0, 0, 0], size };
 }
 
@@ -44,20 +44,20 @@ export function placeWall(a: Place, b: Place): Placement | null {
   const length = Math.hypot(dx, dy);
   if (length < THICKNESS / 2) return null;
   const size = [length, THICKNESS, HEIGHT];
-  return { pose: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, restingHeight("wall", size), 0, 0, Math.atan2(dy, dx)], size };
+  return { pose: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, computeRestingHeight("wall", size), 0, 0, Math.atan2(dy, dx)], size };
 }
 
 /** Returns the height of a shape's origin when it rests on the ground, m. */
-function restingHeight(shape: Shape, size: readonly number[]): number {
+function computeRestingHeight(shape: Shape, size: readonly number[]): number {
   const [first = 0, second = 0, third = 0] = size;
   if (shape === "sphere") return first;
   return (shape === "cylinder" ? second : third) / 2;
 }
 
 /** Scales a size along x, y and z; a round dimension follows its axis that is scaled most. */
-export function scaledSize(shape: Shape, size: readonly number[], scale: readonly number[], step: number): number[] {
+export function scaleSize(shape: Shape, size: readonly number[], scale: readonly number[], step: number): number[] {
   const [sx = 1, sy = 1, sz = 1] = scale;
-  const factors = shape === "sphere" ? [largestFactor(sx, sy, sz)] : shape === "cylinder" ? [largestFactor(sx, sy), sz] : [sx, sy, sz];
+  const factors = shape === "sphere" ? [chooseLargestFactor(sx, sy, sz)] : shape === "cylinder" ? [chooseLargestFactor(sx, sy), sz] : [sx, sy, sz];
   // Dimensions that are not scaled may remain off the grid.
   return size.map((length, i) => {
     const factor = Math.abs(factors[i] ?? 1);
@@ -70,7 +70,7 @@ export function resizeChange({ name, shape, size: oldSize, pose }: WorldEntity, 
   const [x = 0, y = 0, z = 0, roll = 0, pitch = 0, yaw = 0] = pose;
   const change = { name, size: [...size] };
   if (shape === null || roll !== 0 || pitch !== 0) return change;
-  const rise = restingHeight(shape, size) - restingHeight(shape, oldSize);
+  const rise = computeRestingHeight(shape, size) - computeRestingHeight(shape, oldSize);
   return rise === 0 ? change : { ...change, pose: [x, y, roundNoise(z + rise), roll, pitch, yaw] };
 }
 
@@ -80,7 +80,7 @@ export function roundNoise(value: number): number {
 }
 
 /** Returns the factors by which to stretch the drawing of a shape along x, y and z for another size. */
-export function stretchFactors(shape: Shape, oldSize: readonly number[], newSize: readonly number[]): [number, number, number] {
+export function computeStretchFactors(shape: Shape, oldSize: readonly number[], newSize: readonly number[]): [number, number, number] {
   const factorAt = (i: number): number => ((oldSize[i] ?? 0) > 0 ? (newSize[i] ?? 0) / (oldSize[i] ?? 1) : 1);
   if (shape === "sphere") return [factorAt(0), factorAt(0), factorAt(0)];
   return shape === "cylinder" ? [factorAt(0), factorAt(0), factorAt(1)] : [factorAt(0), factorAt(1), factorAt(2)];
@@ -90,6 +90,6 @@ export function isShape(kind: NewKind): kind is Shape {
   return kind === "wall" || kind in SIZES;
 }
 
-function largestFactor(...factors: number[]): number {
+function chooseLargestFactor(...factors: number[]): number {
   return factors.reduce((largest, factor) => (Math.abs(Math.log(Math.abs(factor))) > Math.abs(Math.log(Math.abs(largest))) ? factor : largest), 1);
 }

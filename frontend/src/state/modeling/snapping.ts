@@ -27,9 +27,9 @@ export class Snapping {
     usual = { on: true, length: 0.1 },
   ) {
     [this.isOn, this.length] = [usual.on, usual.length];
-    const [on, length, angle] = (storage.getItem(key) ?? "").split(" ");
+    const [state, length, angle] = (storage.getItem(key) ?? "").split(" ");
     if (!(Number(length) > 0 && Number(angle) > 0)) return;
-    [this.isOn, this.length, this.angle] = [on === "on", Number(length), Number(angle)];
+    [this.isOn, this.length, this.angle] = [state === "on", Number(length), Number(angle)];
   }
 
   get isEnabled(): boolean {
@@ -61,7 +61,7 @@ export class Snapping {
   }
 
   /** Returns the current steps, m and rad, 0 without a grid; `inverted` while Ctrl is held. */
-  currentSteps(isInverted: boolean): { length: number; angle: number } {
+  chooseSteps(isInverted: boolean): { length: number; angle: number } {
     const isOn = this.isOn !== isInverted;
     return { length: isOn ? this.length : 0, angle: isOn ? this.angle * DEGREE : 0 };
   }

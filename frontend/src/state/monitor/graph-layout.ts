@@ -164,7 +164,7 @@ function connectLayers(
  * crossings.
  */
 function orderLayers(layers: Vertex[][]): void {
-  let best = layers.map((layer) => [...layer]);
+  let bestLayers = layers.map((layer) => [...layer]);
   let fewest = countCrossings(layers);
   for (let sweep = 0; sweep < ORDER_SWEEPS && fewest > 0; sweep++) {
     const isForward = sweep % 2 === 0;
@@ -185,10 +185,10 @@ function orderLayers(layers: Vertex[][]): void {
     const count = countCrossings(layers);
     if (count < fewest) {
       fewest = count;
-      best = layers.map((layer) => [...layer]);
+      bestLayers = layers.map((layer) => [...layer]);
     }
   }
-  best.forEach((layer, index) => (layers[index] = layer));
+  bestLayers.forEach((layer, index) => (layers[index] = layer));
 }
 
 function countCrossings(layers: readonly (readonly Vertex[])[]): number {

@@ -6,10 +6,10 @@ export interface GraphOptions {
   /** Show nodes only, topics that connect nodes, or all topics. */
   mode: GraphMode;
   /** Whether to show topics that every node has. */
-  debug: boolean;
-  tf: boolean;
+  showsDebug: boolean;
+  showsTf: boolean;
   /** Whether the nodes of a namespace are one vertex, unless its group is open. */
-  grouped: boolean;
+  groupsNamespaces: boolean;
   openGroups: ReadonlySet<string>;
 }
 
@@ -41,7 +41,7 @@ const ACTION = "/_action/";
 /** Returns the vertices and edges to draw for a graph. */
 export function buildGraph(graph: NodeGraph, options: GraphOptions): DrawnGraph {
   const vertices = new Map<string, GraphVertex>();
-  const nodes = graph.nodes.filter((name) => options.debug || !DEBUG_NODES.test(name));
+  const nodes = graph.nodes.filter((name) => options.showsDebug || !DEBUG_NODES.test(name));
   const owners = new Map(nodes.map((name) => [name, ownerOf(name, options)]));
   for (const owner of owners.values()) {
     const vertex = vertices.get(owner.id);
@@ -89,8 +89,8 @@ interface JoinedTopic extends Pick<GraphTopic, "name" | "publishers" | "subscrib
 function topicsOf(graph: NodeGraph, options: GraphOptions): JoinedTopic[] {
   const joined = new Map<string, JoinedTopic>();
   for (const { name, publishers, subscribers } of graph.topics) {
-    if (!options.debug && DEBUG_TOPICS.has(name)) continue;
-    if (!options.tf && TF_TOPICS.has(name)) continue;
+    if (!options.showsDebug && DEBUG_TOPICS.has(name)) continue;
+    if (!options.showsTf && TF_TOPICS.has(name)) continue;
     const index = name.indexOf(ACTION);
     const shownName = index < 0 ? name : name.slice(0, index);
     const topic = joined.get(shownName);
@@ -102,9 +102,9 @@ function topicsOf(graph: NodeGraph, options: GraphOptions): JoinedTopic[] {
   return [...joined.values()];
 }
 
-function ownerOf(node: string, { grouped, openGroups }: GraphOptions): GraphVertex {
+function ownerOf(node: string, { groupsNamespaces, openGroups }: GraphOptions): GraphVertex {
   const namespace = node.slice(0, node.indexOf("/", 1));
-  if (grouped && node.indexOf("/", 1) > 0 && !openGroups.has(namespace)) {
+  if (groupsNamespaces && node.indexOf("/", 1) > 0 && !openGroups.has(namespace)) {
     return { id: `group:${namespace}`, kind: "group", label: `${namespace}/`, count: 1 };
   }
   return { id: `node:${node}`, kind: "node", label: node, count: 1 };

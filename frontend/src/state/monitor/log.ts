@@ -119,16 +119,16 @@ export class LogState {
       this.filter();
       return;
     }
-    this.shownLines.push(...lines.filter((line) => this.passes(line)));
+    this.shownLines.push(...lines.filter((line) => this.passesFilters(line)));
     this.changed.emit();
   }
 
   private filter(): void {
-    this.shownLines = this.lines.filter((line) => this.passes(line));
+    this.shownLines = this.lines.filter((line) => this.passesFilters(line));
     this.changed.emit();
   }
 
-  private passes(line: LogLine): boolean {
+  private passesFilters(line: LogLine): boolean {
     if (!this.levels.has(levelOf(line))) return false;
     if (this.node !== "" && line.node !== this.node) return false;
     return this.text === "" || line.message.toLowerCase().includes(this.text) || line.node.toLowerCase().includes(this.text);

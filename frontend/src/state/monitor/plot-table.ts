@@ -67,7 +67,7 @@ function tabulateSamples(series: readonly SeriesBuffer[], source: TimeSource, sp
     const column = new Array<number | null | undefined>(times.length);
     const [start, end] = spans[index] ?? [0, 0];
     const [sampleTimes, values] = [buffer.timesOf(source), buffer.values];
-    for (let index = start; index < end; index++) column[rows.get(sampleTimes[index] ?? 0) ?? 0] = drawnValue(values[index]);
+    for (let index = start; index < end; index++) column[rows.get(sampleTimes[index] ?? 0) ?? 0] = toDrawnValue(values[index]);
     return column;
   });
   return [times, ...columns];
@@ -97,8 +97,8 @@ function tabulateExtremes(
         if (!(value >= (values[minimum] ?? NaN))) minimum = next;
         if (!(value <= (values[maximum] ?? NaN))) maximum = next;
       }
-      column[2 * bucket] = drawnValue(values[Math.min(minimum, maximum)]);
-      if (minimum !== maximum) column[2 * bucket + 1] = drawnValue(values[Math.max(minimum, maximum)]);
+      column[2 * bucket] = toDrawnValue(values[Math.min(minimum, maximum)]);
+      if (minimum !== maximum) column[2 * bucket + 1] = toDrawnValue(values[Math.max(minimum, maximum)]);
       sample = next;
     }
     return column;
@@ -110,7 +110,7 @@ function bucketOf(time: number, start: number, width: number, count: number): nu
   return Math.min(count + 1, Math.max(0, Math.floor((time - start) / width) + 1));
 }
 
-function drawnValue(value: number | undefined): number | null {
+function toDrawnValue(value: number | undefined): number | null {
   return value === undefined || !Number.isFinite(value) ? null : value;
 }
 

@@ -80,7 +80,7 @@ export class PlotsState {
   /** The time span of the plots, s; null if there is nothing to show. */
   get window(): readonly [number, number] | null {
     if (this.frozenAt) return this.frozenAt;
-    const times = this.series.map((series) => series.buffer.latestTime(this.source)).filter((time) => time !== null);
+    const times = this.series.map((series) => series.buffer.latestTimeOf(this.source)).filter((time) => time !== null);
     if (times.length === 0) return null;
     const end = Math.max(...times);
     return [end - this.seconds, end];

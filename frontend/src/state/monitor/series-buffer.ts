@@ -30,7 +30,7 @@ export class SeriesBuffer {
   }
 
   /** Returns the newest time, s; null if there are no samples. */
-  latestTime(source: TimeSource): number | null {
+  latestTimeOf(source: TimeSource): number | null {
     return this.timesOf(source)[this.count - 1] ?? null;
   }
 

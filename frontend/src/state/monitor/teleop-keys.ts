@@ -8,43 +8,43 @@ export interface Motion {
 
 export const STILL: Motion = { x: 0, y: 0, z: 0, turn: 0 };
 
-const makeMotion = (x: number, turn = 0, y = 0, z = 0): Motion => ({ x, y, z, turn });
+const createMotion = (x: number, turn = 0, y = 0, z = 0): Motion => ({ x, y, z, turn });
 
 /** The keys of teleop_twist_keyboard, the arrow keys, and WASD. With Shift they move sideways instead of turning. */
 const KEYS: Readonly<Record<string, Motion>> = {
-  i: makeMotion(1),
-  o: makeMotion(1, -1),
-  j: makeMotion(0, 1),
-  l: makeMotion(0, -1),
-  u: makeMotion(1, 1),
-  ",": makeMotion(-1),
-  ".": makeMotion(-1, 1),
-  m: makeMotion(-1, -1),
-  I: makeMotion(1),
-  O: makeMotion(1, 0, -1),
-  J: makeMotion(0, 0, 1),
-  L: makeMotion(0, 0, -1),
-  U: makeMotion(1, 0, 1),
-  "<": makeMotion(-1),
-  ">": makeMotion(-1, 0, -1),
-  M: makeMotion(-1, 0, 1),
-  t: makeMotion(0, 0, 0, 1),
-  b: makeMotion(0, 0, 0, -1),
-  w: makeMotion(1),
-  s: makeMotion(-1),
-  a: makeMotion(0, 1),
-  d: makeMotion(0, -1),
-  W: makeMotion(1),
-  S: makeMotion(-1),
-  A: makeMotion(0, 0, 1),
-  D: makeMotion(0, 0, -1),
-  ArrowUp: makeMotion(1),
-  ArrowDown: makeMotion(-1),
-  ArrowLeft: makeMotion(0, 1),
-  ArrowRight: makeMotion(0, -1),
+  i: createMotion(1),
+  o: createMotion(1, -1),
+  j: createMotion(0, 1),
+  l: createMotion(0, -1),
+  u: createMotion(1, 1),
+  ",": createMotion(-1),
+  ".": createMotion(-1, 1),
+  m: createMotion(-1, -1),
+  I: createMotion(1),
+  O: createMotion(1, 0, -1),
+  J: createMotion(0, 0, 1),
+  L: createMotion(0, 0, -1),
+  U: createMotion(1, 0, 1),
+  "<": createMotion(-1),
+  ">": createMotion(-1, 0, -1),
+  M: createMotion(-1, 0, 1),
+  t: createMotion(0, 0, 0, 1),
+  b: createMotion(0, 0, 0, -1),
+  w: createMotion(1),
+  s: createMotion(-1),
+  a: createMotion(0, 1),
+  d: createMotion(0, -1),
+  W: createMotion(1),
+  S: createMotion(-1),
+  A: createMotion(0, 0, 1),
+  D: createMotion(0, 0, -1),
+  ArrowUp: createMotion(1),
+  ArrowDown: createMotion(-1),
+  ArrowLeft: createMotion(0, 1),
+  ArrowRight: createMotion(0, -1),
 };
 
-const SIDEWAYS: Readonly<Record<string, Motion>> = { ArrowLeft: makeMotion(0, 0, 1), ArrowRight: makeMotion(0, 0, -1) };
+const SIDEWAYS: Readonly<Record<string, Motion>> = { ArrowLeft: createMotion(0, 0, 1), ArrowRight: createMotion(0, 0, -1) };
 
 /** Returns the motion of a key; null for other keys. */
 export function motionOfKey(key: string, isShiftDown: boolean): Motion | null {

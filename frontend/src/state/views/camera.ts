@@ -45,12 +45,12 @@ export function toTarget(point: Vector, target: Target): Vector {
 }
 
 /** Converts a camera from a target's frame to the fixed frame. */
-export function cameraToFixed(camera: Camera, target: Target): Camera {
+export function transformToFixed(camera: Camera, target: Target): Camera {
   return transformCamera(camera, (point) => toFixed(point, target), target.yaw);
 }
 
 /** Converts a camera from the fixed frame to a target's frame. */
-export function cameraToTarget(camera: Camera, target: Target): Camera {
+export function transformToTarget(camera: Camera, target: Target): Camera {
   return transformCamera(camera, (point) => toTarget(point, target), -target.yaw);
 }
 

@@ -20,6 +20,6 @@ export function controllerOf(cls: string): ViewController {
 }
 
 /** Returns the name without the package: XYOrbit for `rviz_default_plugins/XYOrbit`. */
-export function shortName(cls: string): string {
+export function shortNameOf(cls: string): string {
   return cls.slice(cls.lastIndexOf("/") + 1);
 }

@@ -48,19 +48,19 @@ export function computeFraming(camera: Camera, values: ViewValues, span: Span, {
 }
 
 /** Returns the bounding box in a target's frame of a box in the fixed frame. */
-export function spanToTarget(span: Span, target: Target): Span {
+export function transformSpan(span: Span, target: Target): Span {
   const cornersInTarget = cornersOf(span).map((corner) => toTarget(corner, target));
   const points = span.points?.map((point) => toTarget(point, target));
   const extremeOf = (choose: (...coordinates: number[]) => number): Vector => {
-    const coordinate = (i: 0 | 1 | 2): number => choose(...cornersInTarget.map((corner) => corner[i]));
-    return [coordinate(0), coordinate(1), coordinate(2)];
+    const chooseCoordinate = (i: 0 | 1 | 2): number => choose(...cornersInTarget.map((corner) => corner[i]));
+    return [chooseCoordinate(0), chooseCoordinate(1), chooseCoordinate(2)];
   };
   return { min: extremeOf(Math.min), max: extremeOf(Math.max), ...(points ? { points } : {}) };
 }
 
 /** Whether a box contains another. */
-export function contains(outer: Span, inner: Span): boolean {
-  return ([0, 1, 2] as const).every((i) => outer.min[i] <= inner.min[i] && inner.max[i] <= outer.max[i]);
+export function contains(outerSpan: Span, innerSpan: Span): boolean {
+  return ([0, 1, 2] as const).every((i) => outerSpan.min[i] <= innerSpan.min[i] && innerSpan.max[i] <= outerSpan.max[i]);
 }
 
 function cornersOf({ min, max }: Span): Vector[] {

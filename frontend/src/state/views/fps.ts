@@ -5,8 +5,8 @@ import {
   clampPitch,
   number,
   RADIANS_PER_PIXEL,
-  vector,
-  vectorValues,
+  readVector,
+  createVectorValues,
   wrapYaw,
   type Drag,
   type Look,
@@ -35,11 +35,11 @@ export class FpsController implements ViewController {
     const pitch = clampPitch(number(values, "Pitch", 0));
     const back: Vector = [-Math.cos(yaw) * Math.cos(pitch), -Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
     const right: Vector = [Math.sin(yaw), -Math.cos(yaw), 0];
-    return { position: vector(values, "Position", START), right, up: cross(back, right), back, scale: null, focal: null };
+    return { position: readVector(values, "Position", START), right, up: cross(back, right), back, scale: null, focal: null };
   }
 
   zero(): ViewValues {
-    return { ...vectorValues("Position", START), ...anglesOf(subtract([0, 0, 0], START), [0, 0, 1]) };
+    return { ...createVectorValues("Position", START), ...anglesOf(subtract([0, 0, 0], START), [0, 0, 1]) };
   }
 
   drag(values: ViewValues, drag: Drag): ViewValues {
@@ -70,16 +70,16 @@ export class FpsController implements ViewController {
   fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
     const camera = this.computeCamera(values);
     const { center, distance, clip } = computeFraming(camera, values, box, size);
-    return distance > 0 ? { ...vectorValues("Position", add(center, camera.back, distance)), ...clip } : this.lookAt(values, center);
+    return distance > 0 ? { ...createVectorValues("Position", add(center, camera.back, distance)), ...clip } : this.lookAt(values, center);
   }
 
   mimic({ camera }: Look): ViewValues {
     const forward = subtract([0, 0, 0], camera.back);
-    return { ...vectorValues("Position", camera.position), ...anglesOf(forward, camera.up) };
+    return { ...createVectorValues("Position", camera.position), ...anglesOf(forward, camera.up) };
   }
 
   retarget(values: ViewValues, oldTarget: Target, newTarget: Target): ViewValues {
-    return vectorValues("Position", toTarget(toFixed(vector(values, "Position", START), oldTarget), newTarget));
+    return createVectorValues("Position", toTarget(toFixed(readVector(values, "Position", START), oldTarget), newTarget));
   }
 
   motionOf({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): FpsMotion {
@@ -96,7 +96,7 @@ export class FpsController implements ViewController {
   /** Moves along the camera's own axes: right, up, back. */
   private fly(values: ViewValues, [x, y, z]: Vector): ViewValues {
     const { position, right, up, back } = this.computeCamera(values);
-    return vectorValues("Position", add(add(add(position, right, x), up, y), back, z));
+    return createVectorValues("Position", add(add(add(position, right, x), up, y), back, z));
   }
 }
 

@@ -5,8 +5,8 @@ import {
   clampPitch,
   number,
   RADIANS_PER_PIXEL,
-  vector,
-  vectorValues,
+  readVector,
+  createVectorValues,
   wrapYaw,
   type Drag,
   type Look,
@@ -38,14 +38,14 @@ export class OrbitController implements ViewController {
   computeCamera(values: ViewValues): Camera {
     const { distance, yaw, pitch, focal } = orbitOf(values);
     const sign = values["Invert Z Axis"] === true ? -1 : 1;
-    const back = orbitDirection(yaw * sign, pitch * sign);
+    const back = computeOrbitDirection(yaw * sign, pitch * sign);
     const horizontal = Math.hypot(back[0], back[1]);
     const right: Vector = [(-back[1] * sign) / horizontal, (back[0] * sign) / horizontal, 0];
     return { position: add(focal, back, distance), right, up: cross(back, right), back, scale: null, focal };
   }
 
   zero(): ViewValues {
-    return { Distance: START.distance, Yaw: START.angle, Pitch: START.angle, ...vectorValues("Focal Point", ORIGIN) };
+    return { Distance: START.distance, Yaw: START.angle, Pitch: START.angle, ...createVectorValues("Focal Point", ORIGIN) };
   }
 
   drag(values: ViewValues, drag: Drag): ViewValues {
@@ -78,7 +78,7 @@ export class OrbitController implements ViewController {
 
   fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
     const { center, distance, clip } = computeFraming(this.computeCamera(values), values, box, size);
-    return { ...vectorValues("Focal Point", center), ...(distance > 0 ? { Distance: distance } : {}), ...clip };
+    return { ...createVectorValues("Focal Point", center), ...(distance > 0 ? { Distance: distance } : {}), ...clip };
   }
 
   mimic({ cls, values, camera }: Look): ViewValues {
@@ -94,7 +94,7 @@ export class OrbitController implements ViewController {
   retarget(values: ViewValues, oldTarget: Target, newTarget: Target): ViewValues {
     const { focal, yaw } = orbitOf(values);
     const yawChange = oldTarget.yaw === newTarget.yaw ? {} : { Yaw: wrapYaw(yaw + oldTarget.yaw - newTarget.yaw) };
-    return { ...vectorValues("Focal Point", toTarget(toFixed(focal, oldTarget), newTarget)), ...yawChange };
+    return { ...createVectorValues("Focal Point", toTarget(toFixed(focal, oldTarget), newTarget)), ...yawChange };
   }
 
   motionOf({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
@@ -114,12 +114,12 @@ export class OrbitController implements ViewController {
     const { distance, focal } = orbitOf(values);
     const metersPerPixel = (2 * distance * Math.tan(FIELD_OF_VIEW / 2)) / Math.max(1, height);
     const { right, up } = this.computeCamera(values);
-    return vectorValues("Focal Point", add(add(focal, right, -dx * metersPerPixel), up, dy * metersPerPixel));
+    return createVectorValues("Focal Point", add(add(focal, right, -dx * metersPerPixel), up, dy * metersPerPixel));
   }
 
   /** Moves the camera and the focal point along the line of sight. */
   private dolly(values: ViewValues, amount: number): ViewValues {
-    return vectorValues("Focal Point", add(orbitOf(values).focal, this.computeCamera(values).back, amount));
+    return createVectorValues("Focal Point", add(orbitOf(values).focal, this.computeCamera(values).back, amount));
   }
 }
 
@@ -128,7 +128,7 @@ export function orbitOf(values: ViewValues): { distance: number; yaw: number; pi
     distance: clampDistance(number(values, "Distance", START.distance)),
     yaw: number(values, "Yaw", START.angle),
     pitch: clampPitch(number(values, "Pitch", START.angle)),
-    focal: vector(values, "Focal Point", ORIGIN),
+    focal: readVector(values, "Focal Point", ORIGIN),
   };
 }
 
@@ -140,7 +140,7 @@ export function orbitFrom(focal: Vector, viewpoint: Vector): ViewValues {
     Distance: distance,
     Yaw: wrapYaw(Math.atan2(y, x)),
     Pitch: clampPitch(Math.asin(Math.max(-1, Math.min(1, z)))),
-    ...vectorValues("Focal Point", focal),
+    ...createVectorValues("Focal Point", focal),
   };
 }
 
@@ -154,6 +154,6 @@ function clampDistance(distance: number): number {
 }
 
 /** Returns the unit vector from the focal point to the camera. */
-export function orbitDirection(yaw: number, pitch: number): Vector {
+export function computeOrbitDirection(yaw: number, pitch: number): Vector {
   return [Math.cos(yaw) * Math.cos(pitch), Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
 }

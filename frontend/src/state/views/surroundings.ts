@@ -1,5 +1,5 @@
 import { add, scale, subtract, rotateZ, type Span, type Vector } from "./vector";
-import { orbitDirection, OrbitController } from "./orbit";
+import { computeOrbitDirection, OrbitController } from "./orbit";
 import { number, wrapYaw, type ViewValues } from "./view-controller";
 import type { ViewSize } from "./camera";
 
@@ -27,13 +27,13 @@ const orbit = new OrbitController();
 export type IsVisible = (viewpoint: Vector, position: Vector) => boolean;
 
 /** Returns the values of an Orbit view of a whole world from above. */
-export function orbitOverview(values: ViewValues, world: Span, size: ViewSize): ViewValues {
+export function computeOverview(values: ViewValues, world: Span, size: ViewSize): ViewValues {
   const startValues = { ...values, Pitch: OVERVIEW_PITCH };
   return { Pitch: OVERVIEW_PITCH, ...orbit.fit(startValues, world, size) };
 }
 
 /** Returns the values of an Orbit view of a robot and its surroundings, from where most of both is visible. */
-export function orbitAround(values: ViewValues, { min, max }: Span, size: ViewSize, isSeen: IsVisible): ViewValues {
+export function computeViewAround(values: ViewValues, { min, max }: Span, size: ViewSize, isSeen: IsVisible): ViewValues {
   const span = Math.max(...subtract(max, min));
   const room = Math.max(ROOM, ROOM * span);
   const center = scale(add(min, max), 0.5);
@@ -41,19 +41,19 @@ export function orbitAround(values: ViewValues, { min, max }: Span, size: ViewSi
   const ring = Array.from({ length: RING_POINTS }, (_, i) => add(center, rotateZ([1, 0, 0], (i * 2 * Math.PI) / RING_POINTS), span / 2 + room));
   const fittedValues = orbit.fit({ ...values, Pitch: ROBOT_PITCH }, { min: add(min, [1, 1, 1], -room), max: add(max, [1, 1, 1], room) }, size);
   const maxDistance = number(fittedValues, "Distance", 0);
-  const coveredShare = (viewpoint: Vector): number => ring.filter((position) => !isSeen(viewpoint, position)).length / RING_POINTS;
+  const computeCoveredShare = (viewpoint: Vector): number => ring.filter((position) => !isSeen(viewpoint, position)).length / RING_POINTS;
   for (const nearer of NEARER) {
-    let best: { score: number; values: ViewValues } | null = null;
+    let bestView: { score: number; values: ViewValues } | null = null;
     for (const { most, pitch, side } of DIRECTIONS) {
-      if (best && most <= best.score) continue;
+      if (bestView && most <= bestView.score) continue;
       const Yaw = wrapYaw(number(values, "Yaw", 0) + side);
       const Pitch = ROBOT_PITCH + pitch;
-      const viewpoint = add(center, orbitDirection(Yaw, Pitch), nearer * maxDistance);
+      const viewpoint = add(center, computeOrbitDirection(Yaw, Pitch), nearer * maxDistance);
       if (!isSeen(viewpoint, center) || !isSeen(viewpoint, top)) continue;
-      const score = most - coveredShare(viewpoint);
-      if (!best || score > best.score) best = { score, values: { ...fittedValues, Yaw, Pitch, Distance: nearer * maxDistance } };
+      const score = most - computeCoveredShare(viewpoint);
+      if (!bestView || score > bestView.score) bestView = { score, values: { ...fittedValues, Yaw, Pitch, Distance: nearer * maxDistance } };
     }
-    if (best) return best.values;
+    if (bestView) return bestView.values;
   }
   return fittedValues;
 }

@@ -65,12 +65,12 @@ export function number(values: ViewValues, name: string, fallback: number): numb
   return typeof value === "number" ? value : fallback;
 }
 
-export function vector(values: ViewValues, name: string, fallback: Vector): Vector {
-  const component = (axis: "X" | "Y" | "Z", i: 0 | 1 | 2): number => number(values, `${name}/${axis}`, fallback[i]);
-  return [component("X", 0), component("Y", 1), component("Z", 2)];
+export function readVector(values: ViewValues, name: string, fallback: Vector): Vector {
+  const readComponent = (axis: "X" | "Y" | "Z", i: 0 | 1 | 2): number => number(values, `${name}/${axis}`, fallback[i]);
+  return [readComponent("X", 0), readComponent("Y", 1), readComponent("Z", 2)];
 }
 
-export function vectorValues(name: string, [x, y, z]: Vector): ViewValues {
+export function createVectorValues(name: string, [x, y, z]: Vector): ViewValues {
   return { [`${name}/X`]: x, [`${name}/Y`]: y, [`${name}/Z`]: z };
 }
 

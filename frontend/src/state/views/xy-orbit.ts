@@ -2,7 +2,7 @@ import { onGround, castRay, type Camera, type ViewSize } from "./camera";
 import { computeFraming } from "./fit";
 import { add, distanceBetween, length, scale, subtract, type Span, type Vector } from "./vector";
 import { lookFromAbove, orbitFrom, OrbitController, orbitOf, type OrbitMotion } from "./orbit";
-import { vectorValues, type Drag, type Look, type MouseHint, type ViewValues } from "./view-controller";
+import { createVectorValues, type Drag, type Look, type MouseHint, type ViewValues } from "./view-controller";
 
 /**
  * The share of the distance by which the camera is raised, which places the focal point in the lower half of the view.
@@ -70,7 +70,7 @@ export class XYOrbitController extends OrbitController {
     const step = subtract(start, end);
     const stepLength = length(step);
     const allowed = stepLength > MAX_STEP ? scale(step, MAX_STEP / stepLength) : step;
-    return vectorValues("Focal Point", add(orbitOf(values).focal, allowed));
+    return createVectorValues("Focal Point", add(orbitOf(values).focal, allowed));
   }
 }
 

@@ -13,7 +13,7 @@ declare function registerProcessor(name: string, processor: new () => AudioWorkl
 export interface CaptureMessage {
   samples: Int16Array;
   /** The seconds of sound lost since the last message. */
-  lost: number;
+  lostSeconds: number;
   /** The number of the request that this answers; all sound until then has been sent. */
   answers: number | null;
 }
@@ -53,7 +53,7 @@ class Capture extends AudioWorkletProcessor {
 
   /** Sends the current part of a block; `answers` is the number of the request for it. */
   private send(answers: number | null = null): void {
-    const message: CaptureMessage = { samples: this.block.slice(0, this.filled), lost: this.gaps.takeLost(), answers };
+    const message: CaptureMessage = { samples: this.block.slice(0, this.filled), lostSeconds: this.gaps.takeLost(), answers };
     this.port.postMessage(message);
     this.filled = 0;
   }

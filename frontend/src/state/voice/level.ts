@@ -2,6 +2,6 @@
 const FLOOR = 60;
 
 /** Returns the share of a meter that a peak of 0 to 1 fills, on a scale in dB. */
-export function meterShare(peak: number): number {
+export function computeMeterShare(peak: number): number {
   return peak <= 0 ? 0 : Math.max(0, Math.min(1, 1 + (20 * Math.log10(peak)) / FLOOR));
 }

@@ -148,9 +148,9 @@ async function openBrowserCapture(onBlock: (samples: Int16Array, lostSeconds: nu
     const resolvers = new Map<number, () => void>();
     let requestCount = 0;
     const firstBlock = new Promise<void>((resolve) => {
-      node.port.onmessage = ({ data: { samples, lost, answers } }: MessageEvent<CaptureMessage>) => {
+      node.port.onmessage = ({ data: { samples, lostSeconds, answers } }: MessageEvent<CaptureMessage>) => {
         resolve();
-        onBlock(samples, lost);
+        onBlock(samples, lostSeconds);
         if (answers === null) return;
         resolvers.get(answers)?.();
         resolvers.delete(answers);

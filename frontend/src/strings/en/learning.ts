@@ -48,4 +48,5 @@ export const learning = {
   passed: "Passed: ",
   missing: "Not yet: ",
   copyHint: "Copy this text",
+  table: "Table",
 };

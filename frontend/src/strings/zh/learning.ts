@@ -48,4 +48,5 @@ export const learning: typeof english = {
   passed: "已通过：",
   missing: "尚未完成：",
   copyHint: "复制这段文字",
+  table: "表格",
 };

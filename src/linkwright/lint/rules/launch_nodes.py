@@ -258,7 +258,10 @@ def _own_executables(package: PackageContext) -> frozenset[str] | None:
         file.destination for file in setup.installed_files(package.folder) if file.destination.startswith(folder)
     ]
     return frozenset(
-        (*(entry.executable for entry in setup.entry_points), *(Path(name).stem for name in installed_files))
+        (
+            *(entry.executable for entry in setup.entry_points),
+            *(Path(name).name.removesuffix(".py") for name in installed_files),
+        )
     )
 
 

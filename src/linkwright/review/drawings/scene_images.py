@@ -25,6 +25,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.versions import Version
 from linkwright.sdf.frames import FrameError
 from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.worlds import Sdf
 
 _SIZE = (480, 360)
 _MAX_FACES = 2_000_000
@@ -33,13 +34,24 @@ _FAR = 8.0
 """The size of a scene, in sizes of the changed links, from which only the surroundings of these links are shown."""
 
 
-def world_images(pair: FilePair) -> list[ViewImages]:
-    """Return images of a world or model from four sides, or none if both versions look the same or cannot be drawn."""
+def read_worlds(pair: FilePair) -> tuple[Sdf, Sdf] | None:
+    """Return both versions of a world or model with their includes resolved, or None if one cannot be read."""
+    old = _world(pair.versions.old, pair.old_file)
+    new = None if old is None else _world(pair.versions.new, pair.new_file)
+    return None if old is None or new is None else (old, new)
+
+
+def world_scenes(pair: FilePair, worlds: tuple[Sdf, Sdf]) -> tuple[Scene, Scene] | None:
+    """Return the scenes of both versions of a world or model, or None if one cannot be drawn."""
     library = SurfaceLibrary()
     sides = ((pair.versions.old, pair.old_file), (pair.versions.new, pair.new_file))
-    scenes = [_world_scene(version, file, library) for version, file in sides]
-    old, new = scenes
-    return [] if old is None or new is None else _images(old, new)
+    old, new = (_scene(version, file, world, library) for (version, file), world in zip(sides, worlds, strict=True))
+    return None if old is None or new is None else (old, new)
+
+
+def world_images(old: Scene, new: Scene) -> list[ViewImages]:
+    """Return images of a world or model from four sides, or none if both versions look the same."""
+    return _images(old, new)
 
 
 def mesh_images(pair: FilePair) -> list[ViewImages]:
@@ -53,17 +65,24 @@ def mesh_images(pair: FilePair) -> list[ViewImages]:
 
 def lone_world_images(version: Version, path: str) -> list[ViewImages]:
     """Return images from four sides of a world or model that only one version has, or none if it cannot be drawn."""
-    scene = _world_scene(version, version.file(path), SurfaceLibrary())
+    file = version.file(path)
+    world = _world(version, file)
+    scene = None if world is None else _scene(version, file, world, SurfaceLibrary())
     if scene is None or len(scene.mesh.faces) > _MAX_FACES:
         return []
     return images_of_scene(scene, is_old=version.is_old)
 
 
-def _world_scene(version: Version, file: Path, library: SurfaceLibrary) -> Scene | None:
-    finder = version.finder(file.parent)
+def _world(version: Version, file: Path) -> Sdf | None:
     try:
-        world = examine_world(file, packages=finder)
-        return None if world.sdf is None else world_scene(world.sdf, ResourceFinder(finder), library=library)
+        return examine_world(file, packages=version.finder(file.parent)).sdf
+    except LinkwrightError:
+        return None
+
+
+def _scene(version: Version, file: Path, world: Sdf, library: SurfaceLibrary) -> Scene | None:
+    try:
+        return world_scene(world, ResourceFinder(version.finder(file.parent)), library=library)
     except (LinkwrightError, FrameError):
         return None
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import PurePosixPath
@@ -10,11 +10,16 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
 from linkwright.review.list_changes import change_text, shortened
+from linkwright.review.renamed_packages import PackageNames, renamed_packages
 from linkwright.review.versions import Version
 
-_MAX_RESTS = 3
+_MAX_RESTS = 6
 """The number of other commands up to which their texts are shown."""
 _MAX_TEXT = 200
+_MIN_FOLDER = 3
+"""The number of parts from which the path of a folder stands for its files; paths of packages have fewer."""
+_LONG_LIST = 5
+"""The number of words of a command from which only the different ones are shown."""
 _MAX_NAMES = 8
 """The number of names that a line lists."""
 
@@ -46,6 +51,7 @@ class FactKind(Enum):
     EXPORTED_DEPENDENCY = (phrase("exported dependencies"), None)
     TEST = (phrase("tests"), None)
     SETTING = (phrase("settings"), None)
+    FOLDER = (phrase("installed folders that the repository does not have"), None)
 
     def __init__(self, title: Phrase, reason: Phrase | None) -> None:
         self.title = title
@@ -71,6 +77,37 @@ class Fact:
     is_value_used: bool = False
 
 
+_KNOWN_VARIABLES = frozenset(
+    {"HOME", "PATH", "PWD", "USER", "CC", "CXX", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH"}
+)
+
+
+class EnvironmentVariables:
+    """The environment variables that decide what is built, by name, with their locations.
+
+    Args:
+        variables: the names and locations. Those that ROS and systems set themselves are left out.
+    """
+
+    def __init__(self, variables: Iterable[tuple[str, Span | None]]) -> None:
+        self._spans: dict[str, Span | None] = {}
+        for name, span in variables:
+            if not name.startswith("ROS_") and name not in _KNOWN_VARIABLES:
+                self._spans.setdefault(name, span)
+
+    def compare(self, pair: FilePair, new: EnvironmentVariables) -> None:
+        """Add the variables that only the old version or only the new version reads."""
+        for name, span in new._spans.items():
+            if name not in self._spans:
+                text = phrase("environment variable '{name}' decides what is built", name=name)
+                pair.add(text, pair.location(span))
+        for name, span in self._spans.items():
+            if name not in new._spans:
+                text = phrase("environment variable '{name}' does not decide any more what is built", name=name)
+                reason = phrase("a value that a user sets for '{name}' has no effect", name=name)
+                pair.add(text, pair.location(span, is_old=True), reason)
+
+
 @dataclass
 class BuildFacts:
     """The facts of a build file.
@@ -82,6 +119,7 @@ class BuildFacts:
         rest: the other commands or settings, each with its name and its text.
         package: the path of the folder of the package relative to the root.
         project: the name of the package; empty if it is not known.
+        environment: the environment variables that the file reads.
     """
 
     facts: list[Fact] = field(default_factory=list)
@@ -90,6 +128,7 @@ class BuildFacts:
     rest: list[tuple[str, str]] = field(default_factory=list)
     package: str = ""
     project: str = ""
+    environment: EnvironmentVariables = field(default_factory=lambda: EnvironmentVariables(()))
 
     def place(self, path: str) -> str:
         """Return an installed path without the name of the package, whose change the manifest reports."""
@@ -131,6 +170,7 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
                 pair.add(text, pair.location(fact.span), reason)
         added = [fact for name, fact in new_facts.items() if name not in old_facts]
         removed = [fact for name, fact in old_facts.items() if name not in new_facts]
+        _add_renamed(pair, kind, removed, added)
         if added:
             pair.add(_sentence(kind, added, is_added=True), pair.location(added[0].span))
         if removed:
@@ -138,6 +178,20 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             pair.add(_sentence(kind, removed, is_added=False), location, kind.reason)
     _compare_files(pair, old, new)
     _compare_rest(pair, old, new)
+    old.environment.compare(pair, new.environment)
+
+
+def _add_renamed(pair: FilePair, kind: FactKind, removed: list[Fact], added: list[Fact]) -> None:
+    """Add the facts whose names follow from that of a renamed package, and take them from both lists."""
+    names = PackageNames(renamed_packages(pair.versions))
+    for old in list(removed):
+        new = next((fact for fact in added if fact.name == names.derived(old.name)), None)
+        new = new or next((fact for fact in added if names.has_same_edit(old.name, fact.name)), None)
+        if new is not None:
+            removed.remove(old)
+            added.remove(new)
+            text = phrase("{kind}: '{old}' renamed to '{new}'", kind=kind.title, old=old.name, new=new.name)
+            pair.add(text, pair.location(new.span), kind.reason)
 
 
 def _sentence(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:
@@ -146,17 +200,18 @@ def _sentence(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phras
 
 
 def _list_sentence(title: Phrase, names: Sequence[str], *, is_added: bool) -> Phrase:
-    listed = _listed(names)
+    names_text = listed(names)
     if is_added:
-        return phrase("{kind} added: {names}", kind=title, names=listed)
-    return phrase("{kind} removed: {names}", kind=title, names=listed)
+        return phrase("{kind} added: {names}", kind=title, names=names_text)
+    return phrase("{kind} removed: {names}", kind=title, names=names_text)
 
 
-def _listed(names: Sequence[str]) -> Phrase:
-    listed = quoted_names(names[:_MAX_NAMES])
+def listed(names: Sequence[str]) -> Phrase:
+    """Return the first names, and the number of the others."""
+    first = quoted_names(names[:_MAX_NAMES])
     if len(names) <= _MAX_NAMES:
-        return listed
-    return phrase("{names} and {count} more", names=listed, count=len(names) - _MAX_NAMES)
+        return first
+    return phrase("{names} and {count} more", names=first, count=len(names) - _MAX_NAMES)
 
 
 def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:
@@ -187,22 +242,21 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             removed.append(target)
         elif new_source == source and old.place(target) != new.place(new_target):
             moved.setdefault((_folder(target), _folder(new_target)), []).append(_name(target))
-    added = [
-        target
-        for source, target in new_sources.items()
-        if target not in old.files and source not in old_sources and _is_in_old_version(pair, old, source)
-    ]
+    added = [target for source, target in new_sources.items() if target not in old.files and source not in old_sources]
     for (old_folder, new_folder), names in moved.items():
         text = phrase(
-            "installed in {new} instead of {old}: {names}", old=old_folder, new=new_folder, names=_listed(names)
+            "installed in {new} instead of {old}: {names}", old=old_folder, new=new_folder, names=listed(names)
         )
         pair.add(text, None, phrase("programs that look for the files do not find them"))
     if added:
-        names = _files_and_folders(added, old.files)
-        pair.add(phrase("installed now: {names}", names=_listed(names)), None)
+        known = [target for target in added if _is_in_old_version(pair, old, new.files[target])]
+        folders = [name for name in _files_and_folders(added, old.files) if name.endswith("/")]
+        names = list(dict.fromkeys([*folders, *_files_and_folders(known, old.files)]))
+        if names:
+            pair.add(phrase("installed now: {names}", names=listed(names)), None)
     if removed:
         names = _files_and_folders(removed, new.files)
-        text = phrase("not installed any more: {names}", names=_listed(names))
+        text = phrase("not installed any more: {names}", names=listed(names))
         pair.add(text, None, phrase("programs that look for the files do not find them"))
 
 
@@ -225,7 +279,8 @@ def _files_and_folders(targets: Sequence[str], others: Mapping[str, str]) -> lis
     other_folders = {parent.as_posix() for target in others for parent in PurePosixPath(target).parents}
     names: dict[str, None] = {}
     for target in targets:
-        folders = [parent.as_posix() for parent in PurePosixPath(target).parents]
+        parents = (parent for parent in PurePosixPath(target).parents if len(parent.parts) >= _MIN_FOLDER)
+        folders = [parent.as_posix() for parent in parents]
         outermost = next((folder for folder in reversed(folders) if folder not in other_folders), None)
         names[target if outermost is None else f"{outermost}/"] = None
     return list(names)
@@ -247,16 +302,26 @@ def _compare_rest(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     gone, come = _lone_items(old.rest, new.rest), _lone_items(new.rest, old.rest)
     names = list(dict.fromkeys(name for name, _ in (*come, *gone)))
     if len(names) > _MAX_RESTS:
-        pair.add(phrase("other build settings changed: {names}", names=_listed(names)), None)
+        pair.add(phrase("other build settings changed: {names}", names=listed(names)), None)
         return
     for name in names:
         old_text, new_text = ("; ".join(text for other, text in items if other == name) for items in (gone, come))
         if old_text and new_text:
-            pair.add(change_text(name, old_text, new_text), None)
+            pair.add(_words_text(name, old_text, new_text), None)
         elif new_text:
             pair.add(phrase("{parameter} added: {items}", parameter=name, items=shortened(new_text, _MAX_TEXT)), None)
         else:
             pair.add(phrase("{parameter} removed: {items}", parameter=name, items=shortened(old_text, _MAX_TEXT)), None)
+
+
+def _words_text(name: str, old: str, new: str) -> Phrase:
+    """Return the change of the arguments of a command: of long lists, the words that were added and removed."""
+    old_words, new_words = old.split(), new.split()
+    added = [word for word in new_words if word not in old_words]
+    removed = [word for word in old_words if word not in new_words]
+    if min(len(old_words), len(new_words)) < _LONG_LIST or not (added or removed):
+        return change_text(name, old, new)
+    return change_text(name, f"[{', '.join(dict.fromkeys(old_words))}]", f"[{', '.join(dict.fromkeys(new_words))}]")
 
 
 def _lone_items(items: Sequence[tuple[str, str]], others: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from itertools import takewhile
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText
+from linkwright.loading.lean_dataclasses import replace
 from linkwright.packages.readers.cmake import CMakeFile, read_cmake
-from linkwright.packages.readers.cmake_language import Argument, CMakeProgram, Command, within_package
+from linkwright.packages.readers.cmake_language import BUILD, Argument, CMakeProgram, Command, within_package
 from linkwright.packages.readers.cmake_syntax import is_open
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.build_facts import BuildFacts, Fact, FactKind, compare_build_files
+from linkwright.review.files.build_facts import BuildFacts, EnvironmentVariables, Fact, FactKind, compare_build_files
 from linkwright.review.versions import Version
 
 CMAKE_FILE = "CMakeLists.txt"
@@ -20,26 +22,35 @@ _LIBRARIES = ("add_library", "ament_auto_add_library")
 _INSTALL_KEYWORDS = frozenset(
     {"EXPORT", "ARCHIVE", "LIBRARY", "RUNTIME", "OBJECTS", "INCLUDES", "DESTINATION", "COMPONENT", "OPTIONAL"}
 )
-_TEST_COMMANDS = (
-    *("add_test", "add_launch_test", "add_ros_test", "add_rostest", "add_rostest_gtest"),
-    *("catkin_add_nosetests", "catkin_add_gtest"),
+_TEST_COMMAND = re.compile(r"(\w+_)?add_(\w*_)?(\w*tests?|gmock|gbenchmark|catch2|file_check)")
+_IRRELEVANT = re.compile(
+    r"CMAKE_(EXPORT_COMPILE_COMMANDS|VERBOSE_MAKEFILE|COLOR_\w+|RULE_MESSAGES|INSTALL_MESSAGE|MESSAGE_\w+|"
+    r"\w+_COMPILER_LAUNCHER|TLS_VERIFY|SUPPRESS_\w+|WARN_\w+|ERROR_\w+)"
 )
+"""The variables that change neither what is built nor what is installed."""
+_COMMENT = re.compile(r"#[^\n]*")
+_ENVIRONMENT = re.compile(r"\bENV\{(\w+)\}")
 _STANDARDS = ("CMAKE_CXX_STANDARD", "CMAKE_C_STANDARD", "CMAKE_BUILD_TYPE")
 _INTERFACE_SUFFIXES = (".msg", ".srv", ".action", ".idl")
 
 
 def compare_cmake_files(pair: FilePair) -> None:
     """Compare two versions of a ``CMakeLists.txt``, with its subdirectories, as far as CMake is not needed for it."""
-    compare_build_files(pair, _read)
+    compare_build_files(pair, read_cmake_facts)
 
 
-def _read(version: Version, path: str) -> BuildFacts:
+def read_cmake_facts(version: Version, path: str) -> BuildFacts:
+    """Return the facts of a ``CMakeLists.txt`` with its subdirectories."""
     file = version.file(path)
     source = SourceText(str(file), file.read_text(encoding="utf-8", errors="replace"))
     facts = BuildFacts(package=_parent(path))
     commands = list(CMakeProgram(file.parent).run(source))
     for reader in (_targets, _interfaces, _exports, _packages, _tests, _settings):
         facts.facts += reader(commands)
+    text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
+    facts.environment = EnvironmentVariables(
+        (match[1], source.span(match.start(), match.end())) for match in _ENVIRONMENT.finditer(text)
+    )
     cmake = read_cmake(source, file.parent)
     _read_files(facts, cmake, file.parent)
     facts.rest = [
@@ -66,7 +77,7 @@ def _is_variable(command: Command) -> bool:
     if command.name != "set":
         return False
     name = "".join(command.words[:1])
-    return not name.startswith("CMAKE_") or name in (*_STANDARDS, "CMAKE_EXPORT_COMPILE_COMMANDS")
+    return not name.startswith("CMAKE_") or name in _STANDARDS or _IRRELEVANT.fullmatch(name) is not None
 
 
 def _parent(path: str) -> str:
@@ -77,6 +88,7 @@ def _parent(path: str) -> str:
 def _read_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
     """Add the files that are copied. Programs are executables."""
     facts.is_complete = cmake.is_complete
+    _move_missing_folders(facts, cmake, package)
     facts.project = "" if cmake.project is None else cmake.project.text
     try:
         facts.files = {file.destination: file.source for file in cmake.installed(package) if file.content is None}
@@ -88,6 +100,18 @@ def _read_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
     programs = set(cmake.programs.values())
     facts.files = {target: source for target, source in facts.files.items() if source not in programs}
     facts.facts += [Fact(FactKind.MODULE, module) for module in cmake.modules]
+
+
+def _move_missing_folders(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
+    """Take the folders that the repository does not have from the rules that copy files, and add them as facts."""
+    for index, rule in enumerate(cmake.copies):
+        missing = [item for item in rule.items if rule.kind == "DIRECTORY" and not _exists(package, item.text)]
+        facts.facts += [_fact(FactKind.FOLDER, item, rule.destination or "") for item in missing]
+        cmake.copies[index] = replace(rule, items=tuple(item for item in rule.items if item not in missing))
+
+
+def _exists(package: Path, item: str) -> bool:
+    return item.startswith((BUILD, "$<")) or (package / item).exists()
 
 
 def _fact(kind: FactKind, argument: Argument, value: str = "", name: str | None = None) -> Fact:
@@ -174,8 +198,7 @@ def _tests(commands: Sequence[Command]) -> Iterator[Fact]:
 
 
 def _is_test(command: Command) -> bool:
-    is_ament = command.name.startswith("ament_add_") and command.name.endswith(("test", "gmock"))
-    return bool(command.arguments) and (is_ament or command.name in _TEST_COMMANDS)
+    return bool(command.arguments) and _TEST_COMMAND.fullmatch(command.name) is not None
 
 
 def _settings(commands: Sequence[Command]) -> Iterator[Fact]:

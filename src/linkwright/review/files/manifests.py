@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, joined, joined_first, phrase
+from linkwright.lint.targets import find_targets
+from linkwright.packages.manifest import package_name
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.dependencies import compare_dependencies
+from linkwright.review.renamed_packages import PackageNames, renamed_packages
+from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element
 
 _TEXTS = ("name", "version", "license", "maintainer", "author", "url", "member_of_group", "group_depend")
-_CONDITIONS = ("condition", "version_lt", "version_lte", "version_eq", "version_gte", "version_gt")
+_MAX_NAMES = 8
 _PLUGIN = "plugin"
 """The attribute of an export that names a plugin description."""
 
@@ -30,8 +35,28 @@ def compare_manifests(pair: FilePair) -> None:
     if old.build_type != new.build_type:
         text = phrase("build type: {old} -> {new}", old=old.build_type or "-", new=new.build_type or "-")
         pair.add(text, pair.location(new.root.span()))
-    _compare_dependencies(pair, old, new)
+    compare_dependencies(pair, old, new)
     _compare_exports(pair, old, new)
+
+
+def manifest_contents(version: Version, path: str) -> Phrase:
+    """Return the name, version, build type and dependencies of a package, and another package with its name."""
+    manifest = _read(version.file(path))
+    export = manifest.root.first("export")
+    is_metapackage = export is not None and export.first("metapackage") is not None
+    build_type = phrase("metapackage") if is_metapackage else manifest.build_type or "catkin"
+    names = list(dict.fromkeys(dependency.name for dependency in manifest.dependencies))
+    texts: list[Phrase] = [
+        phrase("'{name}' {version}, {type}", name=manifest.name or "", version=manifest.text("version") or "-",
+               type=build_type)
+    ]  # fmt: skip
+    if names:
+        texts.append(phrase("depends on {names}", names=joined_first(names, _MAX_NAMES)))
+    others = [folder for folder in find_targets([version.root]).packages if package_name(folder) == manifest.name]
+    paths = [other for other in map(version.relative, others) if other != PurePosixPath(path).parent.as_posix()]
+    if paths:
+        texts.append(phrase("{folder} has a package with the same name", folder=f"{paths[0]}/"))
+    return joined(texts, "; ")
 
 
 def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:
@@ -40,6 +65,8 @@ def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:
         old_text, new_text = (_texts(manifest, tag) for manifest in manifests)
         if old_text != new_text:
             text = phrase("{tag}: {old} -> {new}", tag=tag, old=old_text or "-", new=new_text or "-")
+            if tag == "name":
+                text = phrase("package '{old}' renamed to '{new}'", old=old_text, new=new_text)
             reason = phrase("packages and launch files that name the package do not find it")
             element = new.root.first(tag) or new.root
             pair.add(text, pair.location(element.span()), reason if tag == "name" else None)
@@ -67,15 +94,44 @@ def _addresses(manifest: Manifest, tag: str) -> str:
 def _compare_exports(pair: FilePair, old: Manifest, new: Manifest) -> None:
     """Add the changes of the information for other packages, such as where plugin descriptions are."""
     old_exports, new_exports = ({_export_text(element): element for element in _exports(each)} for each in (old, new))
-    for text, element in new_exports.items():
-        if text not in old_exports:
-            pair.add(phrase("export added: {export}", export=text), pair.location(element.span()))
-    for text, element in old_exports.items():
-        if text not in new_exports:
-            is_there = any(_offers_same(element, other) for other in new_exports.values())
-            reason = None if is_there else _export_reason(element)
-            location = pair.location(element.span(), is_old=True)
-            pair.add(phrase("export removed: {export}", export=text), location, reason)
+    names = PackageNames(renamed_packages(pair.versions))
+    gone = [element for text, element in old_exports.items() if text not in new_exports]
+    come = [element for text, element in new_exports.items() if text not in old_exports]
+    for element in list(gone):
+        other = next((other for other in come if other.tag == names.of_package(element.tag)), None)
+        if other is not None:
+            gone.remove(element)
+            come.remove(other)
+            _compare_attributes(pair, element, other)
+    for element in come:
+        pair.add(phrase("export added: {export}", export=_export_text(element)), pair.location(element.span()))
+    for element in gone:
+        is_there = any(_offers_same(element, other) for other in new_exports.values())
+        reason = None if is_there else _export_reason(element)
+        location = pair.location(element.span(), is_old=True)
+        pair.add(phrase("export removed: {export}", export=_export_text(element)), location, reason)
+
+
+def _compare_attributes(pair: FilePair, old: Element, new: Element) -> None:
+    """Add the changed attributes and text of an export."""
+    location = pair.location(new.span())
+    for name in dict.fromkeys((*new.attributes, *old.attributes)):
+        before, after = old.attributes.get(name), new.attributes.get(name)
+        if before == after:
+            continue
+        if before is None or after is None:
+            value = before if after is None else after
+            text = phrase("export {tag}: {name} {value} added", tag=new.tag, name=name, value=value)
+            if after is None:
+                text = phrase("export {tag}: {name} {value} removed", tag=new.tag, name=name, value=value)
+            pair.add(text, location, _export_reason(old) if after is None else None)
+        else:
+            text = phrase("export {tag}: {name} {old} -> {new}", tag=new.tag, name=name, old=before, new=after)
+            pair.add(text, location)
+    old_text, new_text = (" ".join(element.text().split()) for element in (old, new))
+    if old_text != new_text:
+        text = phrase("export {tag}: {old} -> {new}", tag=new.tag, old=old_text or "-", new=new_text or "-")
+        pair.add(text, location)
 
 
 def _exports(manifest: Manifest) -> list[Element]:
@@ -100,48 +156,3 @@ def _export_reason(element: Element) -> Phrase | None:
     if element.tag.startswith("gazebo"):
         return phrase("the simulator does not find the folders of the package")
     return None
-
-
-def _compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
-    old_elements, new_elements = (
-        {(dependency.tag, dependency.name): dependency.element for dependency in manifest.dependencies}
-        for manifest in (old, new)
-    )
-    retagged: dict[tuple[tuple[str, ...], tuple[str, ...]], list[str]] = {}
-    for package in dict.fromkeys(package for _, package in (*new_elements, *old_elements)):
-        removed = [tag for tag, name in old_elements if name == package and (tag, name) not in new_elements]
-        added = [tag for tag, name in new_elements if name == package and (tag, name) not in old_elements]
-        if added and removed:
-            retagged.setdefault((tuple(removed), tuple(added)), []).append(package)
-            continue
-        for key in [key for key in new_elements if key[1] == package and key in old_elements]:
-            _compare_conditions(pair, old_elements[key], new_elements[key], package)
-        for tag in added:
-            location = pair.location(new_elements[tag, package].span())
-            pair.add(phrase("{tag} {package} added", tag=tag, package=package), location)
-        for tag in removed:
-            location = pair.location(old_elements[tag, package].span(), is_old=True)
-            pair.add(phrase("{tag} {package} removed", tag=tag, package=package), location)
-    for (removed_tags, added_tags), packages in retagged.items():
-        text = phrase(
-            "{old} -> {new}: {packages}",
-            old=" + ".join(removed_tags),
-            new=" + ".join(added_tags),
-            packages=", ".join(packages),
-        )
-        pair.add(text, pair.location(new_elements[added_tags[0], packages[0]].span()))
-
-
-def _compare_conditions(pair: FilePair, old: Element, new: Element, package: str) -> None:
-    for name in _CONDITIONS:
-        before, after = old.attributes.get(name), new.attributes.get(name)
-        if before != after:
-            text = phrase(
-                "{tag} {package}: {name} {old} -> {new}",
-                tag=new.tag,
-                package=package,
-                name=name,
-                old=before or "-",
-                new=after or "-",
-            )
-            pair.add(text, pair.location(new.span()))

@@ -66,8 +66,12 @@ def path_pattern(path: str) -> tuple[str, ...]:
 
     Equal changes with equal patterns belong together, such as of the visuals of all links.
     """
-    words = path.split(" ")
-    return tuple("" if before in _NAMED else word for before, word in zip(["", *words], words, strict=False))
+    pattern: list[str] = []
+    is_name = False
+    for word in path.split(" "):
+        pattern.append("" if is_name else word)
+        is_name = not is_name and word in _NAMED
+    return tuple(pattern)
 
 
 def differing_parts(paths: Sequence[str]) -> list[str]:

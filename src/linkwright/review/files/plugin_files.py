@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.files.git_repository import ChangedFile
+from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
+from linkwright.review.renamed_packages import PackageNames, renamed_packages
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document
 
 _ROOTS = frozenset({"library", "class_libraries"})
+_UNKNOWN_EXPORT = re.compile(r"pluginlib_export_plugin_description_file\s*\([^)]*\$", re.IGNORECASE)
+_LOST = phrase("programs and configurations that load the class do not find it")
 
 
 @dataclass(frozen=True)
@@ -33,14 +38,22 @@ def plugin_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     old = _classes(versions.old, [file.old_path for file in changed_files])
     new = _classes(versions.new, [file.new_path for file in changed_files])
     changes: dict[str, list[Change]] = {}
+    names = PackageNames(renamed_packages(versions))
+    renamed = _renamed(old, new, names)
+    for old_name, name in renamed.items():
+        text = phrase("plugin class '{old}' renamed to '{new}'", old=old_name, new=name)
+        changes.setdefault(new[name].path, []).append(Change(text, Effect.BREAKING, _LOST, new[name].location))
+    old = {renamed.get(name, name): plugin for name, plugin in old.items()}
     for name, plugin in new.items():
-        for change in _changes(name, old.get(name), plugin):
+        for change in _changes(name, old.get(name), plugin, names):
             changes.setdefault(plugin.path, []).append(change)
     for name, plugin in old.items():
         if name not in new:
             text = phrase("plugin class '{name}' removed", name=name)
-            reason = phrase("programs and configurations that load the class do not find it")
-            changes.setdefault(plugin.path, []).append(Change(text, Effect.BREAKING, reason, plugin.location))
+            change = Change(text, location=plugin.location)
+            if _is_exported(versions.old, plugin.path):
+                change = replace(change, effect=Effect.BREAKING, reason=_LOST)
+            changes.setdefault(plugin.path, []).append(change)
     paths = {path: file for file in changed_files for path in (file.old_path, file.new_path) if path}
     for path in sorted(changes):
         file = paths[path]
@@ -72,14 +85,43 @@ def _classes_of(file: Path, path: str, *, is_old: bool) -> Iterator[tuple[str, _
             yield name, _PluginClass(attributes.get("type", ""), attributes.get("base_class_type", ""), path, location)
 
 
-def _changes(name: str, old: _PluginClass | None, new: _PluginClass) -> Iterator[Change]:
+def _is_exported(version: Version, path: str) -> bool:
+    """Return whether a package may tell programs where a plugin description is, without which they do not find it."""
+    folders = (version.file(parent.as_posix()) for parent in PurePosixPath(path).parents)
+    package = next((folder for folder in folders if (folder / MANIFEST).is_file()), None)
+    if package is None:
+        return True
+    files = (package / name for name in (MANIFEST, "CMakeLists.txt", "setup.py", "setup.cfg"))
+    text = "\n".join(file.read_text("utf-8", errors="replace") for file in files if file.is_file())
+    return PurePosixPath(path).name in text or _UNKNOWN_EXPORT.search(text) is not None
+
+
+def _renamed(old: Mapping[str, _PluginClass], new: Mapping[str, _PluginClass], names: PackageNames) -> dict[str, str]:
+    """Return the new names of classes by the old ones.
+
+    A class has a new name if only the name of its package in it is another one, or if it has the same type.
+    """
+    gone = {name: plugin for name, plugin in old.items() if name not in new}
+    come = {name: plugin for name, plugin in new.items() if name not in old}
+    renamed: dict[str, str] = {}
+    for old_name, plugin in gone.items():
+        same_type = [name for name, other in come.items() if plugin.type and other.type == names.derived(plugin.type)]
+        derived = names.derived(old_name)
+        new_name = derived if derived in come else same_type[0] if len(same_type) == 1 else None
+        if new_name is not None:
+            renamed[old_name] = new_name
+            del come[new_name]
+    return renamed
+
+
+def _changes(name: str, old: _PluginClass | None, new: _PluginClass, names: PackageNames) -> Iterator[Change]:
     if old is None:
         yield Change(phrase("plugin class '{name}' added", name=name), location=new.location)
         return
-    if old.base != new.base:
+    if names.derived(old.base) != new.base:
         text = phrase("plugin class '{name}': base class {old} -> {new}", name=name, old=old.base, new=new.base)
         reason = phrase("programs that load the class as the old base class do not start")
         yield Change(text, Effect.BREAKING, reason, new.location)
-    if old.type != new.type:
+    if names.derived(old.type) != new.type:
         text = phrase("plugin class '{name}': type {old} -> {new}", name=name, old=old.type, new=new.type)
         yield Change(text, location=new.location)

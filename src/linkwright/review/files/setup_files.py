@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import SourceText, foreign
+from linkwright.diagnostics import SourceText, foreign, phrase
 from linkwright.packages.readers.installed import PROGRAM_GROUP
 from linkwright.packages.readers.python_values import PythonFile, argument_of
 from linkwright.packages.readers.setup_py import SetupFile, read_setup
@@ -22,10 +22,32 @@ _SHOWN = frozenset({"name", "version", "python_requires", "license"})
 
 def compare_setup_files(pair: FilePair) -> None:
     """Compare two versions of a ``setup.py`` without running it."""
-    compare_build_files(pair, _read)
+    compare_build_files(pair, read_setup_facts)
+    _compare_modules(pair)
 
 
-def _read(version: Version, path: str) -> BuildFacts:
+def _compare_modules(pair: FilePair) -> None:
+    """Add the executables whose modules only the old version has."""
+    setup = read_setup(SourceText(str(pair.new_file), pair.new_file.read_text(encoding="utf-8", errors="replace")))
+    for program in setup.entry_points:
+        path = program.module.replace(".", "/")
+        files = [f"{path}.py", f"{path}/__init__.py"]
+        had_module, has_module = (
+            any((file.parent / name).is_file() for name in files) for file in (pair.old_file, pair.new_file)
+        )
+        if had_module and not has_module:
+            text = phrase(
+                "executable '{name}': its module '{module}' was removed", name=program.executable, module=program.module
+            )
+            pair.add(text, pair.location(program.span), phrase("the executable does not start any more"))
+
+
+def read_setup_facts(version: Version, path: str) -> BuildFacts:
+    """Return the facts of a ``setup.py``.
+
+    Raises:
+        UnreadableFileError: the file is not valid Python.
+    """
     file = version.file(path)
     source = SourceText(str(file), file.read_text(encoding="utf-8", errors="replace"))
     setup = read_setup(source)

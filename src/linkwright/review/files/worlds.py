@@ -8,14 +8,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.descriptions.comparison import Difference, ElementComparison
-from linkwright.diagnostics import Phrase, joined, joined_first, phrase
+from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.review.breaking import plugin_name_reason
 from linkwright.review.changes import Change, Location
-from linkwright.review.drawings.scene_images import world_images
+from linkwright.review.drawings.scene_images import read_worlds, world_images, world_scenes
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.merged_paths import MergedPaths, differing_parts, path_pattern
+from linkwright.review.files.sdf_contents import added_text, all_content, names_in, own_content
+from linkwright.review.files.sdf_figures import model_figures
+from linkwright.review.files.sdf_numbers import InertialDifference, with_inertials, without_rounding
 from linkwright.review.names_in_plugins import path_of_renamed
-from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
+from linkwright.review.plugins import added_topics, contents_text, is_added, is_removed, missing_topics_reason
 from linkwright.review.versions import Version
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
@@ -25,8 +28,10 @@ _NAMED = re.compile(r"(?:^|.* )(?P<tag>world|model|include|link|joint|sensor|fra
 """The path of an element whose name programs and other models use."""
 _INCLUDED_NAME = re.compile(r"(?:^|.* )include \S+ name")
 """The path of the name of an included model."""
-_MAX_NAMES = 8
-"""The number of models, links or joints that the line about an added world names."""
+_UNSEEN = frozenset(
+    {"collision", "inertial", "plugin", "sensor", "physics", "axis", "light", "gravity", "scene", "gui", "static"}
+)
+"""The tags of elements that images do not show, with their contents."""
 _MIN_ALIKE = 3
 """The number of equal changes of elements at different places from which they are one line."""
 
@@ -36,7 +41,7 @@ def compare_worlds(pair: FilePair) -> None:
     elements = pair.read(_elements)
     if elements is None:
         return
-    differences = list(ElementComparison().child_differences(*elements))
+    differences = list(with_inertials(without_rounding(ElementComparison().child_differences(*elements))))
     added = added_topics(differences)
     changes = [_WorldChange(difference, _breaking_reason(difference, added)) for difference in differences]
     alone: list[_WorldChange] = []
@@ -52,35 +57,32 @@ def compare_worlds(pair: FilePair) -> None:
             Change(text, location=first.location(pair), other_names=tuple(parts[1:]), other_locations=locations)
         )
     _add_alone(pair, alone)
-    if differences and pair.drawings.images:
-        pair.images += world_images(pair)
+    if differences:
+        _add_scenes(pair, may_be_visible=any(map(_may_be_visible, differences)))
+
+
+def _add_scenes(pair: FilePair, *, may_be_visible: bool) -> None:
+    """Add the quantities of a model and images, which need the models that the file includes."""
+    worlds = read_worlds(pair)
+    if worlds is None:
+        return
+    is_drawn = may_be_visible and (pair.drawings.images or not any(world.worlds for world in worlds))
+    scenes = (world_scenes(pair, worlds) if is_drawn else None) or ()
+    pair.figures += model_figures(*worlds, scenes)
+    if pair.drawings.images and scenes:
+        pair.images += world_images(*scenes)
+
+
+def _may_be_visible(difference: Difference) -> bool:
+    """Return whether images can show a difference."""
+    path = path_pattern(f"{difference.name} {difference.property}".strip())
+    return _UNSEEN.isdisjoint(path)
 
 
 def world_contents(version: Version, path: str) -> Phrase | None:
     """Return the models of a world, or the links and joints of a model, and the plugins and sensors, or None."""
-    parts: list[Phrase] = []
-    for element in _elements(version.file(path)):
-        names = {
-            tag: [_name(child) for child in element.elements(tag)] for tag in ("model", "include", "link", "joint")
-        }
-        models = [*names["model"], *names["include"]]
-        if models:
-            parts.append(phrase("models {names}", names=joined_first(models, _MAX_NAMES)))
-        if names["link"]:
-            parts.append(phrase("links {names}", names=joined_first(names["link"], _MAX_NAMES)))
-        if names["joint"]:
-            parts.append(phrase("joints {names}", names=joined_first(names["joint"], _MAX_NAMES)))
-        contents = contents_text(element)
-        if contents is not None:
-            parts.append(contents)
+    parts = [part for element in _elements(version.file(path)) for part in names_in(element)]
     return joined(parts) if parts else None
-
-
-def _name(element: Element) -> str:
-    """Return the name of an element, or the last part of the URI of an included model without a name."""
-    texts = (element.first(tag) for tag in ("name", "uri"))
-    included = next((text.text().strip().rstrip("/") for text in texts if text is not None), "")
-    return element.attributes.get("name") or included.rpartition("/")[2]
 
 
 @dataclass(frozen=True)
@@ -99,9 +101,12 @@ class _WorldChange:
     def kind(self) -> Hashable:
         """A key that is equal for equal changes of several elements."""
         difference = self.difference
-        content = "" if difference.element is None else _content(difference.element)
+        content = "" if difference.element is None else own_content(difference.element)
+        if difference.element is not None and is_added(difference):
+            content = all_content(difference.element)
+        values = str(difference.values_text()) if isinstance(difference, InertialDifference) else ""
         reason = None if self.reason is None else str(self.reason)
-        return difference.kind, difference.old, difference.new, content, reason
+        return difference.kind, difference.old, difference.new, content, values, reason
 
     @property
     def is_renamed(self) -> bool:
@@ -139,12 +144,6 @@ def _elements(file: Path) -> list[Element]:
     return list(document.root.elements())
 
 
-def _content(element: Element) -> str:
-    """Return the attributes and the text of an element, without its name."""
-    words = [f"{name}={value}" for name, value in element.attributes.items() if name != "name"]
-    return " ".join([*words, *element.text().split()])
-
-
 def _sentence(difference: Difference, name: str) -> Phrase:
     """Return a difference in one line.
 
@@ -155,13 +154,18 @@ def _sentence(difference: Difference, name: str) -> Phrase:
     old_path = path_of_renamed(difference, name)
     if old_path is not None:
         return phrase("{element} renamed to '{new}'", element=old_path, new=difference.new or "")
-    if difference.kind == "added" or (difference.old is None and difference.kind == "changed"):
-        content = (difference.new or "") if difference.element is None else _content(difference.element)
-        text = phrase("{element} added", element=f"{name} {content}".strip())
-    elif difference.kind == "removed" or difference.new is None:
-        text = phrase("{element} removed", element=name)
-    else:
-        return phrase("{element}: {old} -> {new}", element=name, old=difference.old or "-", new=difference.new or "-")
+    if isinstance(difference, InertialDifference):
+        return phrase("{element}: {values}", element=name, values=difference.values_text())
+    if is_added(difference):
+        if difference.element is not None:
+            return added_text(name, difference.element)
+        return phrase("{element} added", element=f"{name} {difference.new or ''}".strip())
+    if not is_removed(difference):
+        empty = phrase("(empty)")
+        return phrase(
+            "{element}: {old} -> {new}", element=name, old=difference.old or empty, new=difference.new or empty
+        )
+    text = phrase("{element} removed", element=name)
     contents = None if difference.element is None else contents_text(difference.element)
     return text if contents is None else phrase("{change}: {contents}", change=text, contents=contents)
 
@@ -169,13 +173,12 @@ def _sentence(difference: Difference, name: str) -> Phrase:
 def _breaking_reason(difference: Difference, added: frozenset[str]) -> Phrase | None:
     """Return why a difference breaks programs that use the world, or None if it does not."""
     path = f"{difference.name} {difference.property}".strip()
-    is_removed = difference.kind == "removed" or (difference.kind == "changed" and difference.new is None)
-    named = _NAMED.fullmatch(path_of_renamed(difference, path) or (path if is_removed else ""))
+    named = _NAMED.fullmatch(path_of_renamed(difference, path) or (path if is_removed(difference) else ""))
     if named is not None and not (named["tag"] == "include" and "/" in named["name"]):
         return _name_reason(named["tag"], named["name"])
     if _INCLUDED_NAME.fullmatch(path) and difference.old:
         return _name_reason("include", difference.old)
-    if is_removed and difference.element is not None:
+    if is_removed(difference) and difference.element is not None:
         reason = missing_topics_reason(difference, added)
         if reason is not None:
             return reason

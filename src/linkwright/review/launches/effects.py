@@ -34,6 +34,7 @@ _SPAWNING = re.compile(
     r"(ros_gz_sim|ros_ign_gazebo)/(create|remove)|(gazebo_ros|gazebo)/(spawn_entity\.py|spawn_model)|webots_ros2\w*/.*spawn.*"
 )
 """Programs that tell another program once to create a robot, and offer nothing themselves."""
+_SHELL_SCRIPT = re.compile(r".*\.(sh|bash|zsh)")
 _NAME = re.compile(r"[~/\w]+")
 _NAMES_OF_NODES = ("name", "exec_name", NAMESPACE, NAMESPACE_OF_INCLUDED, "remappings")
 _NAME_ARGUMENT = re.compile(
@@ -44,6 +45,8 @@ _MIN_SIMILARITY_OF_NAMES = 0.75
 _TRUTH = ("true", "false")
 _CODE = re.compile(r"\w\(")
 """A call in a name, whose result is unknown."""
+_UNKNOWN_NAME = re.compile(r"\w\(|\w[.\[][a-z_\"']")
+"""A call, attribute or item of Python in a name, whose value is unknown."""
 _FRAME_PREFIX = f"{PARAMETER}frame_prefix"
 _NEVER = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
@@ -58,13 +61,16 @@ _INPUTS = re.compile(
 """The topics to which those programs subscribe. They publish others."""
 
 
-def removal_reason(entry: Entry, outline: LaunchOutline, new: LaunchOutline) -> Phrase | None:
+def removal_reason(
+    entry: Entry, outline: LaunchOutline, new: LaunchOutline, *, includes_nodes: bool = False
+) -> Phrase | None:
     """Return why removing a launch action is a breaking change, or None if it is not.
 
     Args:
         entry: the action.
         outline: the old file, which contains it.
         new: the new file.
+        includes_nodes: whether the action includes a file that is known to start nodes.
     """
     if entry.kind == "argument" and "value" not in entry.settings:
         return value_reason(entry.name, is_ros1=outline.is_ros1)
@@ -77,7 +83,10 @@ def removal_reason(entry: Entry, outline: LaunchOutline, new: LaunchOutline) -> 
     if condition_holds(_condition(entry, outline)) is False:
         return None
     if entry.kind == "include":
-        return None if _USER_INTERFACE_FILE.search(entry.name) else phrase("its nodes do not start any more")
+        is_used = includes_nodes and not _USER_INTERFACE_FILE.search(entry.name)
+        return phrase("its nodes do not start any more") if is_used else None
+    if any(_starts_same_node(entry, other, outline, new) for other in new.entries):
+        return None
     if entry.name.startswith(_JOINT_STATES) and any(other.name.startswith(_JOINT_STATES) for other in new.entries):
         return None
     names = _served_names(entry, outline)
@@ -86,6 +95,18 @@ def removal_reason(entry: Entry, outline: LaunchOutline, new: LaunchOutline) -> 
             return phrase("programs that look up the frame of the node do not find it")
         return phrase("the topics and services of the node are missing")
     return _served_reason(entry, names, new)
+
+
+def _starts_same_node(entry: Entry, other: Entry, old: LaunchOutline, new: LaunchOutline) -> bool:
+    """Return whether an action of the new file may start the node of a removed one, such as with another condition."""
+    if (entry.kind, entry.name) != (other.kind, other.name) or condition_holds(_condition(other, new)) is False:
+        return False
+    if _served_names(entry, old) != _served_names(other, new):
+        return False
+    return all(
+        _resolved_name(entry.settings.get(setting), old) == _resolved_name(other.settings.get(setting), new)
+        for setting in ("name", NAMESPACE)
+    )
 
 
 def addition_reason(entry: Entry) -> Phrase | None:
@@ -110,7 +131,8 @@ def value_reason(name: str, *, is_ros1: bool = False) -> Phrase:
 
 def offers_nothing(entry: Entry) -> bool:
     """Return whether other programs do not use the node."""
-    return _USER_INTERFACE.match(entry.name) is not None or _SPAWNING.fullmatch(entry.name) is not None
+    patterns = (_USER_INTERFACE.match, _SPAWNING.fullmatch, _SHELL_SCRIPT.fullmatch)
+    return any(matches(entry.name) is not None for matches in patterns)
 
 
 def setting_reason(
@@ -267,7 +289,8 @@ def _served_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase
 def _renaming_reason(
     old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
-    if _resolved_name(old, old_outline) == _resolved_name(new, new_outline):
+    old_name, new_name = _resolved_name(old, old_outline), _resolved_name(new, new_outline)
+    if old_name == new_name or _UNKNOWN_NAME.search(new_name):
         return None
     return phrase("programs that use the names of the node, its topics or its services do not find them")
 

@@ -101,7 +101,8 @@ def _add_lone_entries(
         file = file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
         if file is not None:
             text = phrase("{entry} moved to {file}", entry=title(entry), file=file)
-        pair.add(text, location, removal_reason(entry, old, new))
+        includes_nodes = entry.kind == "include" and old_included.starts_nodes(entry)
+        pair.add(text, location, removal_reason(entry, old, new, includes_nodes=includes_nodes))
     for (file, is_old), entries in moved.items():
         titles = joined_titles(entries)
         text = phrase("{entry} moved from {file}", entry=titles, file=file)

@@ -17,6 +17,7 @@ from linkwright.review.versions import Version, Versions
 _SHARED = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/(?P<path>[^$]+)")
 _BESIDE = "$(dirname)/"
 _MOVABLE = ("node", "include", "process", "argument")
+_STARTING = ("node", "include", "process", "action")
 _MAX_DEPTH = 3
 _MAX_FILES = 30
 _MAX_BYTES = 1 << 20
@@ -85,6 +86,12 @@ class IncludedActions:
         else:
             file = None
         return None if file is None or ".." in file.parts or not file.is_file() else file
+
+    def starts_nodes(self, entry: Entry) -> bool:
+        """Return whether an action includes a file of the repository that starts nodes, or includes further files."""
+        file = self._file_of(entry, self._version.file(self._path))
+        outline = None if file is None else _read(file, self._version.root)
+        return outline is not None and any(other.kind in _STARTING for other in outline.entries)
 
     def undeclared(self) -> dict[str, Entry]:
         """Return the arguments without a default that nothing declares, each with the first action that uses it.

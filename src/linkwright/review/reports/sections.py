@@ -66,8 +66,16 @@ def _contents(section: Section) -> Hashable:
     subject = section.subject
     if section.repeated or subject.problems or subject.images or subject.paths or subject.scene:
         return subject.path
+    if _has_contents(section):
+        return subject.path
     figures = ((str(figure.name), figure.old, figure.new) for figure in subject.figures)
     return subject.kind, *(_text_key(change) for change in section.changes), *figures
+
+
+def _has_contents(section: Section) -> bool:
+    """Return whether a section summarizes a file that only one version has; other files may differ in the rest."""
+    is_lone = None in (section.subject.old_path, section.subject.new_path)
+    return is_lone and (len(section.changes) > 1 or any("items" in each.sentence.arguments for each in section.changes))
 
 
 def _text_key(change: Change) -> Hashable:
@@ -223,8 +231,11 @@ def alike_text(section: Section) -> Phrase | None:
 
 def summary(review: Review) -> Phrase:
     """Return the number of changes and findings in one line."""
-    breaking = len(breaking_changes(review))
-    total = sum(len(section.changes) for section in sections_of(review))
+    breaking = total = 0
+    for section in sections_of(review):
+        count = 1 + len(section.alike)
+        total += count * len(section.changes)
+        breaking += count * sum(change.effect is Effect.BREAKING for change in section.changes)
     return phrase(
         "{breaking}, {changes}, {findings}, {fixed}",
         breaking=counted("{count} breaking change", "{count} breaking changes", breaking),

@@ -16,15 +16,12 @@ from linkwright.geometry.shapes import Box, Capsule, Placement, SimpleShape, Sph
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.kinematics import KinematicTree
 from linkwright.review.changes import Figure
+from linkwright.review.quantities import figure_of
 from linkwright.review.frames import matrix
-from linkwright.review.robots.reach import Chain, reaches
+from linkwright.review.robots.reach import Chain, have_equal_distances, reaches
 from linkwright.urdf import Collision, Mesh, Robot, Visual
 from linkwright.xmltree import Element
 
-_RELATIVE_TOLERANCE = 1e-4
-"""The relative difference up to which a quantity is equal; it is shown with four digits."""
-_LENGTH_TOLERANCE = 1e-4
-"""The difference in m up to which a length is equal."""
 _REACH_SAMPLES = 2_000
 _MIN_CHAIN = 3
 """The number of moving joints from which the end of a chain has a reach."""
@@ -39,14 +36,16 @@ Array = NDArray[np.float64]
 def figures_of(old: RobotMeasures, new: RobotMeasures) -> Iterator[Figure]:
     """Yield the quantities that differ between two robots."""
     for name, unit, measure in _QUANTITIES:
-        yield from _figure(name, unit, measure(old), measure(new))
+        yield from figure_of(name, unit, measure(old), measure(new))
     old_chains, new_chains = old.chains(), new.chains()
     common = [link for link in new_chains if link in old_chains]
     if common:
         samples = old.sampled_positions(_REACH_SAMPLES), new.sampled_positions(_REACH_SAMPLES)
         for link in common:
+            if have_equal_distances(old_chains[link], new_chains[link], samples[0]):
+                continue
             reach = reaches(old_chains[link], new_chains[link], *samples)
-            yield from _figure(phrase("reach of '{link}'", link=link), "m", *reach)
+            yield from figure_of(phrase("reach of '{link}'", link=link), "m", *reach)
 
 
 class RobotMeasures:
@@ -244,17 +243,6 @@ def _half_lengths(shape: SimpleShape, rotation: Array) -> Array:
     along = np.abs(rotation[:, 2]) * shape.length / 2.0
     across = 1.0 if isinstance(shape, Capsule) else np.sqrt(np.maximum(0.0, 1.0 - rotation[:, 2] ** 2))
     return np.asarray(along + shape.radius * across)
-
-
-def _figure(name: Phrase, unit: str, old: object, new: object) -> Iterator[Figure]:
-    """Yield a quantity if it differs by more than the tolerance."""
-    if old is None or new is None:
-        return
-    values = np.atleast_1d(np.asarray(old, float)), np.atleast_1d(np.asarray(new, float))
-    tolerance = _LENGTH_TOLERANCE if unit == "m" else 0.0
-    if not np.allclose(*values, rtol=_RELATIVE_TOLERANCE, atol=tolerance):
-        old_text, new_text = (" x ".join(f"{number:.4g}" for number in value) for value in values)
-        yield Figure(name, old_text, new_text, unit)
 
 
 def _moving_joints(measures: RobotMeasures) -> int:

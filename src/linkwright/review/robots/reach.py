@@ -8,6 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+_FEW = 64
+"""The number of positions at which chains are compared before their reach is searched for."""
+_EQUAL = 1e-9
+"""The difference in m up to which distances are equal."""
 _STARTS = 8
 """The number of sampled configurations from which a search starts."""
 _MAX_SWEEPS = 20
@@ -91,6 +95,19 @@ class Chain:
         positions = np.array([values.get(name, other) for name, other in zip(self.names, default, strict=True)])
         clipped: Array = np.clip(positions, self.low, self.high)
         return clipped
+
+
+def have_equal_distances(old: Chain, new: Chain, samples: Array) -> bool:
+    """Return whether the ends of two chains with the same limits are equally far at the first of many positions.
+
+    Such chains have the same reach.
+    """
+    if list(old.names) != list(new.names) or old.moving != new.moving:
+        return False
+    if not (np.array_equal(old.low, new.low) and np.array_equal(old.high, new.high)):
+        return False
+    first = samples[:_FEW]
+    return np.allclose(old.distances(first), new.distances(first), rtol=0.0, atol=_EQUAL)
 
 
 def reaches(old: Chain, new: Chain, old_samples: Array, new_samples: Array) -> tuple[float, float]:

@@ -1,0 +1,30 @@
+"""The line about an added or removed build file, with the targets and files that it installs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, joined, phrase
+from linkwright.review.files.build_facts import BuildFacts, FactKind, listed
+
+_SHOWN = (
+    *(FactKind.EXECUTABLE, FactKind.LIBRARY, FactKind.COMPONENT, FactKind.PLUGIN_DESCRIPTION),
+    *(FactKind.INTERFACE, FactKind.MODULE, FactKind.ENTRY_POINT, FactKind.TEST),
+)
+
+
+def build_contents(facts: BuildFacts) -> Phrase | None:
+    """Return what a build file installs and which tests it has, or None if it is nothing."""
+    parts = list(_parts(facts))
+    return joined(parts, "; ") if parts else None
+
+
+def _parts(facts: BuildFacts) -> Iterator[Phrase]:
+    for kind in _SHOWN:
+        names = list(dict.fromkeys(fact.name for fact in facts.facts if fact.kind is kind))
+        if names:
+            yield phrase("{kind} {names}", kind=kind.title, names=listed(names))
+    folders = list(dict.fromkeys(f"{PurePosixPath(target).parent}/" for target in facts.files))
+    if folders:
+        yield phrase("files in {names}", names=listed(folders))

@@ -1,0 +1,103 @@
+"""Quantities of whole models in SDF, in two versions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.mass import MassProperties, combine
+from linkwright.geometry.single import IDENTITY
+from linkwright.picture import Scene
+from linkwright.review.changes import Figure
+from linkwright.review.quantities import figure_of
+from linkwright.sdf.frames import FrameError, Frames, PlacedLink, links_of, pose_of
+from linkwright.sdf.links import Inertial
+from linkwright.sdf.models import Model
+from linkwright.sdf.worlds import Sdf
+
+
+def model_figures(old: Sdf, new: Sdf, scenes: Sequence[Scene]) -> Iterator[Figure]:
+    """Yield the quantities that differ between the models of two files; none for worlds.
+
+    Args:
+        old: the old file, with its includes resolved.
+        new: the new file, with its includes resolved.
+        scenes: the visuals of both files; empty if they do not differ, or cannot be drawn.
+    """
+    if old.worlds or new.worlds:
+        return
+    try:
+        measures = _Measures(old.models), _Measures(new.models)
+    except FrameError:
+        return
+    for name, unit, measure in _QUANTITIES:
+        yield from figure_of(name, unit, *map(measure, measures))
+    if scenes:
+        yield from figure_of(phrase("size"), "m", *map(_size, scenes))
+
+
+class _Measures:
+    """The quantities of the models of a file. Static models have no mass.
+
+    Attributes:
+        links: the number of links.
+        joints: the number of joints.
+        moving_joints: the number of joints that are not fixed.
+        mass_properties: the mass properties of all models in the frame of the file; None if the simulator computes
+            those of a link.
+    """
+
+    def __init__(self, models: Sequence[Model]) -> None:
+        links = [link for model in models for link in links_of(model, Frames(model), IDENTITY, model.name)]
+        joints = [joint for model in models for joint in _joints(model)]
+        self.links = len(links)
+        self.joints = len(joints)
+        self.moving_joints = joints.count(True)
+        inertials = [(link, link.link.inertial or Inertial()) for link in links if not link.static]
+        self.mass_properties = None
+        if not any(inertial.auto for _, inertial in inertials):
+            self.mass_properties = combine(_mass_properties(*pair) for pair in inertials)
+
+
+def _joints(model: Model) -> Iterator[bool]:
+    """Yield whether each joint of a model and of its nested models moves."""
+    yield from (joint.type != "fixed" for joint in model.joints)
+    for nested_model in model.models:
+        yield from _joints(nested_model)
+
+
+def _mass_properties(placed: PlacedLink, inertial: Inertial) -> MassProperties:
+    i = inertial.inertia
+    tensor = np.array([[i.ixx, i.ixy, i.ixz], [i.ixy, i.iyy, i.iyz], [i.ixz, i.iyz, i.izz]])
+    own = MassProperties(inertial.mass, inertia=tensor)
+    in_link = pose_of(placed.frames.in_link(inertial.pose, placed.link.name))
+    return own.moved(in_link).moved(pose_of(placed.pose))
+
+
+def _mass(measures: _Measures) -> float | None:
+    return None if measures.mass_properties is None else measures.mass_properties.mass
+
+
+def _center(measures: _Measures) -> Array | None:
+    return None if measures.mass_properties is None else measures.mass_properties.center
+
+
+def _size(scene: Scene) -> Array | None:
+    """Return the lengths of the box around all visuals in m, shape (3,); None if some cannot be drawn."""
+    if scene.problems or not len(scene.mesh.points):
+        return None
+    size: Array = np.ptp(scene.mesh.points, axis=0)
+    return size
+
+
+_QUANTITIES: tuple[tuple[Phrase, str, Callable[[_Measures], object]], ...] = (
+    (phrase("links"), "", lambda measures: measures.links),
+    (phrase("joints"), "", lambda measures: measures.joints),
+    (phrase("moving joints"), "", lambda measures: measures.moving_joints),
+    (phrase("mass"), "kg", _mass),
+    (phrase("center of mass"), "m", _center),
+)
+"""The quantities: their names, their units, and the functions that measure them."""

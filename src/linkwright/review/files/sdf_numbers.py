@@ -1,0 +1,164 @@
+"""Changed numbers of SDF: those that only differ by rounding, and those of the inertial of a link."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import groupby
+
+from linkwright.descriptions.comparison import Difference
+from linkwright.diagnostics import Phrase, joined, phrase
+
+_INERTIAL = re.compile(r"(?P<inertial>(?:.* )?inertial) (?P<value>mass|pose|inertia i[xyz]{2})")
+"""The path of a value of an inertial."""
+_MOMENTS = frozenset({"ixx", "iyy", "izz"})
+_ROUNDING = 1e-6
+"""The difference, relative to the largest number of a value, up to which two values are equal."""
+_NOTHING = 1e-15
+"""The difference up to which numbers are equal, whatever their size."""
+_SAME_RATIO = 1e-2
+"""The relative difference of the ratios of the moments of inertia up to which the tensor is scaled as a whole."""
+_MIN_DIGITS, _MAX_DIGITS = 4, 17
+_POSE = 6
+"""The number of numbers of a pose."""
+_PARTS = slice(0, 3), slice(3, _POSE)
+"""The position and the rotation in a pose."""
+_FEW = 2
+"""The number of entries of a tensor up to which both values of each are shown."""
+
+
+@dataclass(frozen=True, slots=True)
+class InertialDifference(Difference):
+    """The differences of several values of the inertial of a link. The locations are those of the first one.
+
+    Attributes:
+        values: the differences by the name of the value, such as ``mass``, ``pose`` or ``ixx``.
+    """
+
+    values: tuple[tuple[str, Difference], ...] = ()
+
+    def values_text(self) -> Phrase:
+        """Return the differences in one line."""
+        changed = {name: (difference.old or "", difference.new or "") for name, difference in self.values}
+        tensor = {name: changed.pop(name) for name in tuple(changed) if name.startswith("i")}
+        texts: list[Phrase | str] = []
+        if "mass" in changed:
+            texts.append("mass {} -> {} kg".format(*_short(*changed["mass"])))
+        texts += _pose_texts(*changed["pose"]) if "pose" in changed else []
+        texts += _tensor_texts(tensor) if tensor else []
+        return joined(texts)
+
+
+def without_rounding(differences: Iterable[Difference]) -> Iterator[Difference]:
+    """Yield differences without those of numbers that are equal except for rounding."""
+    return (difference for difference in differences if not _is_rounding(difference))
+
+
+def with_inertials(differences: Iterable[Difference]) -> Iterator[Difference]:
+    """Yield differences in which those of the inertial of a link are one."""
+    for inertial, group in groupby(differences, _inertial_of):
+        if not inertial:
+            yield from group
+            continue
+        values = tuple(_without_tiny_products({_value_name(value): value for value in group}).items())
+        if values:
+            first = values[0][1]
+            yield InertialDifference(
+                first.subject,
+                first.name,
+                first.kind,
+                inertial.removeprefix(first.name).strip(),
+                old_place=first.old_place,
+                new_place=first.new_place,
+                values=values,
+            )
+
+
+def _inertial_of(difference: Difference) -> str:
+    """Return the path of the inertial of which a value has changed; empty for other differences."""
+    match = _INERTIAL.fullmatch(f"{difference.name} {difference.property}".strip())
+    count = len(_numbers(difference.old))
+    is_readable = count in (1, _POSE) and count == len(_numbers(difference.new))
+    return match["inertial"] if match is not None and is_readable and difference.kind == "changed" else ""
+
+
+def _value_name(difference: Difference) -> str:
+    return difference.property.rpartition(" ")[2]
+
+
+def _numbers(text: str | None) -> list[float]:
+    """Return the numbers of a text, or none if it contains other words."""
+    try:
+        numbers = [float(word) for word in (text or "").split()]
+    except ValueError:
+        return []
+    return numbers if all(map(math.isfinite, numbers)) else []
+
+
+def _is_rounding(difference: Difference) -> bool:
+    """Return whether a difference is that of numbers that are equal except for rounding."""
+    old, new = _numbers(difference.old), _numbers(difference.new)
+    if difference.kind != "changed" or not old or len(old) != len(new):
+        return False
+    if not {".", "e", "E"} & set(f"{difference.old}{difference.new}"):
+        return False  # numbers of a counter, such as a seed
+    limit = max(_NOTHING, _ROUNDING * max(map(abs, (*old, *new))))
+    return all(abs(first - second) <= limit for first, second in zip(old, new, strict=True))
+
+
+def _without_tiny_products(values: dict[str, Difference]) -> dict[str, Difference]:
+    """Return values without products of inertia whose change is small beside the moments."""
+    moments = [abs(number) for name in _MOMENTS & values.keys() for number in _numbers(values[name].old)]
+    limit = _ROUNDING * max(moments, default=0.0)
+    return {
+        name: value
+        for name, value in values.items()
+        if not (name.startswith("i") and name not in _MOMENTS and _change(value) <= limit)
+    }
+
+
+def _change(difference: Difference) -> float:
+    (old,), (new,) = _numbers(difference.old), _numbers(difference.new)
+    return abs(new - old)
+
+
+# --- texts -----------------------------------------------------------------------------------------------------------
+
+
+def _short(old: str, new: str) -> tuple[str, str]:
+    """Return two numbers with as many digits as they need to look different."""
+    for digits in range(_MIN_DIGITS, _MAX_DIGITS):
+        texts = [f"{float(text):.{digits}g}" for text in (old, new)]
+        if texts[0] != texts[1]:
+            break
+    return texts[0], texts[1]
+
+
+def _pose_texts(old: str, new: str) -> Iterator[Phrase | str]:
+    first, second = old.split(), new.split()
+    center, axes = ([_numbers(" ".join(words[part])) for words in (first, second)] for part in _PARTS)
+    if center[0] != center[1]:
+        text = "center {} -> {} m".format(*(" ".join(f"{number:.6g}" for number in numbers) for numbers in center))
+        yield phrase("{change} (moved by {distance:.4g} m)", change=text, distance=math.dist(*center))
+    if axes[0] != axes[1]:
+        yield phrase("axes {old} -> {new}", old=" ".join(first[_PARTS[1]]), new=" ".join(second[_PARTS[1]]))
+
+
+def _tensor_texts(entries: Mapping[str, tuple[str, str]]) -> Iterator[Phrase | str]:
+    numbers = {name: (float(old), float(new)) for name, (old, new) in entries.items()}
+    moments = {name: pair for name, pair in numbers.items() if name in _MOMENTS}
+    if len(entries) <= _FEW or not moments or not all(old for old, _ in moments.values()):
+        for name, (old, new) in entries.items():
+            yield "{} {} -> {} kg m2".format(name, *_short(old, new))
+        return
+    largest = max(abs(old) for old, _ in moments.values())
+    ratio = max(new / old for old, new in moments.values())
+    if len(moments) == len(_MOMENTS) and all(
+        abs(new - ratio * old) <= _SAME_RATIO * largest for old, new in numbers.values()
+    ):
+        yield phrase("inertia {ratio:.4g} times as large", ratio=ratio)
+        return
+    changes = [abs(new - old) / (abs(old) if name in _MOMENTS else largest) for name, (old, new) in numbers.items()]
+    yield phrase("inertia changed by up to {percent:.3g} %", percent=100.0 * max(changes))

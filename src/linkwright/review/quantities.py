@@ -1,0 +1,26 @@
+"""A quantity of a whole robot or model, in two versions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from linkwright.diagnostics import Phrase
+from linkwright.review.changes import Figure
+
+_RELATIVE_TOLERANCE = 1e-4
+"""The relative difference up to which a quantity is equal; it is shown with four digits."""
+_LENGTH_TOLERANCE = 1e-4
+"""The difference in m up to which a length is equal."""
+
+
+def figure_of(name: Phrase, unit: str, old: object, new: object) -> Iterator[Figure]:
+    """Yield a quantity if it differs by more than the tolerance."""
+    if old is None or new is None:
+        return
+    values = np.atleast_1d(np.asarray(old, float)), np.atleast_1d(np.asarray(new, float))
+    tolerance = _LENGTH_TOLERANCE if unit == "m" else 0.0
+    if not np.allclose(*values, rtol=_RELATIVE_TOLERANCE, atol=tolerance):
+        old_text, new_text = (" x ".join(f"{number:.4g}" for number in value) for value in values)
+        yield Figure(name, old_text, new_text, unit)

@@ -1,0 +1,231 @@
+"""Packages with a new name or folder, and the changes that follow from this alone."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.packages.manifest import MANIFEST, package_name
+from linkwright.review.changes import Change, Effect, Subject, SubjectKind
+from linkwright.review.merging import name_edit
+from linkwright.review.versions import Versions
+
+_NAMED_AFTER_PACKAGES = (SubjectKind.BUILD, SubjectKind.MANIFEST, SubjectKind.PLUGINS)
+"""The kinds of files in which a name that contains the package's name is derived from it."""
+_REFERENCE = (
+    r"(?P<before>\$\(find(?:-pkg-share|-pkg-prefix)? |(?:package|model)://|\b(?:share|lib)/|\bnode '|"
+    r"\b(?:get_package_\w+|FindPackageShare)\((?:package=)?['\"])(?P<name>{names})(?![\w.-])|"
+    r"\b(?P<scope>{names})(?=::)"
+)
+"""The forms in which launch files and descriptions name a package."""
+_RENAMED = "package '{old}' renamed to '{new}'"
+
+
+@dataclass(frozen=True)
+class RenamedPackage:
+    """A package that has another name, or is in another folder, in the new version.
+
+    Attributes:
+        old_name: the old name.
+        new_name: the new name.
+        old_folder: the old folder relative to the root; empty for the root.
+        new_folder: the new folder.
+    """
+
+    old_name: str
+    new_name: str
+    old_folder: str
+    new_folder: str
+
+    def new_path(self, old_path: str) -> str | None:
+        """Return the path of a file that moves with the package; None for a file outside it, or if none moves."""
+        path = PurePosixPath(old_path)
+        if self.old_folder == self.new_folder or not path.is_relative_to(self.old_folder):
+            return None
+        return (PurePosixPath(self.new_folder) / path.relative_to(self.old_folder)).as_posix()
+
+
+def renamed_packages(versions: Versions) -> list[RenamedPackage]:
+    """Return the packages with a new name or folder whose manifests git recognizes as renamed or changed."""
+    found = []
+    for file in versions.changed_files:
+        if not file.old_path or not file.new_path or PurePosixPath(file.path).name != MANIFEST:
+            continue
+        old_folder, new_folder = (PurePosixPath(path).parent for path in (file.old_path, file.new_path))
+        old_name = package_name(versions.old.file(old_folder.as_posix()))
+        new_name = package_name(versions.new.file(new_folder.as_posix()))
+        if old_name and new_name and (old_name != new_name or old_folder != new_folder):
+            folders = (folder.as_posix().removeprefix(".") for folder in (old_folder, new_folder))
+            found.append(RenamedPackage(old_name, new_name, *folders))
+    return found
+
+
+def with_moved_files(versions: Versions) -> Versions:
+    """Return versions in which files of moved packages are the same, also those that git does not recognize."""
+    packages = renamed_packages(versions)
+    added = {file.new_path: file for file in versions.changed_files if file.old_path is None}
+    moved: dict[str, ChangedFile] = {}
+    for file in versions.changed_files:
+        old_path = None if file.new_path else file.old_path
+        paths = [package.new_path(old_path) for package in packages if old_path is not None]
+        other = next((added[path] for path in paths if path in added), None)
+        if other is not None:
+            moved[file.path] = moved[other.path] = ChangedFile(file.old_path, other.new_path, file.is_submodule)
+    files = [moved.get(file.path, file) for file in versions.changed_files]
+    return replace(versions, changed_files=list(dict.fromkeys(files)))
+
+
+class PackageNames:
+    """The names of renamed packages in texts of the old version.
+
+    Args:
+        packages: the packages.
+    """
+
+    def __init__(self, packages: Sequence[RenamedPackage]) -> None:
+        self._names = {each.old_name: each.new_name for each in packages if each.old_name != each.new_name}
+        names = "|".join(re.escape(name) for name in sorted(self._names, key=len, reverse=True)) or "(?!)"
+        self._derived = re.compile(rf"(?<![A-Za-z0-9])(?:{names})(?![A-Za-z0-9])")
+        self._edits = {name_edit(old, new) for old, new in self._names.items()}
+        self._references = re.compile(_REFERENCE.replace("{names}", names))
+
+    def of_package(self, name: str) -> str:
+        """Return the new name of a package."""
+        return self._names.get(name, name)
+
+    def derived(self, text: str) -> str:
+        """Return a text in which names that are derived from those of the packages have the new ones."""
+        return self._derived.sub(lambda match: self._names[match[0]], text)
+
+    def has_same_edit(self, old: str, new: str) -> bool:
+        """Return whether a name differs from another one as the new name of a package differs from its old one."""
+        return name_edit(old, new) in self._edits
+
+    def with_references(self, text: str) -> str:
+        """Return a text in which paths, URIs and scopes of C++ that begin with a package have the new name."""
+        return self._references.sub(
+            lambda match: (match["before"] or "") + self._names[match["name"] or match["scope"]], text
+        )
+
+
+@dataclass(frozen=True)
+class _Consequences:
+    """The changes that follow from new names and folders of packages.
+
+    Attributes:
+        packages: the packages.
+        names: their names.
+        classes: the new names of classes that plugin descriptions declare, by the old ones.
+    """
+
+    packages: Sequence[RenamedPackage]
+    names: PackageNames
+    classes: dict[str, str]
+
+    def contain(self, change: Change, subject: Subject) -> bool:
+        """Return whether a change of a file follows from a new name or folder alone."""
+        arguments = _innermost(change.sentence).arguments
+        if change.sentence.template == _RENAMED:
+            return False
+        old_path = subject.old_path
+        if old_path is not None and arguments.get("path") == old_path:
+            return any(package.new_path(old_path) == subject.new_path for package in self.packages)
+        for before, after in (("old", "new"), ("removed", "added")):
+            if before in arguments and after in arguments:
+                old, new = str(arguments[before]), str(arguments[after])
+                return old != new and self._new_text(old, subject.kind) == new
+        return False
+
+    def _new_text(self, text: str, kind: SubjectKind) -> str:
+        if text in self.classes:
+            return self.classes[text]
+        return self.names.derived(text) if kind in _NAMED_AFTER_PACKAGES else self.names.with_references(text)
+
+
+def without_consequences(versions: Versions, subjects: Sequence[Subject]) -> tuple[list[Subject], list[Phrase]]:
+    """Return subjects without the changes that follow from new names and folders of packages, and a note about them.
+
+    The change of the manifest has the names of libraries, classes and other things that changed with the package's.
+    """
+    packages = renamed_packages(versions)
+    if not packages:
+        return list(subjects), []
+    names = PackageNames(packages)
+    renamed_classes = {
+        str(change.sentence.arguments["old"]): str(change.sentence.arguments["new"])
+        for subject in subjects
+        if subject.kind is SubjectKind.PLUGINS
+        for change in subject.changes
+        if change.sentence.arguments.keys() == {"old", "new"}
+    }
+    classes = {old: new for old, new in renamed_classes.items() if names.derived(old) == new}
+    consequences = _Consequences(packages, names, classes)
+    manifests = {f"{package.new_folder}/{MANIFEST}".lstrip("/"): package for package in packages}
+    count = 0
+    derived: list[tuple[str, str]] = []
+    result = []
+    for subject in subjects:
+        others = [change for change in subject.changes if not consequences.contain(change, subject)]
+        if subject.path in manifests and subject.kind is SubjectKind.MANIFEST:
+            others = _with_new_folder(manifests[subject.path], others)
+        count += len(subject.changes) - len(others)
+        kept = {id(change) for change in others}
+        derived += [
+            (str(change.core.arguments["old"]), str(change.core.arguments["new"]))
+            for change in subject.changes
+            if id(change) not in kept and change.effect is Effect.BREAKING and "old" in change.core.arguments
+        ]
+        result.append(replace(subject, changes=others))
+    if not count:
+        return result, []
+    note = counted(
+        "one change follows from the new name or folder of a package alone and is not listed",
+        "{count} changes follow from new names or folders of packages alone and are not listed",
+        count,
+    )
+    return [_with_derived_names(subject, manifests, derived) for subject in result], [note]
+
+
+def _innermost(sentence: Phrase) -> Phrase:
+    while isinstance(change := sentence.arguments.get("change"), Phrase):
+        sentence = change
+    return sentence
+
+
+def _with_new_folder(package: RenamedPackage, changes: Sequence[Change]) -> list[Change]:
+    """Return the changes of a manifest, with the old folder of a package that keeps its name."""
+    if package.old_name != package.new_name or package.old_folder == package.new_folder:
+        return list(changes)
+    text = phrase("package '{name}' moved from {folder}", name=package.new_name, folder=f"{package.old_folder or '.'}/")
+    return [Change(text), *changes]
+
+
+def _with_derived_names(
+    subject: Subject, manifests: dict[str, RenamedPackage], derived: Sequence[tuple[str, str]]
+) -> Subject:
+    """Return a subject; the change of a package's name in a manifest has the names that are derived from it."""
+    package = manifests.get(subject.path)
+    if package is None or package.old_name == package.new_name:
+        return subject
+    own = PackageNames([package])
+    names = tuple(dict.fromkeys(f"{old} -> {new}" for old, new in derived if own.derived(old) == new))
+    changes = [
+        replace(change, other_names=names) if change.sentence.template == _RENAMED else change
+        for change in subject.changes
+    ]
+    return replace(subject, changes=changes)
+
+
+def moved_files(versions: Versions, files: Sequence[ChangedFile]) -> Iterator[tuple[str, str]]:
+    """Yield the new paths of files that move with their packages, each with the old folder of the package."""
+    packages = renamed_packages(versions)
+    names = PackageNames(packages)
+    for file in files:
+        for package in packages:
+            path = package.new_path(file.old_path) if file.old_path else None
+            if path is not None and file.new_path in (path, names.derived(path)):
+                yield file.path, package.old_folder

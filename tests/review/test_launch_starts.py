@@ -1,0 +1,72 @@
+"""What a review says of the nodes that a launch file starts: conditions, scripts and names that are not known."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.review.reports.sections import summary
+from tests.repositories import Repository
+from tests.review.conftest import breaking, sentences, subject
+
+JOY = """<launch>
+  <arg name="local" default="false"/>
+  <group if="$(arg local)"><node pkg="joy" type="joy_node" name="joy"/></group>
+  <node pkg="joy" type="joy_node" name="joy" unless="$(arg local)" machine="robot"/>
+  <include file="$(find elsewhere)/launch/machines.launch"/>
+  <node pkg="arm" type="clean.sh" name="clean"/>
+</launch>
+"""
+GROUP, SECOND, INCLUDE, SCRIPT = (line + "\n" for line in JOY.splitlines()[2:6])
+
+
+@pytest.mark.parametrize(
+    ("replacements", "expected"),
+    [
+        ({GROUP: '<node pkg="joy" type="joy_node" name="joy"/>\n', SECOND: ""}, []),
+        ({GROUP: "", SECOND: '<node pkg="joy" type="joy_node" name="joy"/>\n'}, []),
+        ({GROUP: "", SECOND: ""}, ["node 'joy/joy_node' removed"]),
+        (
+            {GROUP: '<node pkg="joy" type="joy_node" name="stick"/>\n', SECOND: ""},
+            ["node 'joy/joy_node': name joy -> stick", "node 'joy/joy_node' removed"],
+        ),
+        ({INCLUDE: ""}, []),
+        ({SCRIPT: ""}, []),
+    ],
+)
+def test_node_that_another_action_starts_is_not_missing(repository, compare, replacements, expected):
+    text = JOY
+    for old, new in replacements.items():
+        assert old in text
+        text = text.replace(old, new)
+    repository.commit({"arm/launch/arm.launch": JOY})
+    repository.write({"arm/launch/arm.launch": text})
+    assert breaking(compare(repository)) == expected
+
+
+OPTIONS = """from argparse import ArgumentParser
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    options = ArgumentParser()
+    options.add_argument("-n", dest="node", default="camera")
+    args = options.parse_args()
+    return LaunchDescription([Node(package="arm", executable="camera_node", name="camera")])
+"""
+
+
+@pytest.mark.parametrize("name", ["args.node", 'vars(args)["node"]'])
+def test_name_that_is_not_known_may_be_the_same(changes_of, name):
+    changes, breaking_changes = changes_of("arm.launch.py", OPTIONS, 'name="camera"', f"name={name}")
+    assert len(changes) == 1
+    assert breaking_changes == []
+
+
+def test_changes_of_several_files_are_counted_in_each(repository: Repository, compare):
+    files = {f"arm/launch/{name}.launch": JOY for name in ("a", "b", "c")}
+    repository.commit(files)
+    repository.write({path: text.replace(SCRIPT, "").replace(' default="false"', "") for path, text in files.items()})
+    result = compare(repository)
+    assert len(sentences(subject(result, "arm/launch/a.launch"))) == 2
+    assert str(summary(result)).startswith("3 breaking changes, 6 changes, ")

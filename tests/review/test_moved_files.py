@@ -1,0 +1,78 @@
+"""What a review says of files that move inside their package, and of plugin descriptions that nobody finds."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.review.reports.sections import other_files
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+MANIFEST = PACKAGE_XML.replace("arm_description", "arm")
+LAUNCH = "<launch>\n  <node pkg='arm' exec='{name}'/>\n</launch>\n"
+NAMES = ("arm", "gripper", "tool", "all")
+
+
+def cmake(folder: str) -> str:
+    return f"project(arm)\ninstall(DIRECTORY {folder} DESTINATION share/arm)\nament_package()\n"
+
+
+def moved(repository, compare, old_rule: str, new_rule: str):
+    texts = {name: LAUNCH.format(name=name) for name in NAMES}
+    old = {f"arm/examples/launch/{name}.launch.xml": text for name, text in texts.items()}
+    new = {f"arm/launch/{name}.launch.xml": text for name, text in texts.items()}
+    repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": cmake(old_rule), **old})
+    repository.commit({"arm/CMakeLists.txt": cmake(new_rule), **dict.fromkeys(old), **new})
+    return compare(repository, "HEAD~1..HEAD")
+
+
+def test_files_that_are_installed_at_the_same_place_are_one_line(repository, compare):
+    result = moved(repository, compare, "examples/launch", "launch")
+    assert result.subjects == []
+    assert [(path, str(state)) for path, state in other_files(result)] == [
+        ("arm/CMakeLists.txt", "None"),
+        ("arm/launch/", "4 files, moved from arm/examples/launch/, installed at the same place"),
+    ]
+
+
+def test_files_that_are_installed_at_another_place_are_breaking(repository, compare):
+    assert len(breaking(moved(repository, compare, "examples", "launch"))) == len(NAMES)
+
+
+PLUGINS = """<library path="arm">
+  <class name="arm/Grip" type="arm::Grip" base_class_type="base::Tool"/>
+</library>
+"""
+
+
+@pytest.mark.parametrize(
+    ("command", "is_breaking"),
+    [
+        ("", False),
+        ("pluginlib_export_plugin_description_file(base plugins.xml)\n", True),
+        ("pluginlib_export_plugin_description_file(base ${PLUGINS})\n", True),
+    ],
+)
+def test_class_of_a_description_that_no_package_exports_breaks_nothing(repository, compare, command, is_breaking):
+    build = cmake("launch").replace("ament_package", f"{command}ament_package")
+    repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": build, "arm/plugins.xml": PLUGINS})
+    repository.commit({"arm/plugins.xml": None})
+    result = compare(repository, "HEAD~1..HEAD")
+    assert sentences(subject(result, "arm/plugins.xml")) == ["plugin class 'arm/Grip' removed"]
+    assert bool(breaking(result)) is is_breaking
+
+
+def test_executable_without_its_module_is_breaking(repository, compare):
+    setup = "from setuptools import setup\nsetup(name='arm', entry_points={'console_scripts': ['go = arm.go:main']})\n"
+    repository.commit({"arm/package.xml": MANIFEST, "arm/setup.py": setup, "arm/arm/go.py": "def main(): ...\n"})
+    repository.commit({"arm/setup.py": setup.replace("'arm',", "'arm', zip_safe=True,"), "arm/arm/go.py": None})
+    assert breaking(compare(repository, "HEAD~1..HEAD")) == ["executable 'go': its module 'arm.go' was removed"]
+
+
+def test_added_package_is_described(repository, compare):
+    repository.commit({"arm/package.xml": MANIFEST})
+    repository.commit({"copy/package.xml": MANIFEST})
+    (found,) = compare(repository, "HEAD~1..HEAD").subjects
+    assert sentences(found) == [
+        "package added: 'arm' 1.0.0, catkin; depends on xacro; arm/ has a package with the same name"
+    ]

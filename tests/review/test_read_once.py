@@ -1,0 +1,119 @@
+"""What a review reads and computes only once, or not at all, so that it takes seconds in large repositories."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.geometry import meshes
+from linkwright.lint import affected
+from linkwright.lint.affected import TextFiles
+from linkwright.review import open_versions, review
+from linkwright.review.robots import figures
+from linkwright.sdf.resources import ResourceFinder
+from tests.review.test_scene_images import stl
+
+CONFIG = "<model><name>{0}</name><sdf version='1.6'>model.sdf</sdf></model>"
+MODEL = "<sdf version='1.6'><model name='{0}'><link name='link'/></model></sdf>"
+INCLUDES = "".join(f"<include><name>b{number}</name><uri>model://box</uri></include>" for number in range(6))
+WORLD = f"<sdf version='1.6'><world name='w'>{INCLUDES}</world></sdf>"
+
+
+def files_of(name):
+    return {
+        f"w/models/{name}/model.config": CONFIG.format(name),
+        f"w/models/{name}/model.sdf": MODEL.format(name),
+    }
+
+
+PACKAGE = "<package format='3'><name>w</name><version>1.0.0</version></package>"
+FILES = {
+    "w/package.xml": PACKAGE,
+    **files_of("box"),
+    **files_of("lamp"),
+    "w/worlds/w.sdf": WORLD,
+    "w/worlds/dark.sdf": WORLD.replace("box", "lamp"),
+}
+CANDIDATES = [path for path in FILES if path.endswith(".sdf")]
+
+
+def counted(monkeypatch, owner, name):
+    """Return a list to which each call of a function adds its arguments."""
+    calls = []
+    function = getattr(owner, name)
+    monkeypatch.setattr(owner, name, lambda *values, **options: (calls.append(values), function(*values, **options))[1])
+    return calls
+
+
+def test_model_affects_only_the_worlds_that_include_it(repository):
+    repository.write(FILES)
+    found = TextFiles(repository.root).affected(["w/models/box/model.sdf"], CANDIDATES)
+    assert found == {"w/models/box/model.sdf", "w/worlds/w.sdf"}
+
+
+def test_unchanged_files_of_the_other_version_are_not_read(repository, monkeypatch):
+    repository.write(FILES)
+    old = TextFiles(repository.root)
+    changed = "w/models/box/model.config"
+    assert old.affected([changed], CANDIDATES) == {"w/models/box/model.sdf", "w/worlds/w.sdf"}
+    reads = counted(monkeypatch, affected, "_text")
+    new = TextFiles(repository.root, old, {changed})
+    assert new.affected([changed], CANDIDATES) == {"w/models/box/model.sdf", "w/worlds/w.sdf"}
+    assert reads == [(repository.root / changed,)]
+
+
+def test_model_that_a_world_includes_often_is_searched_for_once(repository, monkeypatch):
+    repository.commit(FILES)
+    repository.write({"w/worlds/w.sdf": WORLD.replace("b0", "c0")})
+    searches = counted(monkeypatch, ResourceFinder, "model")
+    reviewed(repository)
+    folders = [folder for _, _, folder in searches]
+    assert folders
+    assert all(folders.count(folder) <= 2 for folder in folders)  # findings, and the comparison
+
+
+ARM = "<robot name='arm'>{}</robot>"
+PARTS = """<link name="base"><visual><geometry><mesh filename="package://w/meshes/base.stl"/></geometry></visual>
+<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+""" + "".join(
+    f"<link name='l{n}'/><joint name='j{n}' type='revolute'><parent link='{'base' if not n else f'l{n - 1}'}'/>"
+    f"<child link='l{n}'/><origin xyz='0 0 1'/><axis xyz='0 1 0'/>"
+    "<limit lower='-1' upper='1' effort='1' velocity='1'/></joint>"
+    for n in range(4)
+)
+
+
+def reviewed(repository):
+    versions = open_versions(repository.root, "HEAD")
+    try:
+        return review(versions, with_images=True)
+    finally:
+        versions.close()
+
+
+def test_mesh_that_both_versions_have_is_read_once(repository, monkeypatch):
+    text = ARM.format(PARTS)
+    repository.commit({"w/package.xml": PACKAGE, "w/urdf/arm.urdf": text, "w/meshes/base.stl": stl(4.75)})
+    repository.write({"w/urdf/arm.urdf": text.replace("<mass value='1'", "<mass value='2'").replace("0 0 1", "0 0 2")})
+    reads = counted(monkeypatch, meshes, "read_mesh")
+    (subject,) = reviewed(repository).subjects
+    assert [str(figure.name) for figure in subject.figures] == ["reach of 'l3'"]
+    assert len(reads) == 1
+
+
+def test_reach_is_not_searched_for_if_no_joint_changed(repository, monkeypatch):
+    monkeypatch.setattr("linkwright.review.robots.figures.reaches", None)
+    text = ARM.format(PARTS)
+    repository.commit({"w/package.xml": PACKAGE, "w/urdf/arm.urdf": text, "w/meshes/base.stl": stl(1.0)})
+    repository.write({"w/urdf/arm.urdf": text.replace('<mass value="1"', '<mass value="2"')})
+    (subject,) = reviewed(repository).subjects
+    assert [str(figure.name) for figure in subject.figures] == ["mass"]
+
+
+@pytest.mark.parametrize("joint", ["lower='-1'", "0 1 0"])
+def test_reach_is_searched_for_if_a_joint_changed(repository, monkeypatch, joint):
+    searches = counted(monkeypatch, figures, "reaches")
+    text = ARM.format(PARTS)
+    repository.commit({"w/package.xml": PACKAGE, "w/urdf/arm.urdf": text, "w/meshes/base.stl": stl(1.0)})
+    repository.write({"w/urdf/arm.urdf": text.replace(joint, joint.replace("1", "0.5"))})
+    reviewed(repository)
+    assert len(searches) == (joint == "lower='-1'")

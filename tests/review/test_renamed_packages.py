@@ -1,0 +1,90 @@
+"""What a review says of packages with new names and folders: what follows from these alone is one change."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.review.reports.sections import other_files
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+CMAKE = """project(arm_tools)
+find_package(ament_cmake REQUIRED)
+add_library(arm_tools_core src/core.cpp)
+install(TARGETS arm_tools_core LIBRARY DESTINATION lib)
+install(DIRECTORY launch config DESTINATION share/${PROJECT_NAME})
+pluginlib_export_plugin_description_file(arm_base plugins.xml)
+ament_package()
+"""
+MANIFEST = PACKAGE_XML.replace("arm_description", "arm_tools")
+FILES = {
+    "arm_tools/package.xml": MANIFEST,
+    "arm_tools/CMakeLists.txt": CMAKE,
+    "arm_tools/plugins.xml": """<library path="arm_tools_core">
+  <class name="arm_tools/Grip" type="arm_tools::Grip" base_class_type="arm_base::Tool"><description/></class>
+</library>
+""",
+    "arm_tools/config/arm.yaml": "driver:\n  ros__parameters:\n    rate: 10\n    plugin: arm_tools/Grip\n",
+    "arm_tools/launch/arm.launch.xml": """<launch>
+  <node pkg="arm_tools" exec="driver" name="driver">
+    <param from="$(find-pkg-share arm_tools)/config/arm.yaml"/>
+    <remap from="cmd" to="arm_tools/cmd"/>
+  </node>
+</launch>
+""",
+    **{f"arm_tools/src/{name}.cpp": f"int {name}() {{ return 1; }}\n" for name in ("core", "grip", "hold", "turn")},
+    "robot/package.xml": PACKAGE_XML.replace("arm_description", "robot").replace(">xacro<", ">arm_tools<"),
+}
+
+
+def renamed(new_folder: str, new_name: str, **replacements: str) -> dict[str, str | None]:
+    """Return the files of a commit that moves the package, with a new name in all texts but that of the topic."""
+    files: dict[str, str | None] = {}
+    for path, text in FILES.items():
+        new_text = text.replace("arm_tools", new_name).replace(f"{new_name}/cmd", "arm_tools/cmd")
+        for old, new in replacements.items():
+            new_text = new_text.replace(old, new)
+        new_path = path.replace("arm_tools/", f"{new_folder}/", 1)
+        if new_path != path:
+            files[path] = None
+        files[new_path] = new_text
+    return files
+
+
+def test_what_follows_from_the_new_name_of_a_package_is_one_change(repository, compare):
+    repository.commit(FILES)
+    repository.commit(renamed("arm_gear", "arm_gear"))
+    result = compare(repository, "HEAD~1..HEAD")
+    assert [(found.path, sentences(found)) for found in result.subjects] == [
+        ("arm_gear/package.xml", ["package 'arm_tools' renamed to 'arm_gear'"])
+    ]
+    (change,) = result.subjects[0].changes
+    assert set(change.other_names) >= {"arm_tools_core -> arm_gear_core", "arm_tools/Grip -> arm_gear/Grip"}
+    assert [str(note) for note in result.notes if "follow" in str(note)]
+    (line,) = other_files(result)
+    assert (line[0], str(line[1])) == ("arm_gear/src/", "4 files, moved with the package from arm_tools/")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "sentence"),
+    [
+        ("rate: 10", "rate: 20", "arm_gear/config/arm.yaml", "driver.ros__parameters.rate 10 -> 20"),
+        ("arm_tools/cmd", "arm_gear/cmd", "arm_gear/launch/arm.launch.xml",
+         "node 'arm_gear/driver': remapping cmd arm_tools/cmd -> arm_gear/cmd"),
+        ("arm_gear_core", "gear_core", "arm_gear/CMakeLists.txt", "installed libraries removed: 'arm_tools_core'"),
+        ("arm_gear/Grip", "arm_gear/Grasp", "arm_gear/plugins.xml",
+         "plugin class 'arm_tools/Grip' renamed to 'arm_gear/Grasp'"),
+    ],
+)  # fmt: skip
+def test_other_changes_beside_a_new_name_are_reported(repository, compare, old, new, path, sentence):
+    repository.commit(FILES)
+    repository.commit(renamed("arm_gear", "arm_gear", **{old: new}))
+    assert sentence in sentences(subject(compare(repository, "HEAD~1..HEAD"), path))
+
+
+def test_package_that_moves_to_another_folder_is_one_change_and_breaks_nothing(repository, compare):
+    repository.commit(FILES)
+    repository.commit(renamed("gear/arm_tools", "arm_tools"))
+    result = compare(repository, "HEAD~1..HEAD")
+    assert [sentences(found) for found in result.subjects] == [["package 'arm_tools' moved from arm_tools/"]]
+    assert breaking(result) == []

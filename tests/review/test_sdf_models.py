@@ -1,0 +1,189 @@
+"""What a review says of models in SDF: mass properties, totals, the values of added elements, and images."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.review import open_versions, review
+from tests.review.conftest import sentences, subject
+
+PATH = "w/models/cart/model.sdf"
+INERTIA = (
+    "<inertia><ixx>0.02</ixx><iyy>0.03</iyy><izz>0.04</izz>"
+    "<ixy>0.001</ixy><ixz>0</ixz><iyz>-0.0123456789</iyz></inertia>"
+)
+MODEL = f"""<sdf version="1.9"><model name="cart">
+<link name="base">
+<inertial><pose>0.1 0 0 0 0 0</pose><mass>2</mass>{INERTIA}</inertial>
+<visual name="v"><geometry><box><size>1 0.5 0.25</size></box></geometry></visual>
+<collision name="c"><geometry><box><size>1 0.5 0.25</size></box></geometry></collision>
+</link>
+<link name="arm"><pose>0 0 1 0 0 0</pose>
+<inertial><mass>2</mass>{INERTIA}</inertial></link>
+<joint name="lift" type="prismatic"><parent>base</parent><child>arm</child><axis><xyz>0 0 1</xyz></axis></joint>
+<joint name="tilt" type="fixed"><parent>base</parent><child>arm</child></joint>
+</model></sdf>
+"""
+BASE = "model cart link base"
+
+
+def changed(text, *replacements):
+    for old, new in replacements:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return text
+
+
+def reviewed(repository, compare, *replacements, text=MODEL):
+    repository.commit({PATH: text})
+    repository.write({PATH: changed(text, *replacements)})
+    return compare(repository)
+
+
+def lines(repository, compare, *replacements, text=MODEL):
+    return sentences(subject(reviewed(repository, compare, *replacements, text=text), PATH))
+
+
+def figures(repository, compare, *replacements):
+    changes = subject(reviewed(repository, compare, *replacements), PATH)
+    return [f"{figure.name} {figure.old} -> {figure.new} {figure.unit}".strip() for figure in changes.figures]
+
+
+SCALED = (
+    ("<ixx>0.02<", "<ixx>0.01<"),
+    ("<iyy>0.03<", "<iyy>0.015<"),
+    ("<izz>0.04<", "<izz>0.02<"),
+    ("<ixy>0.001<", "<ixy>0.0005<"),
+    ("<iyz>-0.0123456789<", "<iyz>-0.00617283945<"),
+)
+
+
+@pytest.mark.parametrize(
+    ("replacements", "expected"),
+    [
+        ((("<mass>2<", "<mass>2.81427130010<"),), "mass 2 -> 2.814 kg"),
+        ((("<mass>2<", "<mass>2.0001<"),), "mass 2 -> 2.0001 kg"),
+        ((("<pose>0.1 0 0 ", "<pose>0.1 0 0.02 "),), "center 0.1 0 0 -> 0.1 0 0.02 m (moved by 0.02 m)"),
+        ((("<pose>0.1 0 0 0 0 0", "<pose>0.1 0 0 0 0 1"),), "axes 0 0 0 -> 0 0 1"),
+        ((("<mass>2<", "<mass>1<"), *SCALED), "mass 2 -> 1 kg, inertia 0.5 times as large"),
+        ((("<ixx>0.02<", "<ixx>0.0212345678901<"),), "ixx 0.02 -> 0.02123 kg m2"),
+        (
+            (("<ixx>0.02<", "<ixx>0.03<"), ("<iyy>0.03<", "<iyy>0.024<"), ("<izz>0.04<", "<izz>0.05<")),
+            "inertia changed by up to 50 %",
+        ),
+        ((("<mass>2<", "<mass>3<"), ("<ixx>0.02<", "<ixx>0.03<"), ("<ixz>0<", "<ixz>1e-11<")),
+         "mass 2 -> 3 kg, ixx 0.02 -> 0.03 kg m2"),
+    ],
+)  # fmt: skip
+def test_inertial_of_a_link_is_one_line(repository, compare, replacements, expected):
+    assert lines(repository, compare, *replacements) == [f"{BASE} inertial: {expected}"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("<mass>2<", "<mass>2.000000000001<"),
+        ("<pose>0.1 0 0 0", "<pose>0.1 0 4e-9 0"),
+        ("<iyz>-0.0123456789<", "<iyz>-0.01234567891<"),
+        ("<pose>0 0 1 0", "<pose>0 0 1.0000000001 0"),
+    ],
+)
+def test_rounding_is_no_change(repository, compare, old, new):
+    assert reviewed(repository, compare, (old, new)).subjects == []
+
+
+def test_counters_are_not_rounded(repository, compare):
+    text = changed(MODEL, ("</model>", "<plugin name='p' filename='f'><seed>10000000</seed></plugin></model>"))
+    assert lines(repository, compare, ("10000000", "10000001"), text=text) == [
+        "model cart plugin p seed: 10000000 -> 10000001"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("replacements", "expected"),
+    [
+        ((("<mass>2<", "<mass>4<"),), ["mass 4 -> 6 kg", "center of mass 0.05 x 0 x 0.5 -> 0.06667 x 0 x 0.3333 m"]),
+        ((("<pose>0 0 1 ", "<pose>0 0 2 "),), ["center of mass 0.05 x 0 x 0.5 -> 0.05 x 0 x 1 m"]),
+        ((("<size>1 0.5", "<size>2 0.5"),), ["size 1 x 0.5 x 0.25 -> 2 x 0.5 x 0.25 m"]),
+        ((('type="fixed"', 'type="revolute"'),), ["moving joints 1 -> 2"]),
+        ((('<model name="cart">', '<model name="cart"><static>true</static>'),),
+         ["mass 4 -> 0 kg", "center of mass 0.05 x 0 x 0.5 -> 0 x 0 x 0 m"]),
+        ((("</model>", "<link name='tip'/></model>"),),
+         ["links 2 -> 3", "mass 4 -> 5 kg", "center of mass 0.05 x 0 x 0.5 -> 0.04 x 0 x 0.4 m"]),
+    ],
+)  # fmt: skip
+def test_totals_of_a_model(repository, compare, replacements, expected):
+    assert figures(repository, compare, *replacements) == expected
+
+
+def test_mass_that_the_simulator_computes_is_no_total(repository, compare):
+    replacement = "</model>", "<link name='tip'><inertial auto='true'/></link></model>"
+    assert figures(repository, compare, replacement) == ["links 2 -> 3"]
+
+
+SURFACE = "<surface><friction><ode><mu>100</mu><mu2>50</mu2></ode></friction></surface>"
+DYNAMICS = "<xyz>0 0 1</xyz><dynamics><damping>{}</damping><friction>3.48</friction></dynamics>"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("</collision>", f"{SURFACE}</collision>",
+         [f"{BASE} collision c surface friction ode added: mu 100, mu2 50"]),
+        ("</collision>", SURFACE.replace("<mu2>50</mu2>", "") + "</collision>",
+         [f"{BASE} collision c surface friction ode mu 100 added"]),
+        ("<xyz>0 0 1</xyz>", DYNAMICS.format(21.75),
+         ["model cart joint lift axis dynamics added: damping 21.75, friction 3.48"]),
+        ("</model>", "<link name='tip'><inertial><mass>3</mass></inertial></link></model>",
+         ["model cart link tip added: inertial mass 3"]),
+        ("</model>", "<model name='hand'><link name='palm'/><link name='thumb'/></model></model>",
+         ["model cart model hand added: links palm, thumb"]),
+        ("</model>", "<include><name>box</name><uri>model://box</uri><pose>1 0 0 0 0 0</pose></include></model>",
+         ["model cart include box added: uri model://box, pose 1 0 0 0 0 0"]),
+        ("</model>", "<plugin name='p' filename='f'>" + "".join(f"<v{n}>{n}</v{n}>" for n in range(10))
+         + "</plugin></model>",
+         ["model cart plugin p filename=f added: v0 0, v1 1, v2 2, v3 3, v4 4, v5 5, v6 6, v7 7 and 2 more"]),
+    ],
+)  # fmt: skip
+def test_added_elements_are_shown_with_their_values(repository, compare, old, new, expected):
+    assert lines(repository, compare, (old, new)) == expected
+
+
+def test_joints_with_other_values_are_other_lines(repository, compare):
+    joints = "".join(f"<joint name='j{n}' type='revolute'><axis><xyz>0 0 {n}</xyz></axis></joint>" for n in range(4))
+    text = f"<sdf version='1.9'><model name='arm'>{joints}</model></sdf>"
+    replacements = [
+        (f"<xyz>0 0 {n}</xyz>", DYNAMICS.format(damping).replace("0 0 1", f"0 0 {n}"))
+        for n, damping in enumerate((3, 3, 10, 10))
+    ]
+    assert lines(repository, compare, *replacements, text=text) == [
+        "model arm joint j0, j1 axis dynamics added: damping 3, friction 3.48",
+        "model arm joint j2, j3 axis dynamics added: damping 10, friction 3.48",
+    ]
+
+
+def test_empty_values_are_shown(repository, compare):
+    text = changed(MODEL, ("</model>", "<plugin name='p' filename='f'><prefix>a</prefix></plugin></model>"))
+    assert lines(repository, compare, (">a<", "><"), text=text) == ["model cart plugin p prefix: a -> (empty)"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "count"),
+    [
+        ("</collision>", f"{SURFACE}</collision>", 0),
+        ("<mass>2<", "<mass>4<", 0),
+        ("<size>1 0.5", "<size>2 0.5", 4),
+        ('<visual name="v">', '<visual name="v"><pose>0 0 1 0 0 0</pose>', 4),
+    ],
+)
+def test_changes_that_images_cannot_show_have_none(repository, monkeypatch, old, new, count):
+    if not count:
+        monkeypatch.setattr("linkwright.review.files.worlds.world_scenes", None)  # no mesh is read
+    repository.commit({PATH: MODEL})
+    repository.write({PATH: changed(MODEL, (old, new))})
+    versions = open_versions(repository.root, "HEAD")
+    try:
+        result = review(versions, with_images=True)
+    finally:
+        versions.close()
+    assert len(subject(result, PATH).images) == count
