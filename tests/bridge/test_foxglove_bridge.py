@@ -69,7 +69,7 @@ class Setup:
 
     async def offers(self, topic: str) -> None:
         """Wait until the bridge has seen a topic."""
-        channels = self.bridge._offer.channels
+        channels = self.bridge._resources.channels
         await eventually(lambda: topic in [channel.advertisement()["topic"] for channel in channels.all()])
 
     @asynccontextmanager
@@ -223,6 +223,24 @@ async def test_parameters_are_read_set_and_subscribed():
         await client.send("getParameters", parameterNames=[], id="all")
         names = {parameter["name"] for parameter in (await client.until("parameterValues"))["parameters"]}
         assert {"/robot.speed", "/robot.use_sim_time"} <= names
+
+
+async def test_subscription_to_all_parameters_keeps_the_others_when_one_name_is_added_or_removed():
+    async with bridge_setup() as setup, setup.client() as client:
+        setup.node.declare_parameter("speed", 1.5)
+        setup.node.declare_parameter("height", 1.5)
+
+        async def changed_parameter(**fields) -> str:
+            for name in ("speed", "height"):
+                await client.send("setParameters", parameters=[{"name": f"/robot.{name}", "type": "float64", **fields}])
+            return (await client.until("parameterValues"))["parameters"][0]["name"]
+
+        await client.send("subscribeParameterUpdates", parameterNames=[])
+        await client.send("subscribeParameterUpdates", parameterNames=["/robot.height"])
+        assert await changed_parameter(value=2) == "/robot.speed"
+        assert (await client.until("parameterValues"))["parameters"][0]["name"] == "/robot.height"
+        await client.send("unsubscribeParameterUpdates", parameterNames=["/robot.speed"])
+        assert await changed_parameter(value=3) == "/robot.height"
 
 
 async def test_connection_graph_is_sent_and_updated():

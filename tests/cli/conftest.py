@@ -12,12 +12,12 @@ from linkwright.graph import Graph
 
 @pytest.fixture
 def in_graph(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[Graph], object]], None]:
-    """Accept a function that adds nodes to the graph of the next commands, which joins no other network."""
+    """Return a function that registers a callback to add nodes to the graphs of later commands, which stay local."""
 
-    def use(make: Callable[[Graph], object]) -> None:
+    def add_to_later_commands(add_nodes: Callable[[Graph], object]) -> None:
         async def join(graph: Graph, _spin_time: float | None, *, read_only: bool = False) -> None:
-            make(graph)
+            add_nodes(graph)
 
         monkeypatch.setattr(session, "join_others", join)
 
-    return use
+    return add_to_later_commands

@@ -373,12 +373,12 @@ def run_for(seconds: float, words: list[str], monkeypatch: pytest.MonkeyPatch) -
     """Run an endless command for some seconds."""
     from linkwright.cli.session import Session
 
-    original = Session.finished
+    original = Session.wait_until_finished
 
-    async def finished(self, timeout: float | None = None) -> int | None:
+    async def wait_until_finished(self, timeout: float | None = None) -> int | None:
         return await original(self, seconds)
 
-    monkeypatch.setattr(Session, "finished", finished)
+    monkeypatch.setattr(Session, "wait_until_finished", wait_until_finished)
     return main(words)
 
 

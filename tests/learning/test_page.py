@@ -121,7 +121,7 @@ async def test_slow_checks_pause_worlds_and_quick_checks_do_not(tmp_path, monkey
     workspace.mkdir()
     if is_quick:
         (workspace / "quick").touch()
-    monkeypatch.setattr("linkwright.learning.page.course_guide._QUICK_S", 60.0 if is_quick else 0.2)
+    monkeypatch.setattr("linkwright.learning.page.course_guide._PAUSE_DELAY_S", 60.0 if is_quick else 0.2)
     programs = ProgramPages()
     monkeypatch.setattr(programs, "pause_worlds", lambda: paused.append(True))
     monkeypatch.setattr(programs, "resume_worlds", lambda: paused.append(False))

@@ -40,7 +40,7 @@ def changes_with_reasons(repository, compare):
     def run(new: str, new_part: str = PART, old: str = READING, old_part: str = PART):
         repository.commit({"arm/launch/arm.launch.py": old, "arm/launch/part.launch.py": old_part})
         repository.write({"arm/launch/arm.launch.py": new, "arm/launch/part.launch.py": new_part})
-        subjects = [each for each in compare(repository).subjects if each.path == "arm/launch/arm.launch.py"]
+        subjects = [entry for entry in compare(repository).subjects if entry.path == "arm/launch/arm.launch.py"]
         changes = subjects[0].changes if subjects else []
         return {str(change.sentence): None if change.reason is None else str(change.reason) for change in changes}
 

@@ -25,7 +25,7 @@ WITH_SENSOR = ARM.replace("</robot>", SENSOR)
 
 
 @pytest.fixture
-def sensor(package):
+def sensor_package(package):
     package.commit({PATH: WITH_SENSOR})
     return package
 
@@ -34,9 +34,9 @@ def notes(result) -> list[str]:
     return [str(note) for note in result.notes]
 
 
-def test_rest_of_robot_is_compared_with_one_note(sensor, compare):
-    sensor.write({PATH: WITH_SENSOR.replace('xyz="0 0 0.1"', 'xyz="0 0 0.2"')})
-    result = compare(sensor)
+def test_rest_of_robot_is_compared_with_one_note(sensor_package, compare):
+    sensor_package.write({PATH: WITH_SENSOR.replace('xyz="0 0 0.1"', 'xyz="0 0 0.2"')})
+    result = compare(sensor_package)
     review_subject = subject(result, PATH)
     assert sentences(review_subject) == ["joint 'bracket_joint': origin xyz 0 0 0.1 -> 0 0 0.2 m (moved by 0.1 m)"]
     assert [str(problem.text) for problem in review_subject.problems] == [
@@ -48,31 +48,33 @@ def test_rest_of_robot_is_compared_with_one_note(sensor, compare):
     ]
 
 
-def test_values_of_a_call_of_a_missing_macro_are_compared(sensor, compare):
-    sensor.write({PATH: WITH_SENSOR.replace('rate="10"', 'rate="20"')})
-    assert sentences(subject(compare(sensor), PATH)) == ["extension 'xacro:lidar': @rate 10 -> 20"]
+def test_values_of_a_call_of_a_missing_macro_are_compared(sensor_package, compare):
+    sensor_package.write({PATH: WITH_SENSOR.replace('rate="10"', 'rate="20"')})
+    assert sentences(subject(compare(sensor_package), PATH)) == ["extension 'xacro:lidar': @rate 10 -> 20"]
 
 
-def test_equal_rest_is_not_reported(sensor, compare):
-    sensor.write({"arm_description/urdf/segment.xacro": MACRO.replace("<mass value", "<!-- heavy --><mass value")})
-    result = compare(sensor)
+def test_equal_rest_is_not_reported(sensor_package, compare):
+    sensor_package.write(
+        {"arm_description/urdf/segment.xacro": MACRO.replace("<mass value", "<!-- heavy --><mass value")}
+    )
+    result = compare(sensor_package)
     assert sentences(subject(result, PATH)) == []
     assert breaking(result) == []
 
 
-def test_value_that_only_one_version_can_evaluate_is_no_change(sensor, compare):
+def test_value_that_only_one_version_can_evaluate_is_not_a_change(sensor_package, compare):
     text = WITH_SENSOR.replace("${lidar_height}", "0.3")
-    sensor.write({PATH: text})
-    assert sentences(subject(compare(sensor), PATH)) == []
+    sensor_package.write({PATH: text})
+    assert sentences(subject(compare(sensor_package), PATH)) == []
 
 
 def test_part_that_moves_into_missing_package_is_not_called_removed(package, compare):
-    own = ARM.replace(
+    robot_with_lidar = ARM.replace(
         "</robot>",
         '<link name="lidar"/><joint name="lidar_joint" type="fixed"><parent link="lower"/>'
         '<child link="lidar"/></joint></robot>',
     )
-    package.commit({PATH: own})
+    package.commit({PATH: robot_with_lidar})
     package.write({PATH: WITH_SENSOR})
     result = compare(package)
     assert breaking(result) == []
@@ -106,14 +108,16 @@ def test_file_that_neither_version_has_is_left_out(package, compare):
     assert "'absent.xacro'" in notes(result)[0]
 
 
-def test_mistake_beside_missing_package_is_breaking(sensor, compare):
-    sensor.write({PATH: WITH_SENSOR.replace('<link name="bracket"/>', '<link name="bracket"/><link name="bracket"/>')})
-    ((_, change),) = compare(sensor).breaking_changes
+def test_mistake_beside_missing_package_is_breaking(sensor_package, compare):
+    sensor_package.write(
+        {PATH: WITH_SENSOR.replace('<link name="bracket"/>', '<link name="bracket"/><link name="bracket"/>')}
+    )
+    ((_, change),) = compare(sensor_package).breaking_changes
     assert "link 'bracket' is defined twice" in change.sentence
     assert (change.location.file, change.location.line) == (PATH, 19)
 
 
-def test_misspelled_name_in_robot_without_missing_files_is_no_omission(package, compare):
+def test_misspelled_name_in_robot_without_missing_files_is_reported(package, compare):
     package.write({PATH: ARM.replace('parent="upper"', 'parent="${uper}"')})
     (sentence,) = breaking(compare(package))
     assert "the property 'uper' is not defined" in sentence

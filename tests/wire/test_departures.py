@@ -10,7 +10,7 @@ from linkwright.graph import EndpointInfo, NodeIdentity, QoSProfile
 from linkwright.graph.faults import ExternalShutdownException
 from linkwright.messages import String
 from linkwright.wire.dds import departures
-from linkwright.wire.dds.departures import GRACE, WITHDRAWAL_TIMEOUT_S, Departures
+from linkwright.wire.dds.departures import GRACE, WITHDRAWAL_TIMEOUT_S, DdsDepartureMonitor
 from linkwright.wire.dds.discovery_info import NodeEntities, ParticipantEntities
 from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant
 from linkwright.wire.engine import ends_by_error
@@ -24,7 +24,7 @@ class Scene:
     def __init__(self, participant: RemoteParticipant | None = None, *, watched: bool = True) -> None:
         self.time = 0.0
         self.remote = RemoteGraph()
-        self.departures = Departures(self.remote, lambda: self.time)
+        self.departures = DdsDepartureMonitor(self.remote, lambda: self.time)
         self.lost: list[EndpointInfo] = []
         if watched:
             self.departures.watch(self.lost.append)

@@ -32,7 +32,7 @@ def observer():
 @pytest.fixture
 def never_settled(monkeypatch):
     """Nobody concludes from silence that all have answered."""
-    monkeypatch.setattr(module, "SETTLED_AFTER", float("inf"))
+    monkeypatch.setattr(module, "SETTLE_TIME_S", float("inf"))
 
 
 def test_discovers_only_transport_sees_others_and_is_not_seen(observer, processes):

@@ -37,13 +37,13 @@ def test_short_samples_are_rejected(data):
 
 
 def test_layout_matches_rmw_dds_common():
-    gid, other = bytes(range(16)), bytes(range(16, 32))
-    info = ParticipantEntities(gid, [NodeEntities("/", "abc", [other], [])])
+    gid, second_gid = bytes(range(16)), bytes(range(16, 32))
+    info = ParticipantEntities(gid, [NodeEntities("/", "abc", [second_gid], [])])
     body = struct.pack("<I", 1)
     body += struct.pack("<I", 2) + b"/\0" + bytes(2)
     body += struct.pack("<I", 4) + b"abc\0"
-    assert encode(info, 16) == b"\0\1\0\0" + gid + body + struct.pack("<I", 1) + other + struct.pack("<I", 0)
-    padded = other + bytes(8)
+    assert encode(info, 16) == b"\0\1\0\0" + gid + body + struct.pack("<I", 1) + second_gid + struct.pack("<I", 0)
+    padded = second_gid + bytes(8)
     assert encode(info, 24) == b"\0\1\0\0" + gid + bytes(8) + body + struct.pack("<I", 1) + padded + struct.pack(
         "<I", 0
     )

@@ -81,10 +81,10 @@ TOGETHER = """
 
     for _ in range(120):
         graphs = [graph("one", NAMES), graph("other", reversed(NAMES))]
-        for transport in [join(each) for each in graphs]:
+        for transport in [join(joined) for joined in graphs]:
             assert transport.wait_until_ready(60)
-        for each in graphs:
-            each.close_threadsafe()
+        for joined in graphs:
+            joined.close_threadsafe()
 """
 
 

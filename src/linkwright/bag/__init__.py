@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from linkwright.bag.recorder import Recorder
     from linkwright.bag.recorder_services import RecorderServices
     from linkwright.bag.selection import TopicSelection
-    from linkwright.bag.summary import layout, summary_text
+    from linkwright.bag.summary import format_summary, summary_text
     from linkwright.bag.writing import COMPRESSIONS, STORAGES, BagWriter
 
 __all__ = [
@@ -37,8 +37,8 @@ __all__ = [
     "RecorderServices",
     "Recording",
     "TopicSelection",
+    "format_summary",
     "is_recording",
-    "layout",
     "summary_text",
 ]
 
@@ -54,7 +54,7 @@ __getattr__ = deferred(
         "recorder": ("Recorder",),
         "recorder_services": ("RecorderServices",),
         "selection": ("TopicSelection",),
-        "summary": ("layout", "summary_text"),
+        "summary": ("format_summary", "summary_text"),
         "writing": ("COMPRESSIONS", "STORAGES", "BagWriter"),
     },
 )

@@ -244,7 +244,7 @@ class _Track:
                 dropped.add(place)
                 freed += _stored_size(kept[place][2])
         self._repeated_numbers.difference_update(kept[place][1] for place in dropped)
-        self.entries = [each for place, each in enumerate(kept) if place not in dropped]
+        self.entries = [entry for place, entry in enumerate(kept) if place not in dropped]
         self.first_index = 0
         self.size -= freed
         return freed

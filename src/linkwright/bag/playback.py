@@ -46,7 +46,7 @@ class Recording(Protocol):
         """Return the state at a time: the last message of each topic, and the transforms."""
 
     def time_before(self, topics: Collection[str], at_ns: int, /) -> int | None:
-        """Return the reception time of the last message before a time, or None."""
+        """Return the reception time, in nanoseconds, of the last message before a time, or None."""
 
 
 class Output(Protocol):

@@ -21,10 +21,12 @@ def summary_text(bag: BagReader, *, topic_names_only: bool = False) -> str:
     if topic_names_only:
         return "".join(f"{topic.name}\n" for topic in bag.topics)
     size = sum(file.stat().st_size for file in bag.files)
-    return layout([file.name for file in bag.files], size, bag.storage, (bag.start_ns, bag.end_ns), bag.topics)
+    return format_summary([file.name for file in bag.files], size, bag.storage, (bag.start_ns, bag.end_ns), bag.topics)
 
 
-def layout(files: Sequence[str], size: int, storage: str, span_ns: tuple[int, int], topics: Sequence[BagTopic]) -> str:
+def format_summary(
+    files: Sequence[str], size: int, storage: str, span_ns: tuple[int, int], topics: Sequence[BagTopic]
+) -> str:
     """Return a recording's summary as text.
 
     Args:
@@ -50,14 +52,16 @@ def layout(files: Sequence[str], size: int, storage: str, span_ns: tuple[int, in
         ("Messages:", str(sum(topic.count for topic in topics))),
         ("Topic information:", "\n".join(lines)),
     ]
-    blank = " " * 19
-    return "\n" + "".join(f"{name:19}{text.replace(chr(10), chr(10) + blank)}".rstrip() + "\n" for name, text in rows)
+    indent = " " * 19
+    return "\n" + "".join(f"{name:19}{text.replace(chr(10), chr(10) + indent)}".rstrip() + "\n" for name, text in rows)
 
 
 def _format_time(stamp_ns: int) -> str:
     seconds, nanoseconds = divmod(stamp_ns, NANOSECONDS_PER_SECOND)
-    day = datetime.fromtimestamp(seconds).astimezone()
-    return f"{day:%b} {day.day:2} {day:%Y %H:%M:%S}.{nanoseconds:09d} ({seconds}.{nanoseconds:09d})"
+    local_time = datetime.fromtimestamp(seconds).astimezone()
+    return (
+        f"{local_time:%b} {local_time.day:2} {local_time:%Y %H:%M:%S}.{nanoseconds:09d} ({seconds}.{nanoseconds:09d})"
+    )
 
 
 def _format_duration(duration_ns: int) -> str:

@@ -144,7 +144,7 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
         def print_feedback(message: Any) -> None:
             print(f"Feedback:\n    {to_yaml(message.feedback)}")
 
-        goal_future = client.send_goal_async(goal, session.guarded(print_feedback) if arguments.feedback else None)
+        goal_future = client.send_goal_async(goal, session.guard(print_feedback) if arguments.feedback else None)
         handle = await session.wait_for_result(goal_future)
         if handle is None or not handle.accepted:
             print("Goal was rejected.")
@@ -156,7 +156,7 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
             await _cancel(session, handle)
             raise
         if result is None:
-            return await session.finished() or 0
+            return await session.wait_until_finished() or 0
         print(f"Result:\n    {to_yaml(result.result)}")
         print(f"Goal finished with status: {_STATUS.get(result.status, 'UNKNOWN')}")
         return 0

@@ -16,7 +16,7 @@ from linkwright.process.interruption import INTERRUPTED
 from linkwright.vision.datasets.options import FORMATS
 
 if TYPE_CHECKING:
-    from linkwright.vision.datasets.rendering import Studio
+    from linkwright.vision.datasets.rendering import DatasetRenderer
 
 _MIN_SIDE, _MAX_SIDE = 32, 4096
 _FIXABLE_PROPERTIES = ("lights", "colors", "lens")
@@ -137,7 +137,7 @@ def run(arguments: argparse.Namespace) -> int:
         fixed_properties=arguments.keep,
         min_size=arguments.min_size,
         min_visible=arguments.min_visible,
-        form=arguments.image_format,
+        image_format=arguments.image_format,
     )
     path = Path(arguments.output)
     progress = _Progress(arguments.images)
@@ -153,7 +153,7 @@ def run(arguments: argparse.Namespace) -> int:
         force=arguments.force,
         append=arguments.append,
         progress=progress.update,
-        begin=progress.begin,
+        on_start=progress.show_method,
     )
     progress.end()
     print(as_table(result.folder.statistics()), end="")
@@ -178,13 +178,15 @@ class _Progress:
         self._start_time = 0.0
         self._is_terminal = sys.stderr.isatty()
 
-    def begin(self, studio: Studio) -> None:
+    def show_method(self, renderer: DatasetRenderer) -> None:
         """Print the classes and the rendering method."""
-        print_message(localized(phrase("Classes: {names}", names=", ".join(studio.classes))))
-        print_message(localized(phrase("Rendering images with {renderer}", renderer=studio.render_method)))
-        if studio.unused:
+        print_message(localized(phrase("Classes: {names}", names=", ".join(renderer.classes))))
+        print_message(localized(phrase("Rendering images with {renderer}", renderer=renderer.render_method)))
+        if renderer.unused:
             print_message(
-                localized(phrase("These worlds have no object of the classes {names}", names=", ".join(studio.unused)))
+                localized(
+                    phrase("These worlds have no object of the classes {names}", names=", ".join(renderer.unused))
+                )
             )
         self._start_time = time.monotonic()
 

@@ -76,12 +76,12 @@ async def _greet(session: Session, arguments: argparse.Namespace) -> int:
         try:
             emit()
             if arguments.once:
-                await session.finished(arguments.emit_period)
+                await session.wait_until_finished(arguments.emit_period)
                 print_table()
                 return 0
             session.every(arguments.emit_period, emit)
             session.every(arguments.print_period, print_table)
-            return await session.finished() or 0
+            return await session.wait_until_finished() or 0
         finally:
             transport.close()
 

@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 
-_ANSWER_TIMEOUT = 5.0
+_RESPONSE_TIMEOUT_S = 5.0
 """Seconds to wait for each node when all nodes are listed.
 
 An unresponsive node does not block the others.
 """
-_LABELS = {
+_LABELS_BY_TYPE = {
     1: ("Boolean value is:", "bool_value"),
     2: ("Integer value is:", "integer_value"),
     3: ("Double value is:", "double_value"),
@@ -87,9 +87,9 @@ def run_list(arguments: argparse.Namespace) -> int:
         ) from None
 
     async def job(session: Session) -> int:
-        hidden = arguments.include_hidden_nodes
+        include_hidden = arguments.include_hidden_nodes
         if arguments.node_name is not None:
-            node = await find_node(session, arguments.node_name, hidden=hidden, timeout=arguments.timeout)
+            node = await find_node(session, arguments.node_name, hidden=include_hidden, timeout=arguments.timeout)
             print(
                 "\n".join(
                     await _list_lines(RemoteParameters(session, node, arguments.service_timeout), arguments, pattern)
@@ -98,9 +98,11 @@ def run_list(arguments: argparse.Namespace) -> int:
             return 0
         services = dict(session.node.get_service_names_and_types())
         nodes = [
-            node for node in dict.fromkeys(node_names(session, hidden=hidden)) if f"{node}/list_parameters" in services
+            node
+            for node in dict.fromkeys(node_names(session, hidden=include_hidden))
+            if f"{node}/list_parameters" in services
         ]
-        timeout = arguments.service_timeout or _ANSWER_TIMEOUT
+        timeout = arguments.service_timeout or _RESPONSE_TIMEOUT_S
         requests = [_list_lines(RemoteParameters(session, node, timeout), arguments, pattern) for node in nodes]
         failed = False
         for node, lines in zip(nodes, await asyncio.gather(*requests, return_exceptions=True), strict=True):
@@ -143,7 +145,7 @@ def run_get(arguments: argparse.Namespace) -> int:
             await parameters.check_declared([arguments.parameter_name])
             print("Parameter not set.")
             return 0
-        label, field = _LABELS[values[0].type]
+        label, field = _LABELS_BY_TYPE[values[0].type]
         value = getattr(values[0], field)
         print(value if arguments.hide_type else f"{label} {value}")
         return 0

@@ -228,7 +228,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
 
         profile = fitting_profile(session.node, topic, arguments)
         session.node.create_subscription(service_class.Event, topic, session.receiver(show), profile)
-        return await session.finished() or 0
+        return await session.wait_until_finished() or 0
 
     return run_in_graph(arguments, job)
 

@@ -88,7 +88,7 @@ class Session:
     def kill_all(self) -> None:
         """Do nothing, because there are no processes to kill."""
 
-    def guarded(self, callback: Callable[..., object]) -> Callable[..., None]:
+    def guard(self, callback: Callable[..., object]) -> Callable[..., None]:
         """Wrap a callback so that its exceptions end the command.
 
         Without the wrapper, the graph would log the exception and continue.
@@ -106,12 +106,12 @@ class Session:
         return call
 
     def receiver(self, callback: Callable[..., object]) -> Callable[..., None]:
-        """Wrap a subscription's callback like `guarded`, and preserve its number of parameters.
+        """Wrap a subscription's callback like `guard`, and preserve its number of parameters.
 
         The graph determines from this number whether the callback receives only the message or also the message's
         metadata.
         """
-        guarded = self.guarded(callback)
+        guarded = self.guard(callback)
 
         def pass_message(message: Any) -> None:
             guarded(message)
@@ -124,7 +124,7 @@ class Session:
     def every(self, period: float, callback: Callable[[], object]) -> None:
         """Call a function every `period` seconds until the command ends."""
         loop = asyncio.get_running_loop()
-        guarded = self.guarded(callback)
+        guarded = self.guard(callback)
         due = loop.time()
 
         def call() -> None:
@@ -137,7 +137,7 @@ class Session:
         due += period
         loop.call_at(due, call)
 
-    async def finished(self, timeout: float | None = None) -> int | None:
+    async def wait_until_finished(self, timeout: float | None = None) -> int | None:
         """Wait for the command to end, and return its exit status, or None after `timeout` seconds."""
         done_futures, _ = await asyncio.wait([self._outcome], timeout=timeout)
         return self._outcome.result() if done_futures else None

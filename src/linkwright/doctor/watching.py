@@ -141,7 +141,7 @@ async def observe(
 
 
 class _Watcher:
-    """Subscribes to the topics that the examinations need, and records the messages."""
+    """The subscriptions to the topics that the examinations need, and a record of their messages."""
 
     def __init__(self, graph: Graph, node: Node) -> None:
         self._graph = graph

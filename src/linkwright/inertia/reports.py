@@ -12,7 +12,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.blocks import inertial_block
 from linkwright.inertia.estimation import Estimate
-from linkwright.inertia.verdict import Grade, Verdict, assess, grouped_digits
+from linkwright.inertia.verdict import Grade, Verdict, assess, format_digits
 from linkwright.inertia.writing import WriteResult
 from linkwright.loading.lean_typing import Any
 from linkwright.urdf import Inertial, Robot
@@ -85,7 +85,7 @@ def _row(estimate: Estimate, verdict: Verdict) -> tuple[str, ...]:
     moments = (
         "-" if file_properties is None else " ".join(f"{moment:.3g}" for moment in file_properties.principal().moments)
     )
-    density = "-" if verdict.density is None else grouped_digits(verdict.density)
+    density = "-" if verdict.density is None else format_digits(verdict.density)
     name = _GRADE_NAMES.get(verdict.grade)
     text = verdict.reason if name is None else phrase("{grade}: {reasons}", grade=name, reasons=verdict.reason)
     return estimate.link, mass, density, moments, localized(text)

@@ -134,7 +134,7 @@ def _density_reasons(density: float, *, has_mesh: bool) -> list[_Reason]:
     if density > MAX_DENSITY:
         # A mesh may be a thin skin around a heavy interior.
         grade = Grade.DOUBTFUL if has_mesh else Grade.IMPOSSIBLE
-        words = phrase("it is denser than any solid: osmium has {density} kg/m3", density=grouped_digits(MAX_DENSITY))
+        words = phrase("it is denser than any solid: osmium has {density} kg/m3", density=format_digits(MAX_DENSITY))
         return [_Reason(grade, words, log(density / MAX_DENSITY))]
     if density < MIN_DENSITY:
         error_size = log(MIN_DENSITY / density) if density > 0 else inf  # The density is 0 for a negligible mass.
@@ -160,7 +160,7 @@ def _comparison_reasons(comparison: Comparison, computed: MassProperties) -> lis
         ratio = max(ratios, key=lambda value: abs(log(value)))
         times = max(ratio, 1 / ratio)
         if times > _ROUGH_RATIO:
-            times_text = f"{times:.2g}" if times < _DOUBTFUL_RATIO else grouped_digits(times)
+            times_text = f"{times:.2g}" if times < _DOUBTFUL_RATIO else format_digits(times)
             words = (
                 phrase("its moments are {factor} times the moments of a solid with its shapes", factor=times_text)
                 if ratio > 1
@@ -175,6 +175,6 @@ def _length_text(comparison: Comparison) -> str:
     return f"{distance:.3g} m" if distance >= 1 else f"{distance * 1000:.3g} mm"
 
 
-def grouped_digits(number: float) -> str:
+def format_digits(number: float) -> str:
     """Format a number with thousands separators, or with three significant digits below 100."""
     return f"{number:,.0f}".replace(",", " ") if number >= 100 else f"{number:.3g}"

@@ -16,7 +16,7 @@ from linkwright.geometry.shapes import rotated, transposed
 from linkwright.geometry.single import Vector3, add_vectors, length, rotation_from_z, rpy_from_quaternion, scaled
 from linkwright.inertia import DEFAULT_DENSITY, MeshLibrary, estimate
 from linkwright.inertia.blocks import inertial_parts
-from linkwright.inertia.verdict import grouped_digits
+from linkwright.inertia.verdict import format_digits
 from linkwright.inference.gazebo import format_number
 from linkwright.inference.results import Finding, Wheel
 from linkwright.inference.shapes import Shape, vertices
@@ -171,7 +171,7 @@ def _missing_body_mass(members: list[Link], densities: Mapping[str, float], mesh
             "link '{link}' has no mass: it gets {mass:.3g} kg, the mass of its shapes at {density} kg/m3",
             link=link.name,
             mass=limited.mass,
-            density=grouped_digits(density * limited_mass / properties.mass),
+            density=format_digits(density * limited_mass / properties.mass),
         )
         yield _inertial_finding("DRIVE102", message, link, limited)
     if not has_mass_source and members[0].element is not None:

@@ -26,32 +26,37 @@ class Explanation:
     end: int
 
 
-def definitions_at(text: str, offset: int, names: Sequence[NameDefinition]) -> list[NameDefinition]:
+def definitions_at(text: str, offset: int, definitions: Sequence[NameDefinition]) -> list[NameDefinition]:
     """Return the definitions of the macro call, or of the name in a value, at an offset."""
     cursor = cursor_at(text, offset)
     if cursor.syntax in (CursorSyntax.TAG, CursorSyntax.CLOSING_TAG) and cursor.token is not None:
         tag = cursor.token.name
         if tag.startswith(PREFIX) and tag not in XACRO:
             macro_name = tag.removeprefix(PREFIX).rpartition(".")[2]
-            return [name for name in names if name.kind is NameKind.MACRO and name.name == macro_name]
+            return [
+                definition
+                for definition in definitions
+                if definition.kind is NameKind.MACRO and definition.name == macro_name
+            ]
         return []
     if cursor.syntax is not CursorSyntax.VALUE or cursor.token is None or cursor.attribute is None:
         return []
     if cursor.is_in_expression or cursor.substitution is not None:
-        word = name_at(text, offset)
+        occurrence = name_at(text, offset)
         kind = NameKind.PROPERTY if cursor.is_in_expression else NameKind.ARGUMENT
-        macro_name = "" if word is None else word[0]
-        return [name for name in names if name.kind is kind and name.name in (macro_name, macro_name.partition(".")[0])]
+        name = "" if occurrence is None else occurrence[0]
+        names = (name, name.partition(".")[0])
+        return [definition for definition in definitions if definition.kind is kind and definition.name in names]
     value = cursor.attribute.value
     tag = cursor.tags[-1]
     if cursor.attribute.name in ("link", "reference", "joint") or (tag == "material" and cursor.token.is_empty_element):
         kinds = (NameKind.LINK, NameKind.JOINT) if tag != "material" else (NameKind.MATERIAL,)
-        return [name for name in names if name.kind in kinds and name.name == value]
+        return [definition for definition in definitions if definition.kind in kinds and definition.name == value]
     return []
 
 
-def describe_name(name: NameDefinition) -> str:
+def describe_definition(definition: NameDefinition) -> str:
     """Return a definition with its value or parameters, in Markdown."""
-    detail = f" = `{name.detail}`" if name.detail and name.kind is not NameKind.MACRO else ""
-    parameters = f"\n\n`{name.detail}`" if name.kind is NameKind.MACRO and name.detail else ""
-    return f"**{name.kind.value} {name.name}**{detail}, {name.file.name}{parameters}"
+    detail = f" = `{definition.detail}`" if definition.detail and definition.kind is not NameKind.MACRO else ""
+    parameters = f"\n\n`{definition.detail}`" if definition.kind is NameKind.MACRO and definition.detail else ""
+    return f"**{definition.kind.value} {definition.name}**{detail}, {definition.file.name}{parameters}"

@@ -63,7 +63,7 @@ def parameter_values(document: Document, section: Section, cursor: YamlCursor) -
 
     present = {text for text, start in cursor.parent_entry.items() if start != cursor.start}
     if last == "type" and (section.is_manager or (section.may_be_controller and name == "type")):
-        for kind in _resembling(controller_types(), name.rpartition(".")[0] or section.node):
+        for kind in _sort_by_resemblance(controller_types(), name.rpartition(".")[0] or section.node):
             yield item(kind, description=controller_purpose(kind) or "")
     elif last in ("plugin", "primary_controller"):
         uses_colons = _COLONS.search(document.text) is not None
@@ -129,7 +129,7 @@ def _robot_values(document: Document, key: str, default: str) -> Iterator[tuple[
             yield frame, "REP 105"
 
 
-def _resembling(types: Iterable[str], name: str) -> list[str]:
+def _sort_by_resemblance(types: Iterable[str], name: str) -> list[str]:
     """Sort types by their resemblance to the name of a controller or plugin."""
     words = [word for word in re.split(r"\W|_|(?<=[a-z])(?=[A-Z])", name) if word]
 
@@ -150,5 +150,7 @@ def _plugin_types(section: Section, plugin: str, key: str) -> list[str]:
         if entry is not None:
             names = [[text for text, _ in entry.items()], entry.scalar]
         if any(plugin == name or (isinstance(name, list) and plugin in name) for name in names):
-            return _resembling(plugin_types(section.node, listed), plugin)
-    return _resembling(plugin_types(section.node) or [known_plugin.type for known_plugin in plugins().values()], plugin)
+            return _sort_by_resemblance(plugin_types(section.node, listed), plugin)
+    return _sort_by_resemblance(
+        plugin_types(section.node) or [known_plugin.type for known_plugin in plugins().values()], plugin
+    )

@@ -80,16 +80,16 @@ def _program(text: Text, offset: int, folder: Path) -> Iterator[Completion]:
     if colon:
         file = module_file(folder, module.strip())
         names = _FUNCTION.findall(text_of(file)) if file is not None else []
-        for each in sorted(names, key=lambda candidate: candidate != "main"):
-            yield Completion(each, ItemKind.FUNCTION, offset - len(function.lstrip()), module)
+        for choice in sorted(names, key=lambda candidate: candidate != "main"):
+            yield Completion(choice, ItemKind.FUNCTION, offset - len(function.lstrip()), module)
     elif equals:
         modules = [*_modules(folder)]
-        for each in sorted(modules, key=lambda each: each.rpartition(".")[2] != name.strip()):
-            yield Completion(each, ItemKind.FILE, offset - len(module))
+        for choice in sorted(modules, key=lambda module: module.rpartition(".")[2] != name.strip()):
+            yield Completion(choice, ItemKind.FILE, offset - len(module))
     else:
-        for each in _modules(folder):
-            script = each.rpartition(".")[2]
-            yield Completion(f"{script} = {each}:main", ItemKind.FUNCTION, text.start)
+        for choice in _modules(folder):
+            script = choice.rpartition(".")[2]
+            yield Completion(f"{script} = {choice}:main", ItemKind.FUNCTION, text.start)
 
 
 def _arguments(document: Document, offset: int) -> Iterator[Completion]:

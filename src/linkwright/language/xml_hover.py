@@ -13,7 +13,7 @@ from linkwright.language.extension_schema import HARDWARE_PLUGIN, PARAMETER_NAME
 from linkwright.language.format import Document
 from linkwright.language.grammar import PREFIX, XACRO, root_of, rule_at
 from linkwright.language.hardware_plugins import hardware_parameters, hardware_plugins
-from linkwright.language.hover import Explanation, definitions_at, describe_name
+from linkwright.language.hover import Explanation, definitions_at, describe_definition
 from linkwright.language.parameters import called_macro, macro_parameters
 from linkwright.language.simulator_plugins import SimulatorPlugin, plugin_of
 from linkwright.language.xml_completion import describe_parameter
@@ -35,7 +35,7 @@ def explain_at(document: Document, offset: int, names: Sequence[NameDefinition] 
     if definitions:
         name = name_at(text, offset)
         start, end = (name[1], name[1] + len(name[0])) if name else (offset, offset)
-        return Explanation("\n\n".join(map(describe_name, definitions)), start, end)
+        return Explanation("\n\n".join(map(describe_definition, definitions)), start, end)
     root = root_of(document.file)
     if root is None:
         return None

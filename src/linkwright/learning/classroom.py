@@ -144,7 +144,11 @@ class Classroom:
         It is the one that the step names, or the last one that a step before it names. It is None if there is none.
         """
         steps = self.course.steps
-        names = [each.shown_file for each in steps[: steps.index(step) + 1] if each.shown_file is not None]
+        names = [
+            earlier_step.shown_file
+            for earlier_step in steps[: steps.index(step) + 1]
+            if earlier_step.shown_file is not None
+        ]
         return self.workspace / names[-1] if names else None
 
     def solution_files(self, step: Step) -> list[Path]:
@@ -195,8 +199,12 @@ class Classroom:
     def steps_to_catch_up(self, step: Step) -> list[Step]:
         """Return the earlier steps with files that are neither passed nor taken over."""
         before = self.course.steps[: self.course.steps.index(step)]
-        noted = [(each, self.progress.step(each.address)) for each in before]
-        return [each for each, done in noted if done.passed is None and not done.taken_over and each.solution.is_dir()]
+        noted = [(earlier_step, self.progress.step(earlier_step.address)) for earlier_step in before]
+        return [
+            earlier_step
+            for earlier_step, done in noted
+            if done.passed is None and not done.taken_over and earlier_step.solution.is_dir()
+        ]
 
     def plan_catch_up(self, step: Step) -> FilePlan:
         """Return the files to write so that the workspace has the course's state before a step.
@@ -219,7 +227,7 @@ class Classroom:
         """
         written = self._write(self.plan_catch_up(step))
         before = self.course.steps[: self.course.steps.index(step)]
-        missing = [each for each in before if self.progress.step(each.address).passed is None]
+        missing = [earlier_step for earlier_step in before if self.progress.step(earlier_step.address).passed is None]
         self._note(*missing, taken_over=True)
         return written
 

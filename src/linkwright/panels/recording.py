@@ -114,7 +114,7 @@ class RecordingFeature(PageFeature):
             start_parameter_services=False,
         )
         selection = TopicSelection(everything=not topics, every_service=not topics, names=topics)
-        recorder = Recorder(node, selection, writer, wrap_callback=self._guarded)
+        recorder = Recorder(node, selection, writer, wrap_callback=self._guard)
         threshold = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False)
         jump_handle = node.get_clock().create_jump_callback(
             threshold, post_callback=lambda _: self._loop.call_soon_threadsafe(self._stop_at_reset, recorder)
@@ -124,7 +124,7 @@ class RecordingFeature(PageFeature):
         )
         self._schedule_publish()
 
-    def _guarded(self, callback: Callable[..., object]) -> Callable[..., object]:
+    def _guard(self, callback: Callable[..., object]) -> Callable[..., object]:
         """Wrap a callback of the recorder's node, so that a failed write ends the recording."""
 
         def call(*arguments: Any) -> None:

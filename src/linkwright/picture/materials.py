@@ -43,7 +43,7 @@ class MeshSurface:
 
 
 _WITHOUT_OTHER_FILES = (".stl", ".dae")
-"""The formats in which a file without images contains everything that images show."""
+"""The formats in which a file without images contains everything that is drawn."""
 _NAME_OF_IMAGE = b"init_from"
 """The tag in COLLADA before the name of the file of an image."""
 

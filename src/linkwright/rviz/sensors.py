@@ -24,21 +24,21 @@ _DEFAULT_RAY_LENGTH = 30.0
 
 
 @dataclass(frozen=True, slots=True)
-class ShownLidar:
+class DisplayedLidar:
     """A lidar in the page's form, and the reduction of its measurements for drawing.
 
     Attributes:
         scene: the description of the lidar for pages.
-        measured: the number of rows and of columns that the lidar measures.
-        every: the step between drawn rows, and the step between drawn columns.
+        measured_shape: the number of rows and of columns that the lidar measures.
+        strides: the step between drawn rows, and the step between drawn columns.
     """
 
     scene: LidarScene
-    measured: tuple[int, int]
-    every: tuple[int, int]
+    measured_shape: tuple[int, int]
+    strides: tuple[int, int]
 
 
-def sensors_of(world: World) -> tuple[list[ShownLidar], list[CameraScene]]:
+def sensors_of(world: World) -> tuple[list[DisplayedLidar], list[CameraScene]]:
     """Return the lidars and the cameras of a world, in file order.
 
     Both lists are empty if the pose of any link or sensor is unknown.
@@ -46,7 +46,7 @@ def sensors_of(world: World) -> tuple[list[ShownLidar], list[CameraScene]]:
     Args:
         world: the world, with its includes resolved.
     """
-    lidars: list[ShownLidar] = []
+    lidars: list[DisplayedLidar] = []
     cameras: list[CameraScene] = []
     try:
         links = list(placed_links(world))
@@ -54,14 +54,14 @@ def sensors_of(world: World) -> tuple[list[ShownLidar], list[CameraScene]]:
             for sensor in placed_link.link.sensors:
                 pose = placed_link.frames.in_link(sensor.pose, placed_link.link.name)
                 if sensor.lidar is not None:
-                    lidars.append(_shown_lidar(placed_link, sensor, sensor.lidar, pose))
+                    lidars.append(_displayed_lidar(placed_link, sensor, sensor.lidar, pose))
                 cameras.extend(_camera_scene(placed_link, sensor, camera, pose) for camera in sensor.cameras)
     except FrameError:
         return [], []
     return lidars, cameras
 
 
-def _shown_lidar(placed_link: PlacedLink, sensor: Sensor, lidar: Lidar, pose: Transform) -> ShownLidar:
+def _displayed_lidar(placed_link: PlacedLink, sensor: Sensor, lidar: Lidar, pose: Transform) -> DisplayedLidar:
     horizontal, vertical = lidar.horizontal, lidar.vertical
     row_step = ceil(vertical.count / _MAX_ROWS)
     rows = ceil(vertical.count / row_step)
@@ -79,7 +79,7 @@ def _shown_lidar(placed_link: PlacedLink, sensor: Sensor, lidar: Lidar, pose: Tr
         nearest=nearest,
         farthest=lidar.range.max if nearest < lidar.range.max < float("inf") else nearest + _DEFAULT_RAY_LENGTH,
     )
-    return ShownLidar(scene, (vertical.count, horizontal.count), (row_step, column_step))
+    return DisplayedLidar(scene, (vertical.count, horizontal.count), (row_step, column_step))
 
 
 def _camera_scene(placed_link: PlacedLink, sensor: Sensor, camera: Camera, pose: Transform) -> CameraScene:

@@ -158,8 +158,8 @@ def _unreadable_lines(
             yield f"    {name} = {name}_absent" if name in attributes else f"    {name} = None"
         return
     tests = [f"{name} is UNREADABLE" for name in singles]
-    tests += [f"any(each is UNREADABLE for each in {name})" for name, child in children if child.many]
-    tests += ["any(each is UNREADABLE for each in nested)"] if rule.nests else []
+    tests += [f"any(value is UNREADABLE for value in {name})" for name, child in children if child.many]
+    tests += ["any(value is UNREADABLE for value in nested)"] if rule.nests else []
     yield f"if {' or '.join(tests)}:"
     yield "    return UNREADABLE"
 

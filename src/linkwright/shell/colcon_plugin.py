@@ -30,7 +30,7 @@ _RESOURCE_INDEX = "share/ament_index/resource_index"
 
 
 class CopiedPackageIdentification(RosPackageIdentification):  # type: ignore[misc]  # its base has no types
-    """Identifies ``ament_cmake`` packages that must be copied because ament_cmake is missing."""
+    """An identification of ``ament_cmake`` packages that must be copied because ament_cmake is missing."""
 
     PRIORITY = RosPackageIdentification.PRIORITY + 10
 
@@ -42,7 +42,7 @@ class CopiedPackageIdentification(RosPackageIdentification):  # type: ignore[mis
 
 
 class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its base has no types
-    """Installs the files that an ``ament_cmake`` package copies, and logs the skipped parts."""
+    """A build task that installs the files an ``ament_cmake`` package copies, and logs the skipped parts."""
 
     async def build(self) -> int:
         """Install the files of the package, and return the exit status.

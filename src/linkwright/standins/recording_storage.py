@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from linkwright.bag import STORAGES, BagTopic, layout
+from linkwright.bag import STORAGES, BagTopic, format_summary
 from linkwright.bag.names import METADATA
 from linkwright.bag.qos import from_text, to_text
 from linkwright.graph.qos.profile import QoSProfile
@@ -187,7 +187,7 @@ class BagMetadata:
             for topic_metadata in [information.topic_metadata]
         ]
         end = start + self.duration.nanoseconds
-        return layout(self.relative_file_paths, self.bag_size, self.storage_identifier, (start, end), topics)
+        return format_summary(self.relative_file_paths, self.bag_size, self.storage_identifier, (start, end), topics)
 
 
 class MetadataIo:

@@ -14,7 +14,7 @@ from linkwright.standins import activate
 from linkwright.sweep.paths import TimedPath, as_path, recorded
 from linkwright.sweep.plan import Run
 from linkwright.sweep.scenario import COLUMNS, SEED, Scenario, describe_error, line_in_traceback, load_scenario
-from linkwright.testing.paths import recorded_paths
+from linkwright.testing.paths import record_paths
 
 Result = bool | int | float | str | None
 """The types of the values that a scenario may return."""
@@ -85,7 +85,7 @@ def run_scenario(scenario: Scenario, run: Run) -> Outcome:
     seed = {SEED: run.seed} if scenario.takes_seed else {}
     recorded_points: list[TimedPath] = []
     if run.records_paths:
-        with recorded_paths() as robot_paths:
+        with record_paths() as robot_paths:
             returned = scenario.function(**run.parameters, **seed)
         recorded_points = [path.points for path in robot_paths]
     else:

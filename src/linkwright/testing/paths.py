@@ -8,7 +8,7 @@ from contextvars import ContextVar
 
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_PERIOD_NS = NANOSECONDS_PER_SECOND // 20
+_INITIAL_PERIOD_NS = NANOSECONDS_PER_SECOND // 20
 MAX_POINTS = 2_000
 """The maximum number of points. For a longer path, every second point is dropped and the period is doubled."""
 
@@ -25,7 +25,7 @@ class RobotPath:
 
     def __init__(self) -> None:
         self.points: list[Point] = []
-        self._period_ns = _PERIOD_NS
+        self._period_ns = _INITIAL_PERIOD_NS
         self._start_ns = 0
         self._next_ns: int | None = None
 
@@ -54,7 +54,7 @@ _recorded_paths: ContextVar[list[RobotPath] | None] = ContextVar("recorded_paths
 
 
 @contextmanager
-def recorded_paths() -> Iterator[list[RobotPath]]:
+def record_paths() -> Iterator[list[RobotPath]]:
     """Record the paths of the robots in simulations that start in the ``with`` block.
 
     The simulations are `SteppedSimulation` objects.
@@ -71,8 +71,8 @@ def recorded_paths() -> Iterator[list[RobotPath]]:
         _recorded_paths.reset(token)
 
 
-def new_path() -> RobotPath | None:
-    """Return a new path for a robot, or None if no paths are being recorded."""
+def start_path() -> RobotPath | None:
+    """Start the path of a robot, and return it, or None if no paths are being recorded."""
     paths = _recorded_paths.get()
     if paths is None:
         return None

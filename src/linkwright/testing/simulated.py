@@ -26,7 +26,7 @@ from linkwright.sdf.worlds import World
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.simulation.server.services import Services
 from linkwright.simulation.simulation import Simulation
-from linkwright.testing.paths import RobotPath, new_path
+from linkwright.testing.paths import RobotPath, start_path
 from linkwright.testing.scenes import read_model, read_world
 from linkwright.testing.stepped import AsyncSteppedGraph
 from linkwright.testing.stepped_sync import SteppedGraph
@@ -127,7 +127,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self._server.start()
         if self._model is not None:
             self._server.spawn(self._model, self._model.name, self._pose)
-            self._robot_path = new_path()
+            self._robot_path = start_path()
         if self._description is not None:
             parameters = {"robot_description": self._description, "use_sim_time": True}
             RobotStatePublisher(self.graph, NodeOptions(parameters=parameters))
@@ -246,7 +246,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self.server.reset()
         self._remaining_ns = 0
         if self._robot_path is not None:
-            self._robot_path = new_path()
+            self._robot_path = start_path()
         self._publish_time()
         await self.settle()
 

@@ -40,7 +40,7 @@ _CLOSE_CHECK_INTERVAL = 0.05
 
 
 class DepartureMonitor(Protocol):
-    """Decides whether a remote publisher that disappeared was lost or left in an orderly way."""
+    """A judge of whether a remote publisher that disappeared was lost or left in an orderly way."""
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost publishers."""

@@ -26,7 +26,7 @@ def message(name):
     return get_message(f"geometry_msgs/msg/{name}")()
 
 
-def xyz(vector):
+def approx_xyz(vector):
     return pytest.approx((vector.x, vector.y, vector.z), abs=1e-12)
 
 
@@ -35,11 +35,11 @@ def test_points_are_rotated_and_translated_and_vectors_rotated():
     point.point.x = 1.0
     before = deepcopy(TRANSFORM)
     transformed = do_transform_point(point, TRANSFORM)
-    assert xyz(transformed.point) == (10.0, 1.0, 0.0)
+    assert approx_xyz(transformed.point) == (10.0, 1.0, 0.0)
     assert (transformed.header.frame_id, transformed.header.stamp.sec) == ("map", 3)
     vector = message("Vector3Stamped")
     vector.vector.x = 2.0
-    assert xyz(do_transform_vector3(vector, TRANSFORM).vector) == (0.0, 2.0, 0.0)
+    assert approx_xyz(do_transform_vector3(vector, TRANSFORM).vector) == (0.0, 2.0, 0.0)
     assert before == TRANSFORM
 
 
@@ -48,7 +48,7 @@ def test_poses_are_transformed():
     pose.pose.position.y = 1.0
     pose.pose.orientation.z, pose.pose.orientation.w = sin(pi / 4), cos(pi / 4)
     transformed = do_transform_pose_stamped(pose, TRANSFORM)
-    assert xyz(transformed.pose.position) == (9.0, 0.0, 0.0)
+    assert approx_xyz(transformed.pose.position) == (9.0, 0.0, 0.0)
     assert transformed.pose.orientation.z == pytest.approx(1.0)
     assert do_transform_pose(pose, TRANSFORM) == transformed
     assert do_transform_pose(pose.pose, TRANSFORM) == transformed.pose
@@ -63,7 +63,7 @@ def test_covariances_rotate_with_pose():
     assert np.diag(np.asarray(transformed.pose.covariance).reshape(6, 6)) == pytest.approx(
         [2.0, 1.0, 3.0, 5.0, 4.0, 6.0]
     )
-    assert xyz(transformed.pose.pose.position) == (10.0, 0.0, 0.0)
+    assert approx_xyz(transformed.pose.pose.position) == (10.0, 0.0, 0.0)
     assert transform_covariance(pose.pose.covariance, TRANSFORM).shape == (36,)
 
 
@@ -71,8 +71,8 @@ def test_wrenches_and_polygons_are_transformed():
     wrench = message("WrenchStamped")
     wrench.wrench.force.x, wrench.wrench.torque.y = 1.0, 1.0
     transformed = do_transform_wrench(wrench, TRANSFORM)
-    assert xyz(transformed.wrench.force) == (0.0, 1.0, 0.0)
-    assert xyz(transformed.wrench.torque) == (-1.0, 0.0, 0.0)
+    assert approx_xyz(transformed.wrench.force) == (0.0, 1.0, 0.0)
+    assert approx_xyz(transformed.wrench.torque) == (-1.0, 0.0, 0.0)
     polygon = message("PolygonStamped")
     polygon.polygon.points = [get_message("geometry_msgs/msg/Point32")(x=1.0)]
     (point,) = do_transform_polygon_stamped(polygon, TRANSFORM).polygon.points

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from linkwright.lsp.python.answers import combined, is_enough, server_of_action
+from linkwright.lsp.python.answers import combine_responses, is_enough, server_of_action
 from linkwright.lsp.python.open_texts import OpenText
 
 TEXT = OpenText("file:///a.py", 'Node(pac, "tur")\n', 1, "utf-16")
@@ -15,7 +15,7 @@ OWN, TY, RUFF = "linkwright", "ty", "ruff"
 
 def complete(*answers: tuple[str, Any], character: int = 8) -> Any:
     parameters = {"position": {"line": 0, "character": character}}
-    return combined("textDocument/completion", answers, TEXT, parameters)
+    return combine_responses("textDocument/completion", answers, TEXT, parameters)
 
 
 def edit(start: int, end: int, text: str) -> dict[str, Any]:
@@ -26,9 +26,9 @@ def edit(start: int, end: int, text: str) -> dict[str, Any]:
 @pytest.mark.parametrize("empty", [None, [], {"items": []}])
 def test_first_non_empty_answer_applies(empty: Any) -> None:
     answer = {"contents": "a node"}
-    assert combined("textDocument/hover", [(OWN, empty), (TY, answer)], TEXT, {}) == answer
-    assert combined("textDocument/hover", [(OWN, answer), (TY, {"contents": "b"})], TEXT, {}) == answer
-    assert combined("textDocument/hover", [(OWN, empty), (TY, None)], TEXT, {}) == empty
+    assert combine_responses("textDocument/hover", [(OWN, empty), (TY, answer)], TEXT, {}) == answer
+    assert combine_responses("textDocument/hover", [(OWN, answer), (TY, {"contents": "b"})], TEXT, {}) == answer
+    assert combine_responses("textDocument/hover", [(OWN, empty), (TY, None)], TEXT, {}) == empty
     assert not is_enough("textDocument/hover", empty)
     assert is_enough("textDocument/hover", answer)
 
@@ -59,7 +59,7 @@ def test_list_defaults_apply_only_to_items_of_that_list() -> None:
 def test_code_action_is_resolved_by_its_server_with_its_data() -> None:
     own, fix = {"title": "own", "data": 1}, {"title": "fix", "data": {"id": 2}}
     command = {"title": "run", "command": "ruff.applyAutofix"}
-    actions = combined(
+    actions = combine_responses(
         "textDocument/codeAction", [(OWN, [own]), (TY, [{"title": "a"}]), (RUFF, [fix, command])], TEXT, {}
     )
     assert [action["title"] for action in actions] == ["own", "a", "fix"]
@@ -68,5 +68,5 @@ def test_code_action_is_resolved_by_its_server_with_its_data() -> None:
 
 
 def test_code_actions_are_marked_without_linkwright_answer() -> None:
-    actions = combined("textDocument/codeAction", [(RUFF, [{"title": "fix"}])], TEXT, {})
+    actions = combine_responses("textDocument/codeAction", [(RUFF, [{"title": "fix"}])], TEXT, {})
     assert server_of_action(actions[0]) == (RUFF, {"title": "fix"})

@@ -19,7 +19,7 @@ latitudes, longitudes = st.floats(-80.0, 84.0), st.floats(-180.0, 179.999)
 
 
 def meridian_arc(latitude):
-    """The way along a meridian from the equator, by Simpson's rule: nothing of the projection is used."""
+    """Return the length of a meridian arc from the equator by Simpson's rule, independently of the projection."""
     squared = (2.0 - 1.0 / 298.257223563) / 298.257223563
 
     def radius(phi):
@@ -28,9 +28,9 @@ def meridian_arc(latitude):
         return 6378137.0 * (1.0 - squared) / (1.0 - squared * sin(phi) ** 2) ** 1.5
 
     steps, end = 2000, radians(latitude)
-    width = end / steps
-    inner = sum((4 if index % 2 else 2) * radius(index * width) for index in range(1, steps))
-    return width / 3.0 * (radius(0.0) + inner + radius(end))
+    step = end / steps
+    inner = sum((4 if index % 2 else 2) * radius(index * step) for index in range(1, steps))
+    return step / 3.0 * (radius(0.0) + inner + radius(end))
 
 
 @pytest.mark.parametrize("latitude", [10.0, 45.0, 79.0])
@@ -50,9 +50,9 @@ def test_southern_northing_has_false_northing():
 @given(latitudes, longitudes)
 def test_utm_conversion_round_trip(latitude, longitude):
     zone = zone_from_degrees(latitude, longitude)
-    back = degrees_from_utm(*utm_from_degrees(latitude, longitude, zone), zone)
-    assert back[0] == pytest.approx(latitude, abs=1e-9)
-    assert (back[1] - longitude + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1e-8)
+    round_trip = degrees_from_utm(*utm_from_degrees(latitude, longitude, zone), zone)
+    assert round_trip[0] == pytest.approx(latitude, abs=1e-9)
+    assert (round_trip[1] - longitude + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1e-8)
 
 
 @settings(max_examples=50)

@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
 from linkwright.navigation.costmaps.footprints import circle
-from linkwright.navigation.following.follower import ZERO_VELOCITY, Situation, predict_poses
+from linkwright.navigation.following.follower import ZERO_VELOCITY, ControlInput, predict_poses
 from linkwright.navigation.following.path import FollowedPath
 from linkwright.navigation.grids.grid import Grid
 
@@ -42,8 +42,8 @@ def line(*points, spacing=0.05):
     return np.concatenate(parts)
 
 
-def situation(path, pose=(0.0, 0.0, 0.0), velocity=ZERO_VELOCITY, costmap=None, footprint=None, xy_tolerance=0.25):
-    return Situation(
+def control_input(path, pose=(0.0, 0.0, 0.0), velocity=ZERO_VELOCITY, costmap=None, footprint=None, xy_tolerance=0.25):
+    return ControlInput(
         pose=pose,
         velocity=velocity,
         path=path,
@@ -66,8 +66,8 @@ def drive(follower, path, checker, *, pose=(0.0, 0.0, 0.0), costmap=None, cycles
         if checker.is_reached(pose, tuple(path[-1]), velocity):
             break
         followed.update_progress(pose[0], pose[1])
-        now = situation(followed.poses_ahead(3.0), pose, velocity, costmap, footprint, checker.xy_tolerance)
-        velocity = follower.velocity(now)
+        now = control_input(followed.poses_ahead(3.0), pose, velocity, costmap, footprint, checker.xy_tolerance)
+        velocity = follower.compute_velocity(now)
         pose = tuple(predict_poses(pose, np.array([velocity]), np.array([PERIOD]))[0, 0])
         poses.append(pose)
         velocities.append(velocity)

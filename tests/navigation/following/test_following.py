@@ -28,7 +28,7 @@ from linkwright.navigation.following.pure_pursuit import (
 )
 from linkwright.navigation.following.rotation_shim import RotationShim
 from linkwright.navigation.following.sampling import SamplingFollower, SamplingParameters, VelocityLimits
-from tests.navigation.following.driving import PERIOD, drive, floor, line, put_box, situation
+from tests.navigation.following.driving import PERIOD, control_input, drive, floor, line, put_box
 
 CORNER = line((0.0, 0.0), (2.0, 0.0), (2.0, 2.0))
 FOLLOWERS = [
@@ -77,31 +77,35 @@ class TestPurePursuit:
 
     def test_command_follows_arc_to_carrot(self):
         path = line((0.0, 0.1), (3.0, 0.1))
-        command = RegulatedPurePursuit().velocity(situation(path))
+        command = RegulatedPurePursuit().compute_velocity(control_input(path))
         assert command.yaw == pytest.approx(command.x * 2.0 * 0.1 / 0.6**2)
 
     def test_robot_rotates_to_heading_before_driving(self):
-        command = RegulatedPurePursuit().velocity(situation(line((0.0, 0.0), (0.0, 2.0))))
+        command = RegulatedPurePursuit().compute_velocity(control_input(line((0.0, 0.0), (0.0, 2.0))))
         assert command.x == 0.0
         assert command.yaw == pytest.approx(3.2 * PERIOD)
 
     def test_speed_is_reduced_near_goal_and_obstacles(self):
-        near = RegulatedPurePursuit().velocity(situation(line((0.0, 0.0), (0.3, 0.0))))
+        near = RegulatedPurePursuit().compute_velocity(control_input(line((0.0, 0.0), (0.3, 0.0))))
         assert near.x == pytest.approx(0.5 * 0.3 / 0.6)
         costly = floor()
         costly.grid.cells[:] = 200
-        assert 0.25 <= RegulatedPurePursuit().velocity(situation(line((0.0, 0.0), (3.0, 0.0)), costmap=costly)).x < 0.5
+        assert (
+            0.25
+            <= RegulatedPurePursuit().compute_velocity(control_input(line((0.0, 0.0), (3.0, 0.0)), costmap=costly)).x
+            < 0.5
+        )
 
     def test_robot_reverses_if_allowed(self):
         follower = RegulatedPurePursuit(PurePursuitParameters(allow_reversing=True, use_rotate_to_heading=False))
-        command = follower.velocity(situation(line((0.0, 0.0), (-2.0, 0.0))))
+        command = follower.compute_velocity(control_input(line((0.0, 0.0), (-2.0, 0.0))))
         assert command.x == -0.5
 
     def test_obstacle_ahead_is_an_error(self):
         costmap = floor()
         put_box(costmap, 0.5, 0.0, 0.2, 0.2)
         with pytest.raises(FollowingError, match="obstacle"):
-            RegulatedPurePursuit().velocity(situation(line((0.0, 0.0), (3.0, 0.0)), costmap=costmap))
+            RegulatedPurePursuit().compute_velocity(control_input(line((0.0, 0.0), (3.0, 0.0)), costmap=costmap))
 
     @given(angle=st.floats(-pi, pi), now=st.floats(-1.8, 1.8))
     def test_rotation_speed_respects_acceleration(self, angle, now):
@@ -113,11 +117,11 @@ class TestPurePursuit:
         follower = RegulatedPurePursuit()
         path = line((0.0, 0.0), (3.0, 0.0))
         follower.limit_speed(40.0, is_percentage=True)
-        assert follower.velocity(situation(path)).x == pytest.approx(0.2)
+        assert follower.compute_velocity(control_input(path)).x == pytest.approx(0.2)
         follower.limit_speed(0.3)
-        assert follower.velocity(situation(path)).x == pytest.approx(0.3)
+        assert follower.compute_velocity(control_input(path)).x == pytest.approx(0.3)
         follower.limit_speed(0.0)
-        assert follower.velocity(situation(path)).x == 0.5
+        assert follower.compute_velocity(control_input(path)).x == 0.5
 
 
 class TestSampling:
@@ -131,7 +135,9 @@ class TestSampling:
     def test_command_respects_velocity_and_acceleration_limits(self, yaw, x, turning, bend):
         follower = SamplingFollower()
         now = Velocity(x, 0.0, turning)
-        command = follower.velocity(situation(line((0.0, 0.0), (1.0, 0.0), (2.0, bend)), (0.0, 0.0, yaw), now))
+        command = follower.compute_velocity(
+            control_input(line((0.0, 0.0), (1.0, 0.0), (2.0, bend)), (0.0, 0.0, yaw), now)
+        )
         limits = follower.parameters.limits
         for before, after, least, most, faster in zip(
             now, command, limits.min_velocity, limits.max_velocity, limits.acceleration, strict=True
@@ -153,7 +159,7 @@ class TestSampling:
         costmap = floor()
         costmap.grid.cells[:] = 254
         with pytest.raises(FollowingError):
-            SamplingFollower().velocity(situation(line((0.0, 0.0), (3.0, 0.0)), costmap=costmap))
+            SamplingFollower().compute_velocity(control_input(line((0.0, 0.0), (3.0, 0.0)), costmap=costmap))
 
 
 @pytest.mark.parametrize("make", FOLLOWERS)

@@ -15,7 +15,7 @@ from linkwright.navigation.grids.distances import distance_field
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.planning.planner import PlanError, Problem, Settings, plan, run_to_end
-from linkwright.navigation.planning.potential import NEUTRAL, compute_potential, crossing_prices
+from linkwright.navigation.planning.potential import NEUTRAL_COST, compute_potential, crossing_prices
 from linkwright.navigation.planning.smoothing import Smoothing, smooth_path
 
 RESOLUTION = 0.1
@@ -95,10 +95,10 @@ def rooms(seed: int, size: int = 60) -> np.ndarray:
 
 
 def test_potential_in_open_space_is_distance():
-    least = run_to_end(compute_potential(np.full((81, 81), NEUTRAL), (40, 40)))
+    least = run_to_end(compute_potential(np.full((81, 81), NEUTRAL_COST), (40, 40)))
     rows, columns = np.ogrid[:81, :81]
-    truth = NEUTRAL * np.hypot(rows - 40, columns - 40)
-    far = truth > 20 * NEUTRAL
+    truth = NEUTRAL_COST * np.hypot(rows - 40, columns - 40)
+    far = truth > 20 * NEUTRAL_COST
     assert (least[far] >= truth[far] - 1e-6).all()
     assert (least[far] <= 1.05 * truth[far]).all()
 
@@ -109,7 +109,7 @@ def test_potential_matches_dijkstra(seed):
     least, truth = run_to_end(compute_potential(price, (2, 2))), dijkstra(price, (2, 2))
     reached = np.isfinite(least)
     assert np.array_equal(np.isfinite(truth), reached)
-    far = reached & (truth > 10 * NEUTRAL)
+    far = reached & (truth > 10 * NEUTRAL_COST)
     between_middles = least[far] - price[far] / 2.0 - price[2, 2] / 2.0
     assert (between_middles <= 1.15 * truth[far]).all()  # of first order, and worst after ten cells
     assert (least[far] >= 0.9 * truth[far]).all()  # not only in eight directions, so it may be less
@@ -119,7 +119,7 @@ def test_potential_matches_dijkstra(seed):
 @given(obstacles=st.integers(0, 10_000).map(lambda seed: np.random.default_rng(seed).random((25, 25)) < 0.35))
 def test_potential_reaches_exactly_connected_cells(obstacles):
     obstacles[12, 12] = False
-    least = run_to_end(compute_potential(np.where(obstacles, np.inf, NEUTRAL), (12, 12)))
+    least = run_to_end(compute_potential(np.where(obstacles, np.inf, NEUTRAL_COST), (12, 12)))
     groups, _ = load_scipy("ndimage").label(~obstacles)
     assert np.array_equal(np.isfinite(least), groups == groups[12, 12])
 
@@ -161,7 +161,7 @@ def test_plans_avoid_obstacles_at_near_optimal_cost(seed):
     middles = (path[1:, :2] + path[:-1, :2]) / 2.0
     cells = scene.grid.cells_of(middles)
     steps = np.hypot(*np.diff(path[:, :2], axis=0).T) / RESOLUTION
-    assert (price[cells[:, 0], cells[:, 1]] * steps).sum() <= 1.06 * truth + 2 * NEUTRAL
+    assert (price[cells[:, 0], cells[:, 1]] * steps).sum() <= 1.06 * truth + 2 * NEUTRAL_COST
 
 
 def test_plan_passes_through_maze():

@@ -17,7 +17,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.vision.datasets.dataset import make_dataset
 from linkwright.vision.datasets.labels import box_of
 from linkwright.vision.datasets.options import SPLITS, Options
-from linkwright.vision.datasets.rendering import Source, Studio, split_of
+from linkwright.vision.datasets.rendering import DatasetInput, DatasetRenderer, split_of
 from tests.vision.datasets.masks import color_mask
 from tests.vision.datasets.places import BALL, GROUND, WALL, world_text, yard
 
@@ -26,11 +26,17 @@ OPTIONS = Options(width=160, height=120, seed=3, copies=2, distractors=4)
 
 @pytest.fixture
 def source(tmp_path):
-    return Source((str(yard(tmp_path)),), (), None, OPTIONS)
+    return DatasetInput((str(yard(tmp_path)),), (), None, OPTIONS)
 
 
 def make(source, path, images, **options):
-    given = {"options": source.options, "models": source.added, "classes": source.classes, "workers": 1, **options}
+    given = {
+        "options": source.options,
+        "models": source.added_models,
+        "classes": source.classes,
+        "workers": 1,
+        **options,
+    }
     return make_dataset(source.worlds, path, images, **given)
 
 
@@ -62,17 +68,19 @@ def test_lights_option_keeps_lights_and_background(tmp_path):
     path.write_text(world_text(LIT, GROUND, BALL.format(name="ball", pose="1 0 0.2 0 0 0")))
     pixels = {}
     for properties in ((), ("lights",)):
-        source = Source(
+        source = DatasetInput(
             (str(path),),
             (),
             None,
-            replace(OPTIONS, distractors=0, form="png", fixed_properties=("colors", "lens", *properties)),
+            replace(OPTIONS, distractors=0, image_format="png", fixed_properties=("colors", "lens", *properties)),
         )
-        studio = Studio(source)
+        renderer = DatasetRenderer(source)
         try:
-            images = [np.asarray(Image.open(BytesIO(studio.make(index).data)).convert("RGB")) for index in range(4)]
+            images = [
+                np.asarray(Image.open(BytesIO(renderer.render_image(index).data)).convert("RGB")) for index in range(4)
+            ]
         finally:
-            studio.close()
+            renderer.close()
         pixels[properties] = np.concatenate(images).reshape(-1, 3).astype(int)
     lit = pixels["lights",]
     sky = (lit == [0, 255, 255]).all(axis=1)
@@ -137,14 +145,14 @@ def test_image_does_not_depend_on_previous_images(source, monkeypatch, way):
         monkeypatch.setenv("MUJOCO_GL", "disable")
     if way == "MuJoCo":
         monkeypatch.setitem(sys.modules, "embreex", None)
-    first, second = Studio(source), Studio(source)
+    first, second = DatasetRenderer(source), DatasetRenderer(source)
     try:
         if way != "OpenGL":
             assert f"ray casting with {way}," in str(first.render_method)
         for number in (0, 49, 3, 51):
-            first.make(number)
-        assert first.make(52) == second.make(52)
-        assert first.make(1) == second.make(1)
+            first.render_image(number)
+        assert first.render_image(52) == second.render_image(52)
+        assert first.render_image(1) == second.render_image(1)
     finally:
         first.close()
         second.close()
@@ -241,25 +249,25 @@ def test_world_without_objects_is_an_error(tmp_path):
     path = tmp_path / "empty.world"
     path.write_text(world_text(GROUND, WALL))
     with pytest.raises(LinkwrightError) as caught:
-        Studio(Source((str(path),), (), None, OPTIONS))
+        DatasetRenderer(DatasetInput((str(path),), (), None, OPTIONS))
     assert code_of(caught) == "VISION202"
 
 
 def test_objects_of_one_world_are_added_to_others(source, tmp_path):
     path = tmp_path / "wall.world"
     path.write_text(world_text(GROUND, WALL, BALL.format(name="green_ball", pose="0 0 0.2 0 0 0")))
-    studio = Studio(replace(source, worlds=(*source.worlds, str(path))))
+    renderer = DatasetRenderer(replace(source, worlds=(*source.worlds, str(path))))
     try:
-        assert studio.classes == ("ball", "crate", "drums")
-        labels = {label.label for index in range(1, 30, 2) for label in studio.make(index).labels}
+        assert renderer.classes == ("ball", "crate", "drums")
+        labels = {label.label for index in range(1, 30, 2) for label in renderer.render_image(index).labels}
         assert labels == {0, 1, 2}
     finally:
-        studio.close()
+        renderer.close()
 
 
 def test_added_object_without_visuals_is_an_error(source, tmp_path):
     path = tmp_path / "bare.urdf"
     path.write_text('<robot name="bare"><link name="base"/></robot>')
     with pytest.raises(LinkwrightError) as caught:
-        Studio(replace(source, added=(str(path),)))
+        DatasetRenderer(replace(source, added_models=(str(path),)))
     assert code_of(caught) == "VISION203"

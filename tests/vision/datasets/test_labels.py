@@ -9,11 +9,11 @@ from linkwright.sdf.optics import Optics
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.choice import make_renderer
 from linkwright.simulation.rendering.renderer import Channels, axes_of
-from linkwright.vision.datasets.arrangement import Shot, arrange
+from linkwright.vision.datasets.arrangement import Arrangement, arrange
 from linkwright.vision.datasets.classes import default_rules, find_objects
 from linkwright.vision.datasets.labels import box_of, label_image, run_lengths_of
 from linkwright.vision.datasets.options import Options
-from linkwright.vision.datasets.stage import Stage
+from linkwright.vision.datasets.randomized_world import RandomizedWorld
 from tests.simulation.worlds import loaded
 from tests.vision.datasets.masks import color_mask
 from tests.vision.datasets.places import SIGN, world_text, yard
@@ -22,27 +22,27 @@ OPTIONS = Options(width=320, height=240)
 
 
 @pytest.fixture
-def stage(tmp_path):
+def world(tmp_path):
     simulation = loaded(yard(tmp_path))
-    stage = Stage(simulation, find_objects(simulation, default_rules([simulation])), 2, 4)
-    stage.set_patterns(np.random.default_rng(0))
-    yield stage
-    stage.close()
+    world = RandomizedWorld(simulation, find_objects(simulation, default_rules([simulation])), 2, 4)
+    world.set_patterns(np.random.default_rng(0))
+    yield world
+    world.close()
 
 
-def shots(stage, count):
+def shots(world, count):
     for number in range(count):
-        stage.begin()
-        yield arrange(stage, OPTIONS, np.random.default_rng(number))
+        world.reset()
+        yield arrange(world, OPTIONS, np.random.default_rng(number))
 
 
-def labeled(stage, shot):
-    geoms = stage.renderer.render(shot.optics, shot.pose, Channels.GEOMS).geoms
-    return label_image(stage, shot, geoms, OPTIONS.min_size, OPTIONS.min_visible), geoms
+def labeled(world, arrangement):
+    geoms = world.renderer.render(arrangement.optics, arrangement.pose, Channels.GEOMS).geoms
+    return label_image(world, arrangement, geoms, OPTIONS.min_size, OPTIONS.min_visible), geoms
 
 
-def alone(shot, prop):
-    return Shot(shot.optics, shot.pose, (prop,), ())
+def alone(arrangement, movable):
+    return Arrangement(arrangement.optics, arrangement.pose, (movable,), ())
 
 
 def test_run_lengths_match_mask():
@@ -61,38 +61,38 @@ def test_box_of_mask_is_computed():
     assert box_of(mask) == (1, 2, 4, 5)
 
 
-def test_full_boxes_of_balls_match_projected_outlines(stage):
+def test_full_boxes_of_balls_match_projected_outlines(world):
     """The outline of a ball is the cone of rays that touch it: its ends are known to the last digit."""
     compared = 0
-    for shot in shots(stage, 12):
-        labels, _ = labeled(stage, shot)
+    for arrangement in shots(world, 12):
+        labels, _ = labeled(world, arrangement)
         label_by_box = {label.full_box: label for label in labels}
-        axes = axes_of(shot.pose)
-        for prop in (placed_prop for placed_prop in shot.placed_props if placed_prop.label == 0):
-            center = (stage.simulation.data.geom_xpos[prop.geoms[0]] - np.array(shot.pose[:3])) @ axes
+        axes = axes_of(arrangement.pose)
+        for movable in (placed_object for placed_object in arrangement.placed_objects if placed_object.label == 0):
+            center = (world.simulation.data.geom_xpos[movable.geoms[0]] - np.array(arrangement.pose[:3])) @ axes
             if center[2] < 0.5:
                 continue
             ends = [outline(center[axis], center[2], 0.2) for axis in (0, 1)]
             expected = np.array(
                 [
-                    shot.optics.cx + shot.optics.fx * ends[0][0],
-                    shot.optics.cy + shot.optics.fy * ends[1][0],
-                    shot.optics.cx + shot.optics.fx * ends[0][1],
-                    shot.optics.cy + shot.optics.fy * ends[1][1],
+                    arrangement.optics.cx + arrangement.optics.fx * ends[0][0],
+                    arrangement.optics.cy + arrangement.optics.fy * ends[1][0],
+                    arrangement.optics.cx + arrangement.optics.fx * ends[0][1],
+                    arrangement.optics.cy + arrangement.optics.fy * ends[1][1],
                 ]
             )
             if not ((expected > -100) & (expected < 340)).all():
                 continue
             near = [box for box in label_by_box if np.abs(np.array(box) - expected).max() <= 2.0]
             hidden = not any(label.label == 0 for label in labels)
-            assert near or hidden or is_covered(stage, shot, prop)
+            assert near or hidden or is_covered(world, arrangement, movable)
             compared += bool(near)
     assert compared >= 5
 
 
-def is_covered(stage, shot, prop):
-    geoms = stage.renderer.render(shot.optics, shot.pose, Channels.GEOMS).geoms
-    return not np.isin(geoms, prop.geoms).any()
+def is_covered(world, arrangement, movable):
+    geoms = world.renderer.render(arrangement.optics, arrangement.pose, Channels.GEOMS).geoms
+    return not np.isin(geoms, movable.geoms).any()
 
 
 def outline(across, ahead, radius):
@@ -102,13 +102,13 @@ def outline(across, ahead, radius):
     return np.tan(middle - half), np.tan(middle + half)
 
 
-def test_labels_match_mujoco_renderer(stage):
-    other = make_renderer(stage.simulation, "mujoco")
+def test_labels_match_mujoco_renderer(world):
+    other = make_renderer(world.simulation, "mujoco")
     compared = 0
-    for shot in shots(stage, 8):
-        labels, _ = labeled(stage, shot)
-        geoms = other.render(shot.optics, shot.pose, Channels.GEOMS).geoms
-        boxes = [box_of(np.isin(geoms, prop.geoms)) for prop in shot.placed_props]
+    for arrangement in shots(world, 8):
+        labels, _ = labeled(world, arrangement)
+        geoms = other.render(arrangement.optics, arrangement.pose, Channels.GEOMS).geoms
+        boxes = [box_of(np.isin(geoms, movable.geoms)) for movable in arrangement.placed_objects]
         for label in labels:
             if min(label.box[2] - label.box[0], label.box[3] - label.box[1]) >= 4:
                 assert min(np.abs(np.array(box) - label.box).max() for box in boxes if box is not None) <= 1
@@ -116,9 +116,9 @@ def test_labels_match_mujoco_renderer(stage):
     assert compared >= 10
 
 
-def test_visible_box_and_full_box_are_consistent(stage):
-    for shot in shots(stage, 8):
-        labels, geoms = labeled(stage, shot)
+def test_visible_box_and_full_box_are_consistent(world):
+    for arrangement in shots(world, 8):
+        labels, geoms = labeled(world, arrangement)
         for label in labels:
             left, top, right, bottom = label.box
             assert color_mask(label.run_lengths, *geoms.shape).sum() == label.area
@@ -137,26 +137,26 @@ def test_visible_box_and_full_box_are_consistent(stage):
             assert label.is_truncated != inside
 
 
-def test_unoccluded_objects_are_fully_visible(stage):
-    for shot in shots(stage, 4):
-        for prop in shot.placed_props:
-            for geoms in stage.structures.values():
-                stage.hide(geoms)
-            stage.hide(stage.distractors)
-            for other in shot.placed_props:
-                if other is not prop:
-                    stage.hide(other.geoms)
-            labels, _ = labeled(stage, alone(shot, prop))
+def test_unoccluded_objects_are_fully_visible(world):
+    for arrangement in shots(world, 4):
+        for movable in arrangement.placed_objects:
+            for geoms in world.structures.values():
+                world.hide(geoms)
+            world.hide(world.distractors)
+            for other in arrangement.placed_objects:
+                if other is not movable:
+                    world.hide(other.geoms)
+            labels, _ = labeled(world, alone(arrangement, movable))
             assert all(label.visibility > 0.97 or label.is_truncated for label in labels)
             break
 
 
-def test_placed_objects_do_not_overlap(stage):
-    for shot in shots(stage, 12):
+def test_placed_objects_do_not_overlap(world):
+    for arrangement in shots(world, 12):
         places = [
-            (stage.simulation.data.geom_xpos[prop.geoms, :2].mean(axis=0), prop.radius)
-            for prop in shot.placed_props
-            if prop.label == 0
+            (world.simulation.data.geom_xpos[movable.geoms, :2].mean(axis=0), movable.radius)
+            for movable in arrangement.placed_objects
+            if movable.label == 0
         ]
         for number, (place, _) in enumerate(places):
             for other, _ in places[:number]:
@@ -168,41 +168,41 @@ def test_sign_is_ignored_unless_its_plate_is_visible(tmp_path, height, focal, ig
     path = tmp_path / "signs.world"
     path.write_text(world_text(SIGN))
     simulation = loaded(path)
-    stage = Stage(simulation, find_objects(simulation, default_rules([simulation])), 1, 0)
+    world = RandomizedWorld(simulation, find_objects(simulation, default_rules([simulation])), 1, 0)
     try:
-        stage.set_patterns(np.random.default_rng(0))
-        stage.place_prop(stage.props[0], np.zeros(3), np.eye(3))
+        world.set_patterns(np.random.default_rng(0))
+        world.place_object(world.movable_objects[0], np.zeros(3), np.eye(3))
         optics = Optics(320, 240, focal, focal, 160, 120, 0.03, 30.0)
-        shot = Shot(optics, (-2.0, 0.0, height, 0.0, 0.0, 0.0, 1.0), (stage.props[0],), ())
-        geoms = stage.renderer.render(shot.optics, shot.pose, Channels.GEOMS).geoms
-        (label,) = label_image(stage, shot, geoms, 12, 0.3)
+        arrangement = Arrangement(optics, (-2.0, 0.0, height, 0.0, 0.0, 0.0, 1.0), (world.movable_objects[0],), ())
+        geoms = world.renderer.render(arrangement.optics, arrangement.pose, Channels.GEOMS).geoms
+        (label,) = label_image(world, arrangement, geoms, 12, 0.3)
     finally:
-        stage.close()
+        world.close()
     assert label.visibility >= 0.3  # of the whole sign; without its plate it is a pole
     assert label.is_ignored == ignored
 
 
-def test_distractors_do_not_resemble_balls_and_drums(stage):
-    model, kinds = stage.simulation.model, load_mujoco().mjtGeom
+def test_distractors_do_not_resemble_balls_and_drums(world):
+    model, kinds = world.simulation.model, load_mujoco().mjtGeom
     for number in range(20):
-        for geom in stage.distractors:
-            stage.shape_distractor(geom, np.random.default_rng(number))
+        for geom in world.distractors:
+            world.shape_distractor(geom, np.random.default_rng(number))
             half = model.geom_aabb[geom, 3:]
             assert half.max() >= 2.4 * half.min()
             if model.geom_type[geom] == kinds.mjGEOM_CAPSULE:
                 assert model.geom_size[geom, 1] >= 1.5 * model.geom_size[geom, 0]
 
 
-def test_few_objects_are_placed_behind_walls(stage):
+def test_few_objects_are_placed_behind_walls(world):
     """The wall of the yard is 6 m long, 3 m ahead of its middle."""
     behind = objects = 0
-    for shot in shots(stage, 40):
-        for prop in shot.placed_props:
-            there = stage.simulation.data.geom_xpos[prop.geoms, :2].mean(axis=0)
-            here = np.array(shot.pose[:2])
+    for arrangement in shots(world, 40):
+        for movable in arrangement.placed_objects:
+            there = world.simulation.data.geom_xpos[movable.geoms, :2].mean(axis=0)
+            here = np.array(arrangement.pose[:2])
             objects += 1
             if min(here[1], there[1]) < 2.95 and max(here[1], there[1]) > 3.05:
                 crossing = here[0] + (there[0] - here[0]) * (3.0 - here[1]) / (there[1] - here[1])
-                behind += bool(shot.structures) and abs(crossing) < 3.0
+                behind += bool(arrangement.structures) and abs(crossing) < 3.0
     assert objects > 50
     assert behind < 0.2 * objects

@@ -6,7 +6,7 @@ import pytest
 
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
-from linkwright.wire.zenoh.departures import GRACE, Departures
+from linkwright.wire.zenoh.departures import GRACE, ZenohDepartureMonitor
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.tokens import Token
 
@@ -34,7 +34,7 @@ class Scene:
         self.time = 0.0
         self.lost: list[EndpointInfo] = []
         self.remote = RemoteGraph()
-        self.departures = Departures(self.remote, lambda: self.time)
+        self.departures = ZenohDepartureMonitor(self.remote, lambda: self.time)
         self.departures.watch(self.lost.append)
         self.remote.add(PUBLISHER.key, PUBLISHER)
 

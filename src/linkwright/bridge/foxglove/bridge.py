@@ -16,7 +16,7 @@ from linkwright.bridge.foxglove.origins import is_allowed_origin
 from linkwright.bridge.foxglove.parameters import Parameters, parameter_entry
 from linkwright.bridge.foxglove.protocol import ENCODING, SUBPROTOCOLS, time_frame
 from linkwright.bridge.foxglove.services import Services
-from linkwright.bridge.foxglove.session import Offer, Session
+from linkwright.bridge.foxglove.session import Session, SharedResources
 from linkwright.bridge.foxglove.topics import Channels
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import DESCRIPTION_QOS, Graph
@@ -55,7 +55,7 @@ class FoxgloveBridge(SingleNode):
             self._origins: Sequence[str] = list(declare("allowed_origins", [""]).value)
             self._max_queue_bytes = int(declare("send_buffer_limit", 10_000_000).value)
             self._listener = _listen(address, port)
-        self._offer = Offer(
+        self._resources = SharedResources(
             node=self._node,
             channels=Channels(self._node, filters["topic_whitelist"]),
             services=Services(self._node, filters["service_whitelist"]),
@@ -86,7 +86,7 @@ class FoxgloveBridge(SingleNode):
             self._update_timer.cancel()
         for session in list(self._sessions):
             session.close()
-        self._offer.parameters.close()
+        self._resources.parameters.close()
         self._server_task.cancel()
         (self._server or self._listener).close()  # not in a callback, which may not run before the loop ends
         if self._runner is not None:
@@ -102,7 +102,7 @@ class FoxgloveBridge(SingleNode):
         node.create_subscription(
             String,
             "/robot_description",
-            lambda message: self._offer.assets.allow_packages_in(message.data),
+            lambda message: self._resources.assets.allow_packages_in(message.data),
             DESCRIPTION_QOS,
         )
         node.create_subscription(
@@ -111,8 +111,8 @@ class FoxgloveBridge(SingleNode):
         if node.get_parameter("use_sim_time").value:
             self._capabilities.append("time")
             node.create_subscription("rosgraph_msgs/msg/Clock", "/clock", self._on_clock, 10)
-        self._offer.channels.poll_changes()
-        self._offer.services.poll_changes()
+        self._resources.channels.poll_changes()
+        self._resources.services.poll_changes()
 
     def _on_graph_change(self) -> None:
         with suppress(RuntimeError):  # the event loop was closed
@@ -124,8 +124,8 @@ class FoxgloveBridge(SingleNode):
 
     def _send_updates(self) -> None:
         self._update_timer = None
-        channels, removed_channels = self._offer.channels.poll_changes()
-        services, removed_services = self._offer.services.poll_changes()
+        channels, removed_channels = self._resources.channels.poll_changes()
+        services, removed_services = self._resources.services.poll_changes()
         messages: list[dict[str, Any]] = []
         if removed_channels:
             messages.append({"op": "unadvertise", "channelIds": removed_channels})
@@ -138,12 +138,12 @@ class FoxgloveBridge(SingleNode):
         for session in self._sessions:
             for message in messages:
                 session.client.send(message)
-            session.graph_changed(removed_channels)
+            session.on_graph_changed(removed_channels)
 
     def _on_parameter_event(self, event: Any) -> None:
         from linkwright.graph.parameters.files import plain_value
 
-        watching = [session for session in self._sessions if session.parameters is not None]
+        watching = [session for session in self._sessions if session.parameters]
         if not watching:
             return
         entries = [
@@ -151,9 +151,7 @@ class FoxgloveBridge(SingleNode):
             for new_parameter in (*event.new_parameters, *event.changed_parameters)
         ]
         for session in watching:
-            client_entries = [
-                parameter for parameter in entries if not session.parameters or parameter["name"] in session.parameters
-            ]
+            client_entries = [parameter for parameter in entries if parameter["name"] in session.parameters]
             if client_entries:
                 session.client.send({"op": "parameterValues", "parameters": client_entries})
 
@@ -195,7 +193,7 @@ class FoxgloveBridge(SingleNode):
             await websocket.close(code=1002, message=b"the client supports none of the subprotocols")
             return websocket
         client = Client(websocket, self._max_queue_bytes)
-        session = Session(self._offer, client)
+        session = Session(self._resources, client)
         self._greet(client)
         self._sessions[session] = None
         writer = asyncio.get_running_loop().create_task(client.write())
@@ -222,12 +220,12 @@ class FoxgloveBridge(SingleNode):
             }
         )
         client.send(
-            {"op": "advertise", "channels": [channel.advertisement() for channel in self._offer.channels.all()]}
+            {"op": "advertise", "channels": [channel.advertisement() for channel in self._resources.channels.all()]}
         )
         client.send(
             {
                 "op": "advertiseServices",
-                "services": [offered_service.advertisement() for offered_service in self._offer.services.all()],
+                "services": [offered_service.advertisement() for offered_service in self._resources.services.all()],
             }
         )
 

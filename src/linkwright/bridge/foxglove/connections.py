@@ -12,7 +12,7 @@ Connections = tuple[Names, Names, Names]
 """Publishers and subscribers by topic, and providers by service: full names of nodes."""
 
 
-def connections(node: Node) -> Connections:
+def find_connections(node: Node) -> Connections:
     """Return the current connection graph of a node's graph."""
     kinds = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION, EndpointKind.SERVICE)
     nodes_by_kind: dict[EndpointKind, dict[str, set[str]]] = {kind: {} for kind in kinds}
@@ -25,7 +25,7 @@ def connections(node: Node) -> Connections:
     return published, subscribed, served
 
 
-def update(previous: Connections | None, current: Connections) -> dict[str, Any]:
+def connection_update(previous: Connections | None, current: Connections) -> dict[str, Any]:
     """Return the message with the changes to the connection graph.
 
     `previous` is None for a client that has no connection graph yet; the message then contains the entire graph.

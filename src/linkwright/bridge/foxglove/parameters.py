@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from linkwright.bridge.foxglove.names import NameFilter
@@ -110,6 +110,40 @@ class Parameters:
             return future.result()
         except asyncio.TimeoutError:
             return None
+
+
+class ParameterSubscription:
+    """A client's subscription to changes of parameters.
+
+    A request without names applies to all parameters. A later request with names applies to these alone.
+    """
+
+    def __init__(self) -> None:
+        self._includes_others = False
+        self._names: set[str] = set()
+
+    def __bool__(self) -> bool:
+        """Whether changes of any parameter are sent."""
+        return self._includes_others or bool(self._names)
+
+    def __contains__(self, name: str) -> bool:
+        return (name in self._names) != self._includes_others
+
+    def add(self, names: Iterable[str]) -> None:
+        """Subscribe to parameters with these names, or to all parameters if there are no names."""
+        self._change(set(names), subscribes=True)
+
+    def remove(self, names: Iterable[str]) -> None:
+        """Unsubscribe from parameters with these names, or from all parameters if there are no names."""
+        self._change(set(names), subscribes=False)
+
+    def _change(self, names: set[str], *, subscribes: bool) -> None:
+        if not names:
+            self._includes_others, self._names = subscribes, set()
+        elif subscribes == self._includes_others:
+            self._names -= names
+        else:
+            self._names |= names
 
 
 def parameter_entry(name: str, value: Any) -> dict[str, Any]:

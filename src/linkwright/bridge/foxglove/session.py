@@ -10,9 +10,9 @@ from typing import Any
 
 from linkwright.bridge.foxglove.assets import AssetRefusedError, Assets
 from linkwright.bridge.foxglove.clients import Client
-from linkwright.bridge.foxglove.connections import Connections, connections, update
+from linkwright.bridge.foxglove.connections import Connections, connection_update, find_connections
 from linkwright.bridge.foxglove.names import NameFilter
-from linkwright.bridge.foxglove.parameters import Parameters
+from linkwright.bridge.foxglove.parameters import Parameters, ParameterSubscription
 from linkwright.bridge.foxglove.protocol import (
     BadFrameError,
     ClientMessage,
@@ -36,7 +36,7 @@ _MAX_CHANNELS = 1000
 
 
 @dataclass(slots=True)
-class Offer:
+class SharedResources:
     """The channels, services, parameters and assets that sessions share."""
 
     node: Node
@@ -53,14 +53,13 @@ class Session:
 
     Attributes:
         watches_connections: whether the client is notified of changes to the connection graph.
-        parameters: the names of the parameters whose changes are sent to the client; empty for all parameters, None for
-            none.
+        parameters: the parameters whose changes are sent to the client.
     """
 
-    offer: Offer
+    resources: SharedResources
     client: Client
     watches_connections: bool = False
-    parameters: set[str] | None = None
+    parameters: ParameterSubscription = field(default_factory=ParameterSubscription)
     _sent_connections: Connections | None = None
     _forwardings: dict[int, Forwarding] = field(default_factory=dict)
     _publications: dict[int, Publication] = field(default_factory=dict)
@@ -73,9 +72,9 @@ class Session:
         """
         try:
             if isinstance(message, bytes):
-                self._frame(read_frame(message))
+                self._handle_frame(read_frame(message))
             else:
-                self._operation(json.loads(message))
+                self._handle_operation(json.loads(message))
         except LinkwrightError as error:
             self._send_status(error.diagnostics[0].message)
         except BadFrameError as error:
@@ -83,19 +82,19 @@ class Session:
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             self._send_status(f"the message does not follow the protocol: {type(error).__name__}: {str(error)[:200]}")
 
-    def graph_changed(self, removed_channels: list[int]) -> None:
+    def on_graph_changed(self, removed_channels: list[int]) -> None:
         """Remove subscriptions to channels that no longer exist, and update the connection graph."""
-        for number, forwarding in list(self._forwardings.items()):
+        for subscription_id, forwarding in list(self._forwardings.items()):
             if forwarding.channel.number in removed_channels:
-                self._forwardings.pop(number).close()
+                self._forwardings.pop(subscription_id).close()
         self.send_connections()
 
     def send_connections(self) -> None:
         """Send the latest changes to the connection graph, if the client subscribed to it."""
         if self.watches_connections:
-            current = connections(self.offer.node)
+            current = find_connections(self.resources.node)
             if current != self._sent_connections:
-                self.client.send(update(self._sent_connections, current))
+                self.client.send(connection_update(self._sent_connections, current))
                 self._sent_connections = current
 
     def close(self) -> None:
@@ -111,7 +110,7 @@ class Session:
 
     # --- messages ----------------------------------------------------------------------------------------------
 
-    def _frame(self, frame: ClientMessage | ServiceRequest) -> None:
+    def _handle_frame(self, frame: ClientMessage | ServiceRequest) -> None:
         if isinstance(frame, ServiceRequest):
             self._run(self._call(frame))
         elif frame.channel in self._publications:
@@ -119,32 +118,30 @@ class Session:
         else:
             self._send_status(f"channel {frame.channel} was not advertised")
 
-    def _operation(self, request: dict[str, Any]) -> None:
+    def _handle_operation(self, request: dict[str, Any]) -> None:
         match request["op"]:
             case "subscribe":
                 for subscription in request["subscriptions"]:
                     self._subscribe(int(subscription["id"]), int(subscription["channelId"]))
             case "unsubscribe":
-                for number in request["subscriptionIds"]:
-                    if number in self._forwardings:
-                        self._forwardings.pop(number).close()
+                for subscription_id in request["subscriptionIds"]:
+                    if subscription_id in self._forwardings:
+                        self._forwardings.pop(subscription_id).close()
             case "advertise":
                 for channel in request["channels"]:
                     self._advertise(int(channel["id"]), channel)
             case "unadvertise":
-                for number in request["channelIds"]:
-                    if number in self._publications:
-                        self._publications.pop(number).close()
+                for channel_id in request["channelIds"]:
+                    if channel_id in self._publications:
+                        self._publications.pop(channel_id).close()
             case "getParameters":
                 self._run(self._send_parameters([str(name) for name in request["parameterNames"]], request.get("id")))
             case "setParameters":
                 self._run(self._set_parameters(list(request["parameters"]), request.get("id")))
             case "subscribeParameterUpdates":
-                names = {str(name) for name in request["parameterNames"]}
-                self.parameters = (self.parameters or set()) | names if names else set()
+                self.parameters.add(map(str, request["parameterNames"]))
             case "unsubscribeParameterUpdates":
-                remaining_names = (self.parameters or set()) - {str(name) for name in request["parameterNames"]}
-                self.parameters = remaining_names if request["parameterNames"] and remaining_names else None
+                self.parameters.remove(map(str, request["parameterNames"]))
             case "subscribeConnectionGraph":
                 self.watches_connections, self._sent_connections = True, None
                 self.send_connections()
@@ -155,25 +152,27 @@ class Session:
             case operation:
                 self._send_status(f"unknown operation '{str(operation)[:40]}'")
 
-    def _subscribe(self, number: int, channel_number: int) -> None:
-        channel = self.offer.channels.get(channel_number)
+    def _subscribe(self, subscription_id: int, channel_id: int) -> None:
+        channel = self.resources.channels.get(channel_id)
         if channel is None:
-            self._send_status(f"there is no channel {channel_number}")
-        elif number in self._forwardings:
-            self._send_status(f"subscription {number} already exists")
+            self._send_status(f"there is no channel {channel_id}")
+        elif subscription_id in self._forwardings:
+            self._send_status(f"subscription {subscription_id} already exists")
         elif any(forwarding.channel is channel for forwarding in self._forwardings.values()):
             self._send_status(f"the client is already subscribed to '{channel.topic}'", StatusLevel.WARNING)
         else:
-            self._forwardings[number] = Forwarding(self.offer.node, channel, self.client, number)
+            self._forwardings[subscription_id] = Forwarding(self.resources.node, channel, self.client, subscription_id)
 
-    def _advertise(self, number: int, channel: dict[str, Any]) -> None:
+    def _advertise(self, channel_id: int, channel: dict[str, Any]) -> None:
         topic = str(channel["topic"])
-        if number in self._publications or len(self._publications) >= _MAX_CHANNELS:
-            self._send_status(f"channel {number} cannot be advertised: it already is, or there are too many channels")
-        elif not self.offer.publishable.accepts(self.offer.node.resolve_topic_name(topic)):
+        if channel_id in self._publications or len(self._publications) >= _MAX_CHANNELS:
+            self._send_status(
+                f"channel {channel_id} cannot be advertised: it already is, or there are too many channels"
+            )
+        elif not self.resources.publishable.accepts(self.resources.node.resolve_topic_name(topic)):
             self._send_status(f"clients may not publish on '{topic}'")
         else:
-            self._publications[number] = Publication(self.offer.node, channel)
+            self._publications[channel_id] = Publication(self.resources.node, channel)
 
     # --- requests ----------------------------------------------------------------------------------------------
 
@@ -188,7 +187,7 @@ class Session:
 
     async def _call(self, request: ServiceRequest) -> None:
         try:
-            response = await self.offer.services.call(request)
+            response = await self.resources.services.call(request)
         except CallFailedError as error:
             failure = {"serviceId": request.service, "callId": request.call, "message": str(error)}
             self.client.send({"op": "serviceCallFailure", **failure})
@@ -196,7 +195,7 @@ class Session:
         self.client.send(service_response(request.service, request.call, response))
 
     async def _send_parameters(self, names: list[str], identity: str | None) -> None:
-        values = await self.offer.parameters.get(names)
+        values = await self.resources.parameters.get(names)
         message: dict[str, Any] = {"op": "parameterValues", "parameters": values}
         if identity is not None:
             message["id"] = identity
@@ -204,7 +203,7 @@ class Session:
 
     async def _set_parameters(self, parameters: list[dict[str, Any]], identity: str | None) -> None:
         try:
-            await self.offer.parameters.set(parameters)
+            await self.resources.parameters.set(parameters)
         except (ValueError, TypeError, AttributeError, LinkwrightError) as error:
             self._send_status(f"a parameter was not set: {str(error)[:200]}")
         if identity is not None:
@@ -212,7 +211,7 @@ class Session:
 
     async def _fetch(self, uri: str, request: int) -> None:
         try:
-            data = await asyncio.to_thread(self.offer.assets.read, uri)
+            data = await asyncio.to_thread(self.resources.assets.read, uri)
         except AssetRefusedError as error:
             self.client.send(asset_error(request, str(error)))
             return

@@ -183,7 +183,7 @@ def run_record(arguments: argparse.Namespace) -> int:
                 without_publishers=arguments.include_unpublished_topics,
                 without_subscriptions=not arguments.ignore_leaf_topics,
                 paused=arguments.start_paused,
-                wrap_callback=session.guarded,
+                wrap_callback=session.guard,
             )
             RecorderServices(session.node, recorder, writer, snapshots=arguments.snapshot_mode)
             keys = {} if arguments.disable_keyboard_controls else {SPACE: recorder.toggle_paused}
@@ -191,7 +191,7 @@ def run_record(arguments: argparse.Namespace) -> int:
                 with reading_keys(keys) as keyboard_active:
                     if keyboard_active and keys:
                         session.node.get_logger().info("Press SPACE for pausing/resuming")
-                    return await session.finished() or 0
+                    return await session.wait_until_finished() or 0
             finally:
                 recorder.close()
 

@@ -80,7 +80,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
                 session.finish()
 
         events = SubscriptionEventCallbacks(
-            message_lost=None if arguments.no_lost_messages else session.guarded(lambda event: write(lost_text(event)))
+            message_lost=None if arguments.no_lost_messages else session.guard(lambda event: write(lost_text(event)))
         )
         session.node.create_subscription(
             message_type,
@@ -90,7 +90,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
             raw=arguments.raw,
             event_callbacks=events,
         )
-        return await session.finished(arguments.timeout) or 0
+        return await session.wait_until_finished(arguments.timeout) or 0
 
     return run_in_graph(arguments, job)
 

@@ -212,4 +212,4 @@ async def _report_until_finished(session: Session, text: Callable[[], str | None
             print(line)
 
     session.every(_REPORT_PERIOD, report)
-    return await session.finished() or 0
+    return await session.wait_until_finished() or 0

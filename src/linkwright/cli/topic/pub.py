@@ -152,6 +152,6 @@ async def _publish(
 
     publish()
     if count != times:
-        timer = session.node.create_timer(1.0 / arguments.rate, session.guarded(publish))
-        await session.finished()
+        timer = session.node.create_timer(1.0 / arguments.rate, session.guard(publish))
+        await session.wait_until_finished()
         session.node.destroy_timer(timer)

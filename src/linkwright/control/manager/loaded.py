@@ -21,7 +21,7 @@ class LoadedController:
         controller: the controller.
         fallbacks: the names of the controllers that are activated if this controller fails.
         period_ns: the time between two updates; 0 to update in each cycle of the manager.
-        next_ns: the time of the next update.
+        next_update_ns: the time of the next update.
         last_commands: the last finite values of its commands.
         timing: the timer of its updates; None while no statistics are requested.
     """
@@ -31,7 +31,7 @@ class LoadedController:
     controller: Controller[Any]
     fallbacks: tuple[str, ...] = ()
     period_ns: int = 0
-    next_ns: int = 0
+    next_update_ns: int = 0
     last_commands: list[float] = field(default_factory=list)
     timing: Timing | None = None
 
@@ -55,21 +55,21 @@ class LoadedController:
         """Whether other controllers can command this controller, or read its exported states."""
         return bool(self.controller.references or self.controller.exported)
 
-    def claimed_commands(self, all_names: list[str]) -> list[str]:
+    def claimed_command_interfaces(self, available_names: list[str]) -> list[str]:
         """Return the names of the command interfaces that the controller claims.
 
-        If the controller claims all interfaces, these are `all_names`.
+        If the controller claims all interfaces, these are `available_names`.
         """
         claims = self.controller.command_interfaces()
-        return [*all_names] if isinstance(claims, Interfaces) else [*claims]
+        return [*available_names] if isinstance(claims, Interfaces) else [*claims]
 
-    def required_states(self, all_names: list[str]) -> list[str]:
+    def required_state_interfaces(self, available_names: list[str]) -> list[str]:
         """Return the names of the state interfaces that the controller reads.
 
-        If the controller reads all interfaces, these are `all_names`.
+        If the controller reads all interfaces, these are `available_names`.
         """
         requirements = self.controller.state_interfaces()
-        return [*all_names] if isinstance(requirements, Interfaces) else [*requirements]
+        return [*available_names] if isinstance(requirements, Interfaces) else [*requirements]
 
     def replace_invalid_commands(self) -> str:
         """Replace commands that are not finite.

@@ -67,7 +67,7 @@ class ControllerManager:
         node: Node,
         exchange: Exchange,
         resources: Resources,
-        process: ProcessArguments | None = None,
+        process_arguments: ProcessArguments | None = None,
         *,
         update_rate: float = 100.0,
     ) -> None:
@@ -79,7 +79,7 @@ class ControllerManager:
         self.limits: CommandLimits | None = None
         self.on_change: Callable[[], object] = lambda: None
         self._exchange = exchange
-        self._process = process or ProcessArguments()
+        self._process_arguments = process_arguments or ProcessArguments()
         self._logger = node.get_logger()
         self._active: list[LoadedController] = []
 
@@ -94,33 +94,33 @@ class ControllerManager:
         if name in self.controllers:
             logger.error(f"A controller named '{name}' was already loaded inside the controller manager")
             return False
-        kind = next(iter(string_list(self.node, f"{name}.type")), "")
-        if not kind:
+        type_name = next(iter(string_list(self.node, f"{name}.type")), "")
+        if not type_name:
             logger.error(f"The 'type' param was not defined for '{name}'.")
             return False
         logger.info(f"Loading controller '{name}'")
         try:
-            controller_type = controller_class(str(kind))
+            controller_type = controller_class(str(type_name))
         except LinkwrightError as error:
-            logger.error(f"Loader for controller '{name}' (type '{kind}') not found.")  # noqa: TRY400 - `_log_error` says why
+            logger.error(f"Loader for controller '{name}' (type '{type_name}') not found.")  # noqa: TRY400 - `_log_error` says why
             self._log_error(error)
             logger.info("Available classes:")
-            for kind in controller_types():
-                logger.info(f"  {kind}")
+            for available_type in controller_types():
+                logger.info(f"  {available_type}")
             return False
         controller = self._create_controller(controller_type, name)
         if controller is None:
             logger.error(f"Could not initialize the controller named '{name}'")
             return False
         fallbacks = tuple(string_list(self.node, f"{name}.fallback_controllers"))
-        self.controllers[name] = LoadedController(name, str(kind), controller, fallbacks)
+        self.controllers[name] = LoadedController(name, str(type_name), controller, fallbacks)
         self.on_change()
         return True
 
     def _create_controller(self, controller_type: type[Controller[Any]], name: str) -> Controller[Any] | None:
         node = None
         try:
-            node = controller_node(self.node, name, self._process)
+            node = controller_node(self.node, name, self._process_arguments)
             rate = node.declare_parameter("update_rate", int(self.update_rate)).value
             if not is_before_iron() and node.declare_parameter("is_async", False).value:
                 node.get_logger().info(
@@ -131,7 +131,7 @@ class ControllerManager:
         except LinkwrightError as error:
             self._log_error(error)
         except Exception as error:  # noqa: BLE001 - an error of a controller must not stop other controllers
-            self._logger.error(_with_traceback("Exception thrown during init stage with message", error))  # noqa: TRY400 - `_with_traceback` has its place
+            self._logger.error(_with_traceback("Exception thrown during init stage with message", error))  # noqa: TRY400 - `_with_traceback` contains the traceback
         if node is not None:
             node.destroy_node()
         return None
@@ -289,12 +289,14 @@ class ControllerManager:
             references = set(self.resources.reference_names(loaded.name))
             read_controllers: set[str] = set()
             if loaded.is_configured:
-                read_controllers = _component_names(loaded.required_states([])) - _component_names(
-                    loaded.claimed_commands([])
+                read_controllers = _component_names(loaded.required_state_interfaces([])) - _component_names(
+                    loaded.claimed_command_interfaces([])
                 )
             for other in self.controllers.values():
                 if other.name in read_controllers or (
-                    references and other.is_configured and references.intersection(other.claimed_commands(names))
+                    references
+                    and other.is_configured
+                    and references.intersection(other.claimed_command_interfaces(names))
                 ):
                     add(other, (*path, loaded.name))
             order[loaded.name] = loaded
@@ -345,7 +347,11 @@ class ControllerManager:
 
     def _interfaces(self, names: Sequence[str]) -> list[str]:
         all_names = self.resources.command_names
-        return [command_name for name in names for command_name in self.controllers[name].claimed_commands(all_names)]
+        return [
+            command_name
+            for name in names
+            for command_name in self.controllers[name].claimed_command_interfaces(all_names)
+        ]
 
     def _perform_switch(self, switch: Switch, start: list[str], stop: list[str]) -> list[str]:
         self.resources.perform_switch(start, stop)
@@ -365,7 +371,7 @@ class ControllerManager:
     def _activate(self, loaded: LoadedController) -> str:
         """Activate a controller, and return an error message, or an empty string if that succeeded."""
         controller, resources, name = loaded.controller, self.resources, loaded.name
-        claims = loaded.claimed_commands(
+        claims = loaded.claimed_command_interfaces(
             [command_name for command_name in resources.command_names if resources.is_available(command_name)]
         )
         failure = next(
@@ -387,7 +393,7 @@ class ControllerManager:
             controller.commands, controller.states = [], []
             return failure
         resources.claims.update(dict.fromkeys(claims, name))
-        loaded.next_ns, loaded.last_commands = 0, [nan] * len(controller.commands)
+        loaded.next_update_ns, loaded.last_commands = 0, [nan] * len(controller.commands)
         if not self._call_callback(loaded, "on_activate", controller.on_activate):
             label = controller.state.label
             failure = f"After activation, controller '{name}' is in state '{label}' (2), expected 'active' (3)."
@@ -425,7 +431,7 @@ class ControllerManager:
             logger.error(error.diagnostics[0].message)  # noqa: TRY400 - the message is for users
             return False
         except Exception as error:  # noqa: BLE001 - an error of a controller must not stop other controllers
-            logger.error(_with_traceback(f"Caught exception in callback for {callback_name}", error))  # noqa: TRY400 - `_with_traceback` has its place
+            logger.error(_with_traceback(f"Caught exception in callback for {callback_name}", error))  # noqa: TRY400 - `_with_traceback` contains the traceback
             self._on_error(loaded)
             return False
         return True
@@ -465,10 +471,12 @@ class ControllerManager:
             if loaded.controller.state is not ACTIVE:
                 continue  # The failure of an earlier controller deactivated it in this cycle.
             if loaded.period_ns:
-                if time_ns < loaded.next_ns:
+                if time_ns < loaded.next_update_ns:
                     continue
                 step_s = loaded.period_ns / NANOSECONDS_PER_SECOND
-                loaded.next_ns = max(loaded.next_ns or time_ns, time_ns - loaded.period_ns) + loaded.period_ns
+                loaded.next_update_ns = (
+                    max(loaded.next_update_ns or time_ns, time_ns - loaded.period_ns) + loaded.period_ns
+                )
             else:
                 step_s = period_s
             try:

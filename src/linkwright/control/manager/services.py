@@ -107,8 +107,8 @@ class ManagerServices:
         message.is_chainable, message.is_chained = loaded.is_chainable, controller.is_chained
         if not loaded.is_configured:
             return message
-        message.required_command_interfaces = loaded.claimed_commands(resources.command_names)
-        message.required_state_interfaces = loaded.required_states(resources.state_names)
+        message.required_command_interfaces = loaded.claimed_command_interfaces(resources.command_names)
+        message.required_state_interfaces = loaded.required_state_interfaces(resources.state_names)
         message.exported_state_interfaces = [interface.kind for interface in controller.exported]
         message.reference_interfaces = [reference.kind for reference in controller.references]
         chains: dict[str, list[str]] = {}

@@ -125,7 +125,7 @@ class SwitchPlanner:
 
     def _following_names(self, loaded: LoadedController) -> Iterator[str]:
         """Yield the names of the controllers whose references a controller commands."""
-        for interface in loaded.claimed_commands([]):
+        for interface in loaded.claimed_command_interfaces([]):
             name = interface.partition("/")[0]
             if name in self._controllers and name != loaded.name:
                 yield name
@@ -134,7 +134,7 @@ class SwitchPlanner:
         """Yield the controllers that command the references of a controller."""
         references = set(self._resources.reference_names(loaded.name))
         for other in self._controllers.values():
-            if references.intersection(other.claimed_commands([])):
+            if references.intersection(other.claimed_command_interfaces([])):
                 yield other
 
     def _add_following(self) -> None:
@@ -148,7 +148,7 @@ class SwitchPlanner:
 
     def _add_conflicting(self) -> None:
         for name in self._switch.activate:
-            for interface in self._controllers[name].claimed_commands(self._resources.command_names):
+            for interface in self._controllers[name].claimed_command_interfaces(self._resources.command_names):
                 owner = self._resources.claims.get(interface)
                 if owner is not None and owner not in self._switch.deactivate:
                     self._switch.deactivate.append(owner)
@@ -166,7 +166,7 @@ class SwitchPlanner:
 
     def _following_problem(self, loaded: LoadedController) -> str:
         switch = self._switch
-        for interface in loaded.claimed_commands([]):
+        for interface in loaded.claimed_command_interfaces([]):
             commanded = self._controllers.get(interface.partition("/")[0])
             if commanded is None or commanded is loaded:
                 continue

@@ -13,14 +13,14 @@ _MIN_COMMON = 0.5
 
 def renamed_hardware(old: Sequence[Element], new: Sequence[Element]) -> Iterator[tuple[Element, Element]]:
     """Yield the pairs of ``<ros2_control>`` elements with different names that share at least half their interfaces."""
-    old_names, new_names = ({_name(element) for element in _hardware(elements)} for elements in (old, new))
-    free = [element for element in _hardware(new) if _name(element) not in old_names]
-    for element in _hardware(old):
-        if _name(element) in new_names:
+    old_names, new_names = ({_name_of(element) for element in _select_hardware(elements)} for elements in (old, new))
+    unmatched = [element for element in _select_hardware(new) if _name_of(element) not in old_names]
+    for element in _select_hardware(old):
+        if _name_of(element) in new_names:
             continue
-        best = max(free, key=lambda other: _similarity(element, other), default=None)
+        best = max(unmatched, key=lambda other: _similarity(element, other), default=None)
         if best is not None and _similarity(element, best) >= _MIN_COMMON:
-            free.remove(best)
+            unmatched.remove(best)
             yield element, best
 
 
@@ -30,19 +30,22 @@ def interfaces_of(elements: Iterable[Element]) -> set[tuple[str, str]]:
     A state interface has the name ``state NAME``, because controllers claim commands and states separately.
     """
     return {
-        (part.attributes.get("name", ""), f"{'state ' * (each.tag == 'state_interface')}{each.attributes.get('name')}")
-        for element in _hardware(elements)
-        for part in element.elements()
-        for each in part.elements()
-        if each.tag in ("command_interface", "state_interface")
+        (
+            owner.attributes.get("name", ""),
+            f"{'state ' * (interface.tag == 'state_interface')}{interface.attributes.get('name')}",
+        )
+        for element in _select_hardware(elements)
+        for owner in element.elements()
+        for interface in owner.elements()
+        if interface.tag in ("command_interface", "state_interface")
     }
 
 
-def _hardware(elements: Iterable[Element]) -> list[Element]:
+def _select_hardware(elements: Iterable[Element]) -> list[Element]:
     return [element for element in elements if element.tag == ROS2_CONTROL]
 
 
-def _name(element: Element) -> str:
+def _name_of(element: Element) -> str:
     return element.attributes.get("name", "")
 
 

@@ -155,7 +155,9 @@ class RenameSearch:
         joint = self._old.parents.get(name)
         if joint is not None and joint.name in self._joints:
             yield "joint", self._joints[joint.name]
-        children = frozenset(self._links[each.child] for each in self._old.children[name] if each.child in self._links)
+        children = frozenset(
+            self._links[joint.child] for joint in self._old.children[name] if joint.child in self._links
+        )
         if children:
             yield "children", children
 
@@ -164,7 +166,7 @@ class RenameSearch:
         joint = self._new.parents.get(name)
         if joint is not None:
             yield "joint", joint.name
-        children = frozenset(each.child for each in self._new.children[name] if each.child not in self._new.names)
+        children = frozenset(joint.child for joint in self._new.children[name] if joint.child not in self._new.names)
         if children:
             yield "children", children
 

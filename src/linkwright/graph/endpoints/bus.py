@@ -24,7 +24,7 @@ from linkwright.graph.qos.profile import QoSPolicyKind, QoSProfile
 
 
 class Transport(Protocol):
-    """Mirrors the endpoints of a graph outside the process.
+    """The interface of transports, which mirror the endpoints of a graph on a network.
 
     ``open_*`` is called for each endpoint when it is created, ``close_*`` when it is destroyed; neither may block.
 

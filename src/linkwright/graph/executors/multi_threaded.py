@@ -23,7 +23,7 @@ from linkwright.process.processors import usable_processors
 
 
 class MultiThreadedExecutor(SpinningExecutor):
-    """Runs callbacks in a thread pool, as their groups allow (rclpy ``MultiThreadedExecutor``).
+    """An executor that runs callbacks in a thread pool, as their groups allow (rclpy ``MultiThreadedExecutor``).
 
     The spinning thread hands work to at most as many threads as the pool has. Other work stays queued in its entities,
     subject to their QoS. `spin_once` does not wait for the work that it handed out to end. If a callback raises an

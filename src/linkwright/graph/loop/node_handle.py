@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from linkwright.graph.faults import InvalidHandleError, RclError
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.rules import NodeIdentity, Remappings, expand_service_name, expand_topic_name
-from linkwright.graph.time.clock import AlarmSetter, Timebase
+from linkwright.graph.time.clock import CallScheduler, Timebase
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -171,7 +171,7 @@ _handles: weakref.WeakKeyDictionary[HasHandle, Handle] = weakref.WeakKeyDictiona
 P = TypeVar("P", bound="Part")
 
 
-class Dispatcher(AlarmSetter, Protocol):
+class Dispatcher(CallScheduler, Protocol):
     """The interface of an event loop or executor that runs the calls of entities.
 
     All methods may be called from any thread.

@@ -35,7 +35,7 @@ class Alarm(Protocol):
         """Cancel the call."""
 
 
-class AlarmSetter(Protocol):
+class CallScheduler(Protocol):
     """A scheduler of calls."""
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
@@ -113,7 +113,7 @@ class JumpClock(Timebase):
         self._now_ns = start_ns
         self._steady_ns = 0
         self._alarms: list[ScheduledAlarm] = []
-        self._numbers = count()
+        self._sequence_numbers = count()
         self._dispatchers: list[SettlingDispatcher] = []
 
     def now_ns(self) -> int:
@@ -154,7 +154,7 @@ class JumpClock(Timebase):
 
     def schedule(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule a callback for the moment when the clock is advanced to a steady time."""
-        alarm = ScheduledAlarm(steady_ns, next(self._numbers), callback)
+        alarm = ScheduledAlarm(steady_ns, next(self._sequence_numbers), callback)
         heapq.heappush(self._alarms, alarm)
         return alarm
 
@@ -342,7 +342,7 @@ class Clock:
         """
         return self.timebase.steady_ns()
 
-    def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
+    def call_at(self, dispatcher: CallScheduler, timer_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule a call for a value of `timer_ns`.
 
         The callback must be short.
@@ -447,7 +447,7 @@ class ROSClock(Clock):
         self._switch_count = 0
         self._override_ns = 0
         self._alarms: list[_SimulatedAlarm] = []
-        self._numbers = count()
+        self._sequence_numbers = count()
         self._timers: dict[ClockFollower, None] = {}
 
     @property
@@ -466,7 +466,7 @@ class ROSClock(Clock):
         """Return simulated time while it is active, otherwise steady time, in nanoseconds."""
         return self._override_ns if self._active else self.timebase.steady_ns()
 
-    def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
+    def call_at(self, dispatcher: CallScheduler, timer_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule a call for a value of `timer_ns`.
 
         Simulated time triggers the call while it is active.
@@ -474,7 +474,7 @@ class ROSClock(Clock):
         with self._lock:  # Faster than locking the condition; timers often call this.
             if not self._active:
                 return dispatcher.call_at(timer_ns, callback)
-            alarm = _SimulatedAlarm(timer_ns, next(self._numbers), callback)
+            alarm = _SimulatedAlarm(timer_ns, next(self._sequence_numbers), callback)
             if timer_ns > self._override_ns:
                 heapq.heappush(self._alarms, alarm)
                 return alarm

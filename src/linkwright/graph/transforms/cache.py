@@ -213,7 +213,7 @@ class MovingCache(FrameCache):
         return self._samples[self._index_at(time_ns)].parent
 
     def latest(self) -> tuple[int, int] | None:
-        """Return the stamp and the parent's number of the latest transform.
+        """Return the stamp of the latest transform, in nanoseconds, and the parent's number.
 
         Return None if there is no transform.
         """

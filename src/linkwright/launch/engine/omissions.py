@@ -21,7 +21,7 @@ Skipped parts of the launch may have set such a value.
 
 
 class Omissions:
-    """Decides which parts of a launch are skipped, and reports them.
+    """The parts of a launch that are skipped: the decision and the reports.
 
     Attributes:
         has_skipped: whether any part has been skipped.

@@ -312,7 +312,7 @@ class RunningProcess:
 
 
 class _LineSplitter:
-    """Splits the output of a process into lines of text.
+    """A splitter of a process's output into lines of text.
 
     An incomplete line that exceeds the maximum length is returned in chunks.
     """
@@ -341,7 +341,7 @@ class _LineSplitter:
 
 
 class _ProcessProtocol(asyncio.SubprocessProtocol):
-    """Forwards asyncio's callbacks for a process to its `RunningProcess`."""
+    """The asyncio protocol of a process, which forwards the callbacks to its `RunningProcess`."""
 
     def __init__(self, process: RunningProcess) -> None:
         self._process = process
@@ -361,7 +361,7 @@ class _ProcessProtocol(asyncio.SubprocessProtocol):
 
 
 class _TerminalProtocol(asyncio.Protocol):
-    """Forwards the output of a process that is attached to a pseudo-terminal."""
+    """The asyncio protocol of a pseudo-terminal, which forwards the output of a process."""
 
     def __init__(self, process: RunningProcess, stream_number: int) -> None:
         self._process = process

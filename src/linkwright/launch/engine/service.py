@@ -23,7 +23,7 @@ _DEFAULT_LOG_NAME = "launch.log"
 
 
 class LaunchService:
-    """Runs launch descriptions.
+    """A runner of launch descriptions.
 
     Args:
         argv: the command-line arguments, which entities can read from the launch context.
@@ -176,7 +176,7 @@ def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
 
 
 class ProcessLaunchService(LaunchService):
-    """Runs every node as a process, so that tests can observe its output and exit status."""
+    """A launch service that runs every node as a process, so that tests can observe its output and exit status."""
 
     _isolates_nodes = True
 

@@ -68,7 +68,7 @@ def _parse_if(value: Any) -> Any:
 
 
 class _Reader:
-    """Parses one text into substitutions.
+    """A parser of one text into substitutions.
 
     Args:
         text: the text.

@@ -48,7 +48,7 @@ _FOLDER_LOCAL = "current_launch_file_directory"
 
 @expose_action("include")
 class IncludeLaunchDescription(Action):
-    """Visits the description of another launch file.
+    """An action that visits the description of another launch file.
 
     As in ROS, the including and the included file share their launch configurations. To keep the changes to the
     included file out of the including file, put this action into a `GroupAction`.
@@ -249,7 +249,7 @@ def _normalize_if_possible(value: Any) -> Any:
 
 
 class IncludeScopedLaunchDescription(IncludeLaunchDescription):
-    """Includes another launch file in a separate scope.
+    """An action that includes another launch file in a separate scope.
 
     The changes to launch configurations and environment variables end with the included file.
     """

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Parser:
-    """Creates actions and substitutions from the entities of a launch file.
+    """A parser that creates actions and substitutions from the entities of a launch file.
 
     The parser of each language overrides `load`.
     """

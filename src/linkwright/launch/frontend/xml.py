@@ -93,7 +93,7 @@ class Entity(MarkupEntity):
 
 
 class Parser(AnyParser):
-    """Reads XML launch files."""
+    """A parser that reads XML launch files."""
 
     @classmethod
     def load(cls, file: Any) -> tuple[AnyEntity, AnyParser]:

@@ -149,7 +149,7 @@ def _format_scalar(value: bool | float) -> str:
 
 
 class Parser(AnyParser):
-    """Reads YAML launch files."""
+    """A parser that reads YAML launch files."""
 
     @classmethod
     def load(cls, file: Any) -> tuple[AnyEntity, AnyParser]:
@@ -184,7 +184,7 @@ class LocatedMapping(dict[Any, Any]):
 
 
 class _Loader(yaml.SafeLoader):
-    """Loads plain values, and records the locations of strings and mappings.
+    """A YAML loader of plain values, which records the locations of strings and mappings.
 
     Attributes:
         launch_text: the text of the file.

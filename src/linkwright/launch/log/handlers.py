@@ -38,15 +38,15 @@ class Handler(ForEachLogger, logging.Handler):
 
 
 class StreamHandler(ForEachLogger, logging.StreamHandler):  # type: ignore[type-arg]  # not generic at run time
-    """Writes lines to a stream."""
+    """A handler that writes lines to a stream."""
 
 
 class FileHandler(ForEachLogger, logging.FileHandler):
-    """Writes lines to a file."""
+    """A handler that writes lines to a file."""
 
 
 class WatchedFileHandler(ForEachLogger, logging.handlers.WatchedFileHandler):
-    """Writes lines to a file, and reopens the file if another program moves it."""
+    """A handler that writes lines to a file, and reopens the file if another program moves it."""
 
 
 def handler_class(name: str) -> type[Any]:

@@ -32,7 +32,7 @@ _OUTPUTS: Mapping[str, Mapping[str, set[str]]] = {
 
 
 class _ScreenHandler(StreamHandler):
-    """Writes lines to ``sys.stdout``, even after a program has replaced this stream."""
+    """A handler that writes lines to ``sys.stdout``, even after a program has replaced this stream."""
 
     @property
     def stream(self) -> Any:
@@ -44,7 +44,7 @@ class _ScreenHandler(StreamHandler):
 
 
 class _MainFileHandler(Handler):
-    """Writes lines to the main log file.
+    """A handler that writes lines to the main log file.
 
     The file is opened when the first line is written.
     """

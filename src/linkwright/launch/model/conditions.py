@@ -36,7 +36,7 @@ class InvalidConditionExpressionError(Exception):
 
 
 class Condition(Located):
-    """Decides at each visit of an action whether the action runs.
+    """A condition that decides at each visit of an action whether the action runs.
 
     Args:
         predicate: called with the launch context; returns whether the condition holds. By default, the condition never

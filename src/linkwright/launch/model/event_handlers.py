@@ -16,7 +16,7 @@ EntitiesOrCallable = SomeEntitiesType | Callable[..., Any] | None
 
 
 class BaseEventHandler:
-    """Reacts to the events that a matcher accepts.
+    """An event handler that reacts to the events that a matcher accepts.
 
     Users derive from this class and override `handle`.
 
@@ -73,7 +73,7 @@ class BaseEventHandler:
 
 
 class EventHandler(BaseEventHandler):
-    """Visits entities when its matcher accepts an event.
+    """An event handler that visits entities when its matcher accepts an event.
 
     Args:
         matcher: called with an event; returns whether the handler accepts the event.
@@ -99,7 +99,7 @@ class EventHandler(BaseEventHandler):
 
 
 class _ReactionHandler(BaseEventHandler):
-    """Visits given entities, or the entities that a function of event and context returns.
+    """An event handler that visits given entities, or the entities that a function of event and context returns.
 
     Args:
         matcher: called with an event; returns whether the handler accepts the event.
@@ -203,7 +203,7 @@ def _as_iterable(entities: Any) -> Iterable[Any]:
 
 
 class OnExecutionComplete(OnActionEventBase):
-    """Reacts when an action has completed.
+    """An event handler that reacts when an action has completed.
 
     A process has completed when it has ended. If no target is given, the handler accepts all actions except the actions
     that it returned itself, because these would cause an endless loop.
@@ -234,7 +234,7 @@ class OnExecutionComplete(OnActionEventBase):
 
 
 class OnIncludeLaunchDescription(BaseEventHandler):
-    """Visits the description of each `IncludeLaunchDescription` event."""
+    """An event handler that visits the description of each `IncludeLaunchDescription` event."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(matcher=lambda event: isinstance(event, events.IncludeLaunchDescription), **kwargs)
@@ -246,7 +246,7 @@ class OnIncludeLaunchDescription(BaseEventHandler):
 
 
 class OnShutdown(_ReactionHandler):
-    """Reacts to the shutdown of the launch."""
+    """An event handler that reacts to the shutdown of the launch."""
 
     def __init__(self, *, on_shutdown: EntitiesOrCallable, handle_once: bool = False, **_: Any) -> None:
         super().__init__(

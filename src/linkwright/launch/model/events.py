@@ -59,7 +59,7 @@ class Shutdown(Event):
 
 
 class TimerEvent(Event):
-    """Reports that a timer has expired."""
+    """The event that a timer has expired."""
 
     name = "launch.events.TimerEvent"
 
@@ -69,7 +69,7 @@ class TimerEvent(Event):
 
 
 class ExecutionComplete(Event):
-    """Reports that an action has completed."""
+    """The event that an action has completed."""
 
     name = "launch.events.ExecutionComplete"
 
@@ -115,13 +115,13 @@ class RunningProcessEvent(Event):
 
 
 class ProcessStarted(RunningProcessEvent):
-    """Reports that a process has started."""
+    """The event that a process has started."""
 
     name = "launch.events.process.ProcessStarted"
 
 
 class ProcessExited(RunningProcessEvent):
-    """Reports that a process has ended.
+    """The event that a process has ended.
 
     Args:
         returncode: the exit status; the negative signal number if a signal ended the process.
@@ -136,7 +136,7 @@ class ProcessExited(RunningProcessEvent):
 
 
 class ProcessIO(RunningProcessEvent):
-    """Reports that a process wrote output.
+    """The event that a process wrote output.
 
     Args:
         text: the bytes that the process wrote.
@@ -170,14 +170,14 @@ class ProcessIO(RunningProcessEvent):
 
 
 class ProcessStdout(ProcessIO):
-    """Reports that a process wrote to stdout."""
+    """The event that a process wrote to stdout."""
 
     name = "launch.events.process.ProcessStdout"
     fd = 1
 
 
 class ProcessStderr(ProcessIO):
-    """Reports that a process wrote to stderr."""
+    """The event that a process wrote to stderr."""
 
     name = "launch.events.process.ProcessStderr"
     fd = 2

@@ -14,7 +14,7 @@ _INDENT = "    "
 
 
 class LaunchIntrospector:
-    """Formats the contents of a launch description without running it."""
+    """A formatter of the contents of a launch description, which does not run the description."""
 
     def format_launch_description(self, launch_description: LaunchDescription) -> str:
         """Return the entities of a description as an indented tree with one entity per line."""

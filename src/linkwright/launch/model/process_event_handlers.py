@@ -48,14 +48,14 @@ class _OnProcessEvent(OnActionEventBase):
 
 
 class OnProcessStart(_OnProcessEvent):
-    """Reacts when a process starts."""
+    """An event handler that reacts when a process starts."""
 
     def __init__(self, *, on_start: EntitiesOrCallable, target_action: Any = None, handle_once: bool = False) -> None:
         super().__init__(events.ProcessStarted, on_start, target_action, handle_once)
 
 
 class OnProcessExit(_OnProcessEvent):
-    """Reacts when a process ends."""
+    """An event handler that reacts when a process ends."""
 
     def __init__(
         self, *, on_exit: EntitiesOrCallable = None, target_action: Any = None, handle_once: bool = False
@@ -64,7 +64,7 @@ class OnProcessExit(_OnProcessEvent):
 
 
 class OnProcessIO(_OnProcessEvent):
-    """Reacts when a process writes output.
+    """An event handler that reacts when a process writes output.
 
     Args:
         target_action: the action of the process; None for all processes.

@@ -32,7 +32,7 @@ _Path = str | Path | None
 
 
 class ParameterBuilder:
-    """Collects parameters, most of them from the files of a package.
+    """A collection of parameters, most of them from the files of a package.
 
     Each method except `to_dict` returns the builder, so that calls can be chained.
 
@@ -82,7 +82,7 @@ class ParameterBuilder:
 
 
 class MoveItConfigsBuilder(ParameterBuilder):
-    """Collects parameters from the files of a MoveIt configuration package.
+    """A collection of parameters from the files of a MoveIt configuration package.
 
     Most methods read a file from the given path, or by default from the usual path in the package.
 

@@ -128,7 +128,7 @@ def _render_template(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
 
 @expose_substitution("xacro")
 class Xacro(Substitution):
-    """Evaluates to the expanded text of a xacro or URDF file.
+    """A substitution that evaluates to the expanded text of a xacro or URDF file.
 
     Args:
         file_path: the path of the file.

@@ -223,7 +223,7 @@ def _read_virtual_joints(text: Any) -> Iterator[tuple[str, str]]:
 
 
 class DeclareBooleanLaunchArg(DeclareLaunchArgument):
-    """Declares an argument that is true or false.
+    """An action that declares an argument that is true or false.
 
     Args:
         name: the argument's name.

@@ -38,7 +38,7 @@ _CONFIGURE, _ACTIVATE = 1, 3
 
 @expose_action("load_composable_node")
 class LoadComposableNodes(Action):
-    """Loads nodes into a container, one after another, as soon as the container is available.
+    """An action that loads nodes into a container, one after another, as soon as the container is available.
 
     Args:
         composable_node_descriptions: the nodes to load.
@@ -143,7 +143,7 @@ class LoadComposableNodes(Action):
 @expose_action("node_container")
 @with_deprecated_arguments(node_executable="executable", node_name="name", node_namespace="namespace")
 class ComposableNodeContainer(Node):
-    """Starts a container, and loads nodes into it.
+    """An action that starts a container, and loads nodes into it.
 
     Args:
         name: the name of the container.

@@ -38,7 +38,7 @@ _QUEUE_DEPTH = 10
 
 
 class LifecycleEventManager:
-    """Monitors a lifecycle node, and requests its transitions.
+    """A monitor of a lifecycle node, which also requests the node's transitions.
 
     The manager emits a `StateTransition` event after each transition, and handles `ChangeState` events.
 
@@ -130,7 +130,7 @@ async def _wait_briefly(future: Any) -> None:
 @expose_action("lifecycle_node")
 @with_deprecated_arguments(node_executable="executable", node_name="name", node_namespace="namespace")
 class LifecycleNode(Node):
-    """Starts a lifecycle node, and monitors its state.
+    """An action that starts a lifecycle node, and monitors its state.
 
     Args:
         name: the node's name.

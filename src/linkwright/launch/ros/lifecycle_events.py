@@ -79,7 +79,7 @@ class ChangeState(Event):
 
 
 class StateTransition(Event):
-    """Reports that a lifecycle node has made a transition.
+    """The event that a lifecycle node has made a transition.
 
     Args:
         action: the action of the node.
@@ -115,7 +115,7 @@ class StateTransition(Event):
 
 
 class OnStateTransition(EventHandler):
-    """Visits entities when a lifecycle node has made a transition.
+    """An event handler that visits entities when a lifecycle node has made a transition.
 
     An argument that is omitted matches any value.
 

@@ -61,7 +61,7 @@ A node with its own values of these variables cannot run in the launcher's proce
 @expose_action("node")
 @with_deprecated_arguments(node_executable="executable", node_name="name", node_namespace="namespace")
 class Node(ExecuteProcess):
-    """Starts a node.
+    """An action that starts a node.
 
     Linkwright's own nodes run in the launcher's process, and other nodes in separate processes.
 

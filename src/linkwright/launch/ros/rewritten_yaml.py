@@ -74,7 +74,7 @@ class _YamlFileSubstitution(Substitution):
 
 
 class RewrittenYaml(_YamlFileSubstitution):
-    """Evaluates to the path of a new parameter file, a copy in which values are replaced.
+    """A substitution that evaluates to the path of a new parameter file, a copy in which values are replaced.
 
     Args:
         source_file: the file to copy.
@@ -194,7 +194,7 @@ def _add_value(content: Any, path: list[str], value: Any) -> None:
 
 
 class ReplaceString(_YamlFileSubstitution):
-    """Evaluates to the path of a new file, a copy in which texts are replaced.
+    """A substitution that evaluates to the path of a new file, a copy in which texts are replaced.
 
     Args:
         source_file: the file to copy.
@@ -235,7 +235,7 @@ class ReplaceString(_YamlFileSubstitution):
 
 
 class HasNodeParams(_YamlFileSubstitution):
-    """Evaluates to ``True`` or ``False``: whether a parameter file has parameters for a node."""
+    """A substitution that evaluates to ``True`` or ``False``: whether a parameter file has parameters for a node."""
 
     def __init__(self, source_file: SomeSubstitutionsType, node_name: str) -> None:
         super().__init__(source_file)
@@ -252,7 +252,7 @@ class HasNodeParams(_YamlFileSubstitution):
 
 
 class LaunchConfigAsBool(Substitution):
-    """Evaluates to ``True`` or ``False``, depending on the value of a launch configuration.
+    """A substitution that evaluates to ``True`` or ``False``, depending on the value of a launch configuration.
 
     The values ``true``, ``on``, ``1`` and ``yes`` count as true.
     """

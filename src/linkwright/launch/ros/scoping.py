@@ -37,7 +37,7 @@ ParseResult = tuple[type[Action], dict[str, Any]]
 @expose_action("push_ros_namespace")
 @expose_action("push-ros-namespace")
 class PushRosNamespace(Action):
-    """Adds a prefix to the namespaces of later nodes in the same scope."""
+    """An action that adds a prefix to the namespaces of later nodes in the same scope."""
 
     def __init__(self, namespace: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -70,7 +70,7 @@ class PushRosNamespace(Action):
 
 @expose_action("set_parameter")
 class SetParameter(Action):
-    """Sets a parameter for all later nodes.
+    """An action that sets a parameter for all later nodes.
 
     A node's own value takes precedence.
     """
@@ -112,7 +112,7 @@ class SetParameter(Action):
 
 @expose_action("set_parameters_from_file")
 class SetParametersFromFile(Action):
-    """Sets the parameters in a file for all later nodes to which the file applies."""
+    """An action that sets the parameters in a file for all later nodes to which the file applies."""
 
     def __init__(self, filename: Path | SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -137,7 +137,7 @@ class SetParametersFromFile(Action):
 
 @expose_action("set_remap")
 class SetRemap(Action):
-    """Adds a remapping to all later nodes."""
+    """An action that adds a remapping to all later nodes."""
 
     def __init__(self, src: SomeSubstitutionsType, dst: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -170,7 +170,7 @@ class SetRemap(Action):
 
 @expose_action("set_use_sim_time")
 class SetUseSimTime(SetParameter):
-    """Sets ``use_sim_time`` for all later nodes."""
+    """An action that sets ``use_sim_time`` for all later nodes."""
 
     def __init__(self, value: bool | SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__("use_sim_time", value, **kwargs)
@@ -199,7 +199,7 @@ class SetUseSimTime(SetParameter):
 
 @expose_action("set_ros_log_dir")
 class SetROSLogDir(Action):
-    """Changes the log folder of processes that are started later.
+    """An action that changes the log folder of processes that are started later.
 
     Args:
         new_log_dir: the path of the folder; a relative path is relative to the previous log folder.

@@ -60,7 +60,7 @@ class FindPackage(_LaunchRosSubstitution, shown="{kind}(pkg={package})"):
 
 
 class FindPackagePrefix(FindPackage, tag="find-pkg-prefix"):
-    """Evaluates to the install prefix of a package."""
+    """A substitution that evaluates to the install prefix of a package."""
 
     def find(self, package_name: str) -> str:
         """Return the install prefix of a package."""
@@ -68,7 +68,7 @@ class FindPackagePrefix(FindPackage, tag="find-pkg-prefix"):
 
 
 class FindPackageShare(FindPackage, tag="find-pkg-share"):
-    """Evaluates to the share folder of a package."""
+    """A substitution that evaluates to the share folder of a package."""
 
     def find(self, package_name: str) -> str:
         """Return the share folder of a package."""
@@ -78,7 +78,7 @@ class FindPackageShare(FindPackage, tag="find-pkg-share"):
 class ExecutableInPackage(
     _LaunchRosSubstitution, tag="exec-in-pkg", shown="ExecInPkg(pkg={package}, exec={executable})"
 ):
-    """Evaluates to the path of an executable of a package."""
+    """A substitution that evaluates to the path of an executable of a package."""
 
     executable: Texts = Texts()
     package: Texts = Texts()
@@ -99,7 +99,7 @@ class ExecutableInPackage(
 
 
 class ParameterSubstitution(_LaunchRosSubstitution, tag="param", shown="Parameter(name={name})"):
-    """Evaluates to the value of a parameter that `SetParameter` set in the scope."""
+    """A substitution that evaluates to the value of a parameter that `SetParameter` set in the scope."""
 
     name: Texts = Texts()
     default: AnyOptionalTexts = AnyOptionalTexts(default=None, kw_only=True, read=normalize_default)

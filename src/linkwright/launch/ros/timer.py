@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @expose_action("ros_timer")
 class RosTimer(TimerAction):
-    """Visits actions once, after a period of ROS time.
+    """An action that visits actions once, after a period of ROS time.
 
     The timer uses the clock of the launcher's node. This node follows ``/clock`` after a `SetUseSimTime` was visited,
     even if the timer was started before that.
@@ -32,7 +32,7 @@ class RosTimer(TimerAction):
 
 
 class _OneShotTimer:
-    """Calls a function once, with a timer of a node.
+    """A timer of a node that calls a function once.
 
     Args:
         node: the node that owns the timer.

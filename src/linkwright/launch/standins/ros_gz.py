@@ -76,7 +76,7 @@ def _text(value: Any) -> Any:
 
 @expose_action("gz_server")
 class GzServer(_SingleNodeAction):
-    """Starts the simulation without a window.
+    """An action that starts the simulation without a window.
 
     Args:
         kwargs: ``world_sdf_file`` or ``world_sdf_string``. The options for containers have no effect.
@@ -91,7 +91,7 @@ class GzServer(_SingleNodeAction):
 
 @expose_action("gz_spawn_model")
 class GzSpawnModel(_SingleNodeAction):
-    """Spawns a model in the world.
+    """An action that spawns a model in the world.
 
     Args:
         kwargs: ``world``, one of ``file``, ``model_string`` and ``topic``, ``entity_name``, ``allow_renaming``, and the
@@ -122,7 +122,7 @@ class GzSpawnModel(_SingleNodeAction):
 
 @expose_action("ros_gz_bridge")
 class RosGzBridge(_SingleNodeAction):
-    """Starts a bridge between topics of the simulation and topics of ROS.
+    """An action that starts a bridge between topics of the simulation and topics of ROS.
 
     Args:
         bridge_name: the name of the node.

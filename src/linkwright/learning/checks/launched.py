@@ -449,8 +449,8 @@ def _offered_profile(node: Node, topic: str) -> QoSProfile:
 
     offered = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
     profile = QoSProfile(depth=10)
-    if any(each.durability == DurabilityPolicy.TRANSIENT_LOCAL for each in offered):
+    if any(offered_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for offered_profile in offered):
         profile.durability = DurabilityPolicy.TRANSIENT_LOCAL
-    if any(each.reliability == ReliabilityPolicy.BEST_EFFORT for each in offered):
+    if any(offered_profile.reliability == ReliabilityPolicy.BEST_EFFORT for offered_profile in offered):
         profile.reliability = ReliabilityPolicy.BEST_EFFORT
     return profile

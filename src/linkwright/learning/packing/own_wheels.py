@@ -42,7 +42,7 @@ def add_own_wheels(wheel_files: Sequence[Path], wheels: Path) -> list[Path]:
     elif (checkout := _checkout()) is not None:
         paths = build_checkout(checkout, wheels)
     else:
-        paths = [_repacked(name, wheels) for name in OWN_PACKAGES]
+        paths = [_build_wheel(name, wheels) for name in OWN_PACKAGES]
     _check(paths)
     return paths
 
@@ -82,7 +82,7 @@ def _unusable(message: Phrase) -> LinkwrightError:
     return LinkwrightError(Diagnostic("LEARN302", message, hint=hint))
 
 
-def _repacked(name: str, wheels: Path) -> Path:
+def _build_wheel(name: str, wheels: Path) -> Path:
     """Build the wheel of an installed distribution from the files that its RECORD lists."""
     try:
         distribution = metadata.distribution(name)

@@ -18,24 +18,24 @@ if TYPE_CHECKING:
     from linkwright.viewer import Viewer
 
 
-def run_classroom(room: Classroom, options: HostOptions, *, foxglove: int | None = None) -> int:
+def run_classroom(classroom: Classroom, options: HostOptions, *, foxglove: int | None = None) -> int:
     """Serve the page with a course until the user ends the program.
 
     Args:
-        room: the course in the learner's workspace; the workspace's folder must exist.
+        classroom: the course in the learner's workspace; the workspace's folder must exist.
         options: the options of nodes and viewers.
         foxglove: the port to which Foxglove and Lichtblick can connect; None to open no port.
 
     Returns:
         The exit status (see `linkwright.hosting.signals.run_to_end`).
     """
-    finder = PackageFinder(start=[room.workspace])
-    options = replace(options, title=room.workspace.name, terminal=room.workspace, needs_terminal=True)
+    finder = PackageFinder(start=[classroom.workspace])
+    options = replace(options, title=classroom.workspace.name, terminal=classroom.workspace, needs_terminal=True)
     log = LaunchLog()
 
     def run(signals: SignalWatch) -> bool:
         async def run_on_loop() -> bool:
-            signals.session = view = ClassroomView(room, finder, options, log)
+            signals.session = view = ClassroomView(classroom, finder, options, log)
             return await view.run(foxglove)
 
         return signals.run(run_on_loop)
@@ -49,16 +49,16 @@ class ClassroomView(ModelView):
     The robot is shown as soon as its file exists.
 
     Args:
-        room: the course in the learner's workspace.
+        classroom: the course in the learner's workspace.
         finder: the finder of ROS packages.
         options: the options of nodes and viewers.
         log: the log of the run.
     """
 
-    def __init__(self, room: Classroom, finder: PackageFinder, options: HostOptions, log: LaunchLog) -> None:
-        shown = room.shown_file(room.current_step)
-        super().__init__(XacroCall(shown or room.workspace), finder, options, log)
-        self._room = room
+    def __init__(self, classroom: Classroom, finder: PackageFinder, options: HostOptions, log: LaunchLog) -> None:
+        shown = classroom.shown_file(classroom.current_step)
+        super().__init__(XacroCall(shown or classroom.workspace), finder, options, log)
+        self._classroom = classroom
         self._is_shown = False
 
     def show(self, path: Path | None) -> None:
@@ -75,7 +75,7 @@ class ClassroomView(ModelView):
     @property
     def _config_name(self) -> str:
         """The name of the view's configuration: the workspace, because the robot's file changes."""
-        return str(self._room.workspace)
+        return str(self._classroom.workspace)
 
     def _set_viewer(self, viewer: Viewer) -> None:
         from linkwright.learning.page.course_guide import CourseGuide
@@ -84,8 +84,8 @@ class ClassroomView(ModelView):
         from linkwright.panels.terminal.feature import TerminalFeature
 
         super()._set_viewer(viewer)
-        viewer.add_feature(SourceEditorFeature).edit_workspace(self._room.workspace)
+        viewer.add_feature(SourceEditorFeature).edit_workspace(self._classroom.workspace)
         context = viewer.context
         programs = viewer.add_feature(TerminalFeature).programs
-        guide = CourseGuide(self._room, context.pages.publish, context.node.get_logger(), self.show, programs)
+        guide = CourseGuide(self._classroom, context.pages.publish, context.node.get_logger(), self.show, programs)
         viewer.add_feature(CourseFeature).show(guide)

@@ -25,8 +25,8 @@ from linkwright.page.protocol.message import PageMessage, ServerMessage
 _DEBOUNCE_MS = 400
 """The longest time, in ms, for which changes of files are collected before the checks run."""
 
-_QUICK_S = 1.0
-"""The longest time, in s, for which checks run beside a running world. Checks that take longer simulate themselves."""
+_PAUSE_DELAY_S = 1.0
+"""The time, in s, after which running worlds are paused for the checks, since longer checks run a simulation."""
 
 _UNWATCHED_FOLDERS = frozenset({"build", "install", "log", "__pycache__", REPLACED_FOLDER})
 """Folders of the workspace whose files are generated."""
@@ -36,7 +36,7 @@ class CourseGuide(Guide):
     """The guide of a learner through a course, on the running event loop.
 
     Args:
-        room: the course in the learner's workspace.
+        classroom: the course in the learner's workspace.
         publish: sends a message to all pages.
         logger: logs the reason if files cannot be watched.
         on_changed: called with the robot's file to show beside the step, or None, when a step is opened and when
@@ -46,25 +46,25 @@ class CourseGuide(Guide):
 
     def __init__(
         self,
-        room: Classroom,
+        classroom: Classroom,
         publish: Publish,
         logger: Logger,
         on_changed: Callable[[Path | None], object],
         programs: ProgramPages,
     ) -> None:
-        self._room = room
+        self._classroom = classroom
         self._publish = publish
         self._logger = logger
         self._on_changed = on_changed
-        self._runner = CheckRunner(room.workspace, self._show_result)
+        self._runner = CheckRunner(classroom.workspace, self._show_result)
         self._programs = programs
-        programs.on_pause = lambda: self._publish(self._checks())
-        self._timer: asyncio.TimerHandle | None = None
+        programs.on_pause = lambda: self._publish(self._checks_message())
+        self._pause_timer: asyncio.TimerHandle | None = None
         self._results: dict[str, messages.StepChecks] = {}
-        self._step = room.current_step
-        self._watch = asyncio.get_running_loop().create_task(self._watch_files(room.workspace))
+        self._step = classroom.current_step
+        self._watch_task = asyncio.get_running_loop().create_task(self._watch_files(classroom.workspace))
         self._handlers: Mapping[type[PageMessage], Callable[[Any], object]] = {
-            messages.OpenStep: lambda message: self._open(room.course.find_step(message.address)),
+            messages.OpenStep: lambda message: self._open(classroom.course.find_step(message.address)),
             messages.CheckStep: lambda _: self._check(),
             messages.AnswerStep: self._answer,
             messages.TakeHint: self._take_hint,
@@ -76,7 +76,7 @@ class CourseGuide(Guide):
 
     def opening_messages(self) -> list[ServerMessage]:
         """Return the messages with the course, the shown step and the results of its checks."""
-        return [self._course(), self._shown_step(), self._checks()]
+        return [self._course_message(), self._step_message(), self._checks_message()]
 
     def handle(self, message: PageMessage) -> None:
         """Handle a request of a page."""
@@ -84,96 +84,96 @@ class CourseGuide(Guide):
 
     def close(self) -> None:
         """Stop watching files and running checks."""
-        self._watch.cancel()
+        self._watch_task.cancel()
         self._runner.close()
-        self._stop_timer()
+        self._stop_pause_timer()
         self._programs.resume_worlds()
 
     def _open(self, step: Step) -> None:
-        self._room.open_step(step)
+        self._classroom.open_step(step)
         self._step = step
-        self._publish(self._course())
-        self._publish(self._shown_step())
-        self._on_changed(self._room.shown_file(step))
+        self._publish(self._course_message())
+        self._publish(self._step_message())
+        self._on_changed(self._classroom.shown_file(step))
         self._check()
 
     def _check(self) -> None:
-        self._runner.request(self._step, self._room.progress.step(self._step.address).answer)
-        if self._timer is None:
-            self._timer = asyncio.get_running_loop().call_later(_QUICK_S, self._programs.pause_worlds)
-        self._publish(self._checks())
+        self._runner.request(self._step, self._classroom.progress.step(self._step.address).answer)
+        if self._pause_timer is None:
+            self._pause_timer = asyncio.get_running_loop().call_later(_PAUSE_DELAY_S, self._programs.pause_worlds)
+        self._publish(self._checks_message())
 
-    def _stop_timer(self) -> None:
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None
+    def _stop_pause_timer(self) -> None:
+        if self._pause_timer is not None:
+            self._pause_timer.cancel()
+            self._pause_timer = None
 
     def _answer(self, message: messages.AnswerStep) -> None:
-        self._room.answer(self._step, message.answer.strip())
-        self._publish(self._shown_step())
+        self._classroom.answer(self._step, message.answer.strip())
+        self._publish(self._step_message())
         self._check()
 
     def _take_hint(self, _: messages.TakeHint) -> None:
-        self._room.take_hint(self._step)
-        self._publish(self._shown_step())
+        self._classroom.take_hint(self._step)
+        self._publish(self._step_message())
 
     def _take_solution(self, _: messages.TakeSolution) -> None:
-        self._room.take_solution(self._step)
-        self._publish(self._shown_step())
-        self._on_changed(self._room.shown_file(self._step))
+        self._classroom.take_solution(self._step)
+        self._publish(self._step_message())
+        self._on_changed(self._classroom.shown_file(self._step))
         self._check()
 
     def _catch_up_files(self) -> messages.CatchUpFiles:
-        plan = self._room.plan_catch_up(self._step)
+        plan = self._classroom.plan_catch_up(self._step)
         new, replaced = (sorted(map(str, files)) for files in (plan.new, plan.replaced))
         return messages.CatchUpFiles(self._step.address, new, replaced)
 
     def _catch_up(self, _: messages.CatchUp) -> None:
-        self._room.catch_up(self._step)
-        self._publish(self._course())
-        self._publish(self._shown_step())
-        self._on_changed(self._room.shown_file(self._step))
+        self._classroom.catch_up(self._step)
+        self._publish(self._course_message())
+        self._publish(self._step_message())
+        self._on_changed(self._classroom.shown_file(self._step))
         self._check()
 
     def _show_result(self, step: Step, result: StepResult) -> None:
-        self._stop_timer()
+        self._stop_pause_timer()
         self._programs.resume_worlds()
         items = [_check_item(check) for check in result.checks]
         self._results[step.address] = messages.StepChecks(
             step.address, is_running=False, is_world_paused=False, checks=items, checked_at=time.time()
         )
         try:
-            self._room.record_result(step, result)
+            self._classroom.record_result(step, result)
         except LinkwrightError as error:
             self._publish(problem_of(error))
-        self._publish(self._checks())
-        self._publish(self._course())
+        self._publish(self._checks_message())
+        self._publish(self._course_message())
 
-    def _course(self) -> messages.Course:
-        room = self._room
+    def _course_message(self) -> messages.Course:
+        classroom = self._classroom
         lessons = [
             messages.CourseLesson(
                 lesson.id,
                 lesson.title.texts,
                 [self._step_item(step) for step in lesson.steps],
             )
-            for lesson in room.course.lessons
+            for lesson in classroom.course.lessons
         ]
-        return messages.Course(room.course.title.texts, str(room.workspace), "", lessons)
+        return messages.Course(classroom.course.title.texts, str(classroom.workspace), "", lessons)
 
     def _step_item(self, step: Step) -> messages.CourseStepItem:
-        noted = self._room.progress.step(step.address)
+        noted = self._classroom.progress.step(step.address)
         return messages.CourseStepItem(
             step.address, step.title.texts, is_passed=noted.passed is not None, is_taken_over=noted.taken_over
         )
 
-    def _shown_step(self) -> messages.CourseStep:
-        room = self._room
-        step, noted = self._step, room.progress.step(self._step.address)
+    def _step_message(self) -> messages.CourseStep:
+        classroom = self._classroom
+        step, noted = self._step, classroom.progress.step(self._step.address)
         folder = step.lesson.folder
         is_first = step.id == step.lesson.steps[0].id
         hint_count = len(step.text("").hints)
-        solution, shown_file = room.solution_files(step), room.shown_file(step)
+        solution, shown_file = classroom.solution_files(step), classroom.shown_file(step)
         return messages.CourseStep(
             step.address,
             lesson=step.lesson.title.texts,
@@ -194,10 +194,10 @@ class CourseGuide(Guide):
             unit=step.unit,
             answer=noted.answer,
             right_answer=step.right_answer if noted.solution else None,
-            missing_count=len(room.steps_to_catch_up(step)),
+            missing_count=len(classroom.steps_to_catch_up(step)),
         )
 
-    def _checks(self) -> messages.StepChecks:
+    def _checks_message(self) -> messages.StepChecks:
         known = self._results.get(self._step.address)
         return messages.StepChecks(
             self._step.address,
@@ -222,13 +222,13 @@ class CourseGuide(Guide):
     def _follow(self, paths: list[Path]) -> None:
         if any(path.name == PROGRESS_FILE for path in paths):
             try:
-                self._room.reload()
+                self._classroom.reload()
             except LinkwrightError as error:
                 self._publish(problem_of(error))
-            self._publish(self._course())
-            self._publish(self._shown_step())
+            self._publish(self._course_message())
+            self._publish(self._step_message())
         if any(path.name != PROGRESS_FILE for path in paths):
-            self._on_changed(self._room.shown_file(self._step))
+            self._on_changed(self._classroom.shown_file(self._step))
             self._check()
 
 

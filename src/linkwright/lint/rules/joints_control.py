@@ -72,9 +72,9 @@ class SoftLimitsOutside(Rule):
                 )
 
     def _outside_finding(
-        self, joint: Joint, safety: Element, name: str, soft_limit: float, end: str, limit: float
+        self, joint: Joint, safety: Element, name: str, soft_limit: float, bound_name: str, limit: float
     ) -> Diagnostic:
-        is_lower = end == "lower"
+        is_lower = bound_name == "lower"
         return self.report(
             phrase(
                 "'{name}' of joint '{joint_name}' is {comparison} its limit: {soft}, but '{bound}' is {limit}",
@@ -82,7 +82,7 @@ class SoftLimitsOutside(Rule):
                 joint_name=joint.name,
                 comparison=phrase("below") if is_lower else phrase("above"),
                 soft=format_number(soft_limit),
-                bound=end,
+                bound=bound_name,
                 limit=format_number(limit),
             ),
             safety,
@@ -133,7 +133,7 @@ class SoftLimitsInverted(Rule):
                     value_edit(safety, "soft_lower_limit", safety.attributes.get("soft_upper_limit", "0")),
                     value_edit(safety, "soft_upper_limit", safety.attributes.get("soft_lower_limit", "0")),
                 ]
-                complete_edits = tuple(edit for edit in edits if edit is not None)
+                available_edits = tuple(edit for edit in edits if edit is not None)
                 yield self.report(
                     phrase(
                         "the soft limits of joint '{name}' leave no range: {soft_lower_limit} to {soft_upper_limit}",
@@ -146,7 +146,7 @@ class SoftLimitsInverted(Rule):
                     hint=phrase("exchange the two values")
                     if controller.soft_lower_limit > controller.soft_upper_limit
                     else phrase("give a lower soft limit below the upper soft limit"),
-                    fix=Fix(complete_edits, safe=False) if len(complete_edits) == 2 else None,
+                    fix=Fix(available_edits, safe=False) if len(available_edits) == 2 else None,
                 )
 
 

@@ -27,13 +27,15 @@ EXTERNAL_EXECUTABLES = {
 }
 """The executables of well-known packages, without packages whose executables change between releases."""
 
-OURS = frozenset({"joint_state_publisher", "joint_state_publisher_gui", "robot_state_publisher", "tf2_ros"})
+PROVIDED_PACKAGES = frozenset(
+    {"joint_state_publisher", "joint_state_publisher_gui", "robot_state_publisher", "tf2_ros"}
+)
 """Packages of which Linkwright provides every executable, unlike the demo packages."""
 
-WELL_KNOWN = frozenset(
+WELL_KNOWN_PACKAGES = frozenset(
     {
         *EXTERNAL_EXECUTABLES,
-        *OURS,
+        *PROVIDED_PACKAGES,
         *(
             "slam_toolbox",
             "twist_mux",
@@ -139,7 +141,9 @@ class LaunchedExecutableUnknown(PackageRule):
                     if executables
                     else phrase("the package has no executables")
                 )
-            message = phrase("the package '{name}' has no executable '{text}'", name=name, text=node.executable.text)
+            message = phrase(
+                "the package '{name}' has no executable '{executable}'", name=name, executable=node.executable.text
+            )
             yield self.report(message, span=node.executable.span, source=file.source, hint=hint)
 
 
@@ -232,7 +236,7 @@ def _used_packages(package: PackageContext) -> dict[str, Note]:
 
 def _executables_of(name: str) -> frozenset[str] | None:
     """Return the executables of a well-known package, or None if not all are known."""
-    if name not in OURS:
+    if name not in PROVIDED_PACKAGES:
         return EXTERNAL_EXECUTABLES.get(name)
     return substituted_executables()[name]
 
@@ -271,9 +275,9 @@ def _intended_package(name: str, package: PackageContext, subject: Subject) -> s
 
     The result is None if a package with the given name exists.
     """
-    if not name or name in WELL_KNOWN or _is_known(name, package, subject):
+    if not name or name in WELL_KNOWN_PACKAGES or _is_known(name, package, subject):
         return None
-    similar_name = next(iter(nearest(name, [*WELL_KNOWN, package.name], 1)), None)
+    similar_name = next(iter(nearest(name, [*WELL_KNOWN_PACKAGES, package.name], 1)), None)
     return similar_name if similar_name is not None and _is_typo(name, similar_name) else None
 
 

@@ -38,7 +38,9 @@ def is_enough(method: str, answer: Any) -> bool:
     return method not in (COMPLETION, CODE_ACTION) and not _is_empty(answer)
 
 
-def combined(method: str, answers: Sequence[tuple[str, Any]], text: OpenText, parameters: Mapping[str, Any]) -> Any:
+def combine_responses(
+    method: str, answers: Sequence[tuple[str, Any]], text: OpenText, parameters: Mapping[str, Any]
+) -> Any:
     """Combine the responses of several servers to a request.
 
     Completions and code actions of all servers are combined. For other requests, the first response that is not empty

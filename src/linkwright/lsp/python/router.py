@@ -20,7 +20,7 @@ from linkwright.lsp.python.answers import (
     CODE_ACTION,
     OWN,
     RENAME,
-    combined,
+    combine_responses,
     is_enough,
     marked_action,
     server_of_action,
@@ -278,7 +278,7 @@ class Router:
         answers = [
             (name, question.answers[name].get("result")) for name in names if "error" not in question.answers[name]
         ]
-        result = combined(question.method, answers, question.text, question.parameters)
+        result = combine_responses(question.method, answers, question.text, question.parameters)
         own = question.answers.get(OWN, {})
         if result is None and "error" in own:
             self._editor.send(own)

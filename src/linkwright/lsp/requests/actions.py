@@ -16,10 +16,10 @@ from linkwright.language.includes import real_path
 from linkwright.language.refactoring import Action, Offer, Refactoring, offers_at, refactor
 from linkwright.lsp.edits import document_edits, new_file_edit
 from linkwright.lsp.positions import TextPositions
-from linkwright.lsp.requests.fixes import fixes, suppressions
+from linkwright.lsp.requests.fixes import quick_fixes, suppression_actions
 from linkwright.lsp.server import LinkwrightServer, path_of
 
-_KINDS = (
+_ACTION_KINDS = (
     types.CodeActionKind.QuickFix,
     types.CodeActionKind.SourceFixAll,
     types.CodeActionKind.RefactorExtract,
@@ -85,11 +85,11 @@ async def _refactoring_edit(
     await server.when_indexed()
     result = await server.run_in_check_thread(lambda: refactor(project, texts, action, real_path(path), start, end))
     if server.texts() != texts:
-        raise _modified()
+        raise _content_modified_error()
     return _workspace_edit(server, result)
 
 
-def _modified() -> JsonRpcException:
+def _content_modified_error() -> JsonRpcException:
     message = localized(phrase("a text has changed in the meantime"))
     return JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
 
@@ -128,7 +128,7 @@ async def _with_edit(server: LinkwrightServer, action: types.CodeAction) -> type
     if path is None or positions is None or not isinstance(start, int) or not isinstance(end, int):
         return action
     if data.get("checksum") != crc32(positions.text.encode()):
-        raise _modified()
+        raise _content_modified_error()
     try:
         refactoring = Action(data.get("action"))
     except ValueError:
@@ -144,7 +144,7 @@ async def _with_edit(server: LinkwrightServer, action: types.CodeAction) -> type
 def add_requests(server: LinkwrightServer) -> None:
     """Register the request handlers of this module."""
 
-    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions([*_KINDS], resolve_provider=True))
+    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions([*_ACTION_KINDS], resolve_provider=True))
     async def code_action(server: LinkwrightServer, params: types.CodeActionParams) -> list[types.CodeAction] | None:
         path = path_of(params.text_document.uri)
         positions = None if path is None else server.positions(path)
@@ -153,10 +153,10 @@ def add_requests(server: LinkwrightServer) -> None:
             return None
         texts = server.texts()
         actions: list[types.CodeAction] = []
-        if _may_be_requested(_KINDS[:2], only):
-            actions += fixes(server, project.fixable(real_path(path), texts), params, positions)
-            actions += suppressions(server, project.findings(real_path(path), texts), params, path, positions)
-        if _may_be_requested(_KINDS[2:], only):
+        if _may_be_requested(_ACTION_KINDS[:2], only):
+            actions += quick_fixes(server, project.fixable(real_path(path), texts), params, positions)
+            actions += suppression_actions(server, project.findings(real_path(path), texts), params, path, positions)
+        if _may_be_requested(_ACTION_KINDS[2:], only):
             start, end = positions.offset(params.range.start), positions.offset(params.range.end)
             names = await server.defined_names(path)
             server.check_unchanged(path, positions)

@@ -19,7 +19,7 @@ from linkwright.lsp.positions import TextPositions
 from linkwright.lsp.server import LinkwrightServer
 
 
-def fixes(
+def quick_fixes(
     server: LinkwrightServer, findings: Sequence[Finding], params: types.CodeActionParams, positions: TextPositions
 ) -> Iterator[types.CodeAction]:
     """Yield a fix for each finding in a range, and one action for all safe fixes.
@@ -48,7 +48,7 @@ def fixes(
         yield types.CodeAction(title, types.CodeActionKind.SourceFixAll, edit=document_edits(server, edits))
 
 
-def suppressions(
+def suppression_actions(
     server: LinkwrightServer,
     findings: Iterable[Diagnostic],
     params: types.CodeActionParams,

@@ -127,7 +127,7 @@ class _Reader:
                 self._read_structure(scope)
             elif keyword.text == "typedef":
                 kind = self._type()
-                name, kind = self._declared(kind)
+                name, kind = self._parse_declarator(kind)
                 self._typedefs[name] = kind
                 self._expect(";")
             elif keyword.text == "const":
@@ -149,7 +149,7 @@ class _Reader:
             default = self._read_annotations()
             kind = self._type()
             while True:
-                field_name, field_type = self._declared(kind)
+                field_name, field_type = self._parse_declarator(kind)
                 fields.append(Field(field_name, field_type, self._default(default, field_type)))
                 if self._now.text != ",":
                     break
@@ -262,7 +262,7 @@ class _Reader:
             )
         return FieldType(item_type.base, item_type.string_bound, Container.SEQUENCE, size)
 
-    def _declared(self, kind: FieldType) -> tuple[str, FieldType]:
+    def _parse_declarator(self, kind: FieldType) -> tuple[str, FieldType]:
         """Parse a declarator, and return its name and its type.
 
         The type includes an array size that follows the name.

@@ -47,7 +47,7 @@ ACCELERATION = slice(12, 15)
 
 
 def wrap_angle(angle: float) -> float:
-    """Return an angle wrapped to -pi to pi."""
+    """Return an angle in radians, wrapped to -pi to pi."""
     return (angle + pi) % (2.0 * pi) - pi if not -pi <= angle <= pi else angle
 
 

@@ -35,7 +35,7 @@ ZERO_VELOCITY: Final = Velocity()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Situation:
+class ControlInput:
     """The input of a control cycle, in the frame of the costmap.
 
     Attributes:
@@ -71,7 +71,7 @@ class Follower(ABC):
         """Reset for a new path."""
 
     @abstractmethod
-    def velocity(self, situation: Situation) -> Velocity:
+    def compute_velocity(self, control_input: ControlInput) -> Velocity:
         """Return the velocity for the next cycle.
 
         Raises:
@@ -96,7 +96,7 @@ def apply_speed_limit(max_speed: float, speed: float, *, is_percentage: bool) ->
 
 
 def wrap_angle(angle: float) -> float:
-    """Return an angle wrapped to (-pi, pi]."""
+    """Return an angle in radians, wrapped to (-pi, pi]."""
     return float(np.arctan2(np.sin(angle), np.cos(angle)))
 
 

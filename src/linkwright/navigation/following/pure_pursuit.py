@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from linkwright.navigation.costmaps.costmap import FREE, INSCRIBED, LETHAL, UNKNOWN, Costmap
 from linkwright.navigation.costmaps.footprints import Footprint, radii
 from linkwright.navigation.following.follower import (
+    ControlInput,
     Follower,
     FollowingError,
     Pose,
-    Situation,
     Velocity,
     apply_speed_limit,
     distances_along,
@@ -74,20 +74,20 @@ class RegulatedPurePursuit(Follower):
         """Limit the speed as described in `Follower.limit_speed`."""
         self._max_speed = apply_speed_limit(self.parameters.desired_linear_vel, speed, is_percentage=is_percentage)
 
-    def velocity(self, situation: Situation) -> Velocity:
-        """Return the velocity for the next cycle, as described in `Follower.velocity`."""
+    def compute_velocity(self, control_input: ControlInput) -> Velocity:
+        """Return the velocity for the next cycle, as described in `Follower.compute_velocity`."""
         parameters = self.parameters
-        points = to_robot_frame(situation.pose, situation.path[:, :2])
+        points = to_robot_frame(control_input.pose, control_input.path[:, :2])
         cusp = _cusp_index(points) if parameters.allow_reversing else len(points)
         points = points[: cusp + 1]
-        lookahead = self._lookahead_distance(situation.velocity.x)
+        lookahead = self._lookahead_distance(control_input.velocity.x)
         carrot = find_carrot(points, lookahead)
         sign = -1.0 if parameters.allow_reversing and carrot[0] < 0.0 else 1.0
-        goal_distance = hypot(*to_robot_frame(situation.pose, situation.path[-1, :2]))
-        if parameters.use_rotate_to_heading and goal_distance < situation.xy_tolerance:
-            command = self._turn_in_place(wrap_angle(situation.path[-1, 2] - situation.pose[2]), situation)
+        goal_distance = hypot(*to_robot_frame(control_input.pose, control_input.path[-1, :2]))
+        if parameters.use_rotate_to_heading and goal_distance < control_input.xy_tolerance:
+            command = self._turn_in_place(wrap_angle(control_input.path[-1, 2] - control_input.pose[2]), control_input)
         elif self._must_turn(angle := atan2(sign * carrot[1], sign * carrot[0])):
-            command = self._turn_in_place(angle, situation)
+            command = self._turn_in_place(angle, control_input)
         else:
             curvature_point = (
                 find_carrot(points, parameters.curvature_lookahead_dist)
@@ -95,10 +95,10 @@ class RegulatedPurePursuit(Follower):
                 else carrot
             )
             curvature = curvature_to(curvature_point)
-            speed = self._speed(curvature, points, situation)
+            speed = self._speed(curvature, points, control_input)
             command = Velocity(sign * speed, 0.0, sign * speed * curvature)
         if parameters.use_collision_detection:
-            self._check_for_collision(command, hypot(*carrot), situation)
+            self._check_for_collision(command, hypot(*carrot), control_input)
         return command
 
     def _lookahead_distance(self, speed: float) -> float:
@@ -113,19 +113,19 @@ class RegulatedPurePursuit(Follower):
         parameters = self.parameters
         return parameters.use_rotate_to_heading and abs(angle) > parameters.rotate_to_heading_min_angle
 
-    def _turn_in_place(self, angle: float, situation: Situation) -> Velocity:
+    def _turn_in_place(self, angle: float, control_input: ControlInput) -> Velocity:
         parameters = self.parameters
         return Velocity(
             yaw=rotation_speed(
                 angle,
-                situation.velocity.yaw,
-                situation.period,
+                control_input.velocity.yaw,
+                control_input.period,
                 parameters.rotate_to_heading_angular_vel,
                 parameters.max_angular_accel,
             )
         )
 
-    def _speed(self, curvature: float, points: NDArray[np.float64], situation: Situation) -> float:
+    def _speed(self, curvature: float, points: NDArray[np.float64], control_input: ControlInput) -> float:
         """Return the speed in m/s, reduced in curves, near obstacles and near the path's end."""
         parameters = self.parameters
         speed = self._max_speed
@@ -134,7 +134,9 @@ class RegulatedPurePursuit(Follower):
                 speed, speed_in_curve(self._max_speed, curvature, parameters.regulated_linear_scaling_min_radius)
             )
         if parameters.use_cost_regulated_linear_velocity_scaling:
-            speed = min(speed, self._speed_near_obstacles(situation.pose, situation.costmap, situation.footprint))
+            speed = min(
+                speed, self._speed_near_obstacles(control_input.pose, control_input.costmap, control_input.footprint)
+            )
         speed = min(max(speed, parameters.regulated_linear_scaling_min_speed), self._max_speed)
         remaining_distance = float(distances_along(points)[-1])
         if (
@@ -163,7 +165,7 @@ class RegulatedPurePursuit(Follower):
             return self._max_speed
         return self._max_speed * parameters.cost_scaling_gain * distance / parameters.cost_scaling_dist
 
-    def _check_for_collision(self, command: Velocity, carrot_distance: float, situation: Situation) -> None:
+    def _check_for_collision(self, command: Velocity, carrot_distance: float, control_input: ControlInput) -> None:
         """Check that a velocity does not lead to a collision.
 
         The footprint is checked within the permitted time to a collision, and not beyond the carrot.
@@ -174,7 +176,7 @@ class RegulatedPurePursuit(Follower):
         limit = self.parameters.max_allowed_time_to_collision_up_to_carrot
         if abs(command.x) > 0.0:
             limit = min(limit, carrot_distance / abs(command.x))
-        if not is_free(situation, command, limit):
+        if not is_free(control_input, command, limit):
             raise FollowingError("there is an obstacle ahead")
 
 
@@ -238,19 +240,19 @@ def rotation_speed(angle: float, current: float, period: float, max_speed: float
     return min(max(target, current - max_change), current + max_change)
 
 
-def is_free(situation: Situation, command: Velocity, seconds: float) -> bool:
+def is_free(control_input: ControlInput, command: Velocity, seconds: float) -> bool:
     """Return whether the footprint touches no obstacle during a motion at constant velocity.
 
     `seconds` is the duration of the motion.
     """
-    _, circumscribed_radius = radii(situation.footprint)
+    _, circumscribed_radius = radii(control_input.footprint)
     max_point_speed = hypot(command.x, command.y) + abs(command.yaw) * circumscribed_radius
     if max_point_speed <= 0.0:
         return True
-    step = situation.costmap.grid.resolution / max_point_speed
+    step = control_input.costmap.grid.resolution / max_point_speed
     times = np.arange(step, max(seconds, step) + step, step)
-    poses = predict_poses(situation.pose, np.array([command]), times)
-    costs = situation.costmap.footprint_cost(poses, situation.footprint)
+    poses = predict_poses(control_input.pose, np.array([command]), times)
+    costs = control_input.costmap.footprint_cost(poses, control_input.footprint)
     return not bool(np.any(costs == LETHAL))
 
 

@@ -11,9 +11,9 @@ from math import atan2
 import numpy as np
 
 from linkwright.navigation.following.follower import (
+    ControlInput,
     Follower,
     FollowingError,
-    Situation,
     Velocity,
     distances_along,
     to_robot_frame,
@@ -59,11 +59,11 @@ class RotationShim(Follower):
         """Limit the speed as described in `Follower.limit_speed`."""
         self._primary.limit_speed(speed, is_percentage=is_percentage)
 
-    def velocity(self, situation: Situation) -> Velocity:
-        """Return the velocity for the next cycle, as described in `Follower.velocity`."""
+    def compute_velocity(self, control_input: ControlInput) -> Velocity:
+        """Return the velocity for the next cycle, as described in `Follower.compute_velocity`."""
         parameters = self._parameters
-        points = to_robot_frame(situation.pose, situation.path[:, :2])
-        lengths = distances_along(situation.path)
+        points = to_robot_frame(control_input.pose, control_input.path[:, :2])
+        lengths = distances_along(control_input.path)
         index = min(int(np.searchsorted(lengths, parameters.forward_sampling_distance)), len(points) - 1)
         angle = atan2(float(points[index, 1]), float(points[index, 0]))
         if self._is_new_path:
@@ -72,16 +72,16 @@ class RotationShim(Follower):
         elif abs(angle) <= parameters.angular_disengage_threshold:
             self._is_turning = False
         if not self._is_turning:
-            return self._primary.velocity(situation)
+            return self._primary.compute_velocity(control_input)
         command = Velocity(
             yaw=rotation_speed(
                 angle,
-                situation.velocity.yaw,
-                situation.period,
+                control_input.velocity.yaw,
+                control_input.period,
                 parameters.rotate_to_heading_angular_vel,
                 parameters.max_angular_accel,
             )
         )
-        if not is_free(situation, command, parameters.simulate_ahead_time):
+        if not is_free(control_input, command, parameters.simulate_ahead_time):
             raise FollowingError("there is an obstacle where the robot would turn")
         return command

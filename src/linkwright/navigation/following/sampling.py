@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from linkwright.navigation.costmaps.costmap import INSCRIBED, UNKNOWN
 from linkwright.navigation.following.follower import (
+    ControlInput,
     Follower,
     FollowingError,
-    Situation,
     Velocity,
     apply_speed_limit,
     distances_along,
@@ -99,44 +99,44 @@ class SamplingFollower(Follower):
         """Limit the speed as described in `Follower.limit_speed`."""
         self._max_speed = apply_speed_limit(self.parameters.limits.max_velocity.x, speed, is_percentage=is_percentage)
 
-    def velocity(self, situation: Situation) -> Velocity:
-        """Return the velocity for the next cycle, as described in `Follower.velocity`."""
-        x, y, yaw = situation.pose
-        goal = situation.path[-1]
-        if hypot(goal[0] - x, goal[1] - y) < situation.xy_tolerance:
-            return self._turn_velocity(wrap_angle(float(goal[2]) - yaw), situation)
-        angle = self._angle_to_path(situation)
+    def compute_velocity(self, control_input: ControlInput) -> Velocity:
+        """Return the velocity for the next cycle, as described in `Follower.compute_velocity`."""
+        x, y, yaw = control_input.pose
+        goal = control_input.path[-1]
+        if hypot(goal[0] - x, goal[1] - y) < control_input.xy_tolerance:
+            return self._turn_velocity(wrap_angle(float(goal[2]) - yaw), control_input)
+        angle = self._angle_to_path(control_input)
         self._is_turning = abs(angle) > (
             self.parameters.min_turn_angle / 3.0 if self._is_turning else self.parameters.min_turn_angle
         )
         if self._is_turning and self.parameters.limits.max_velocity.y <= 0.0:
-            return self._turn_velocity(angle, situation)
-        return self._best_velocity(situation)
+            return self._turn_velocity(angle, control_input)
+        return self._best_velocity(control_input)
 
-    def _angle_to_path(self, situation: Situation) -> float:
-        points = to_robot_frame(situation.pose, situation.path[:, :2])
-        index = min(int(np.searchsorted(distances_along(situation.path), _LOOK_AHEAD)), len(points) - 1)
+    def _angle_to_path(self, control_input: ControlInput) -> float:
+        points = to_robot_frame(control_input.pose, control_input.path[:, :2])
+        index = min(int(np.searchsorted(distances_along(control_input.path), _LOOK_AHEAD)), len(points) - 1)
         return atan2(float(points[index, 1]), float(points[index, 0]))
 
-    def _turn_velocity(self, angle: float, situation: Situation) -> Velocity:
+    def _turn_velocity(self, angle: float, control_input: ControlInput) -> Velocity:
         """Return the velocity to rotate in place by an angle, after a check for collisions.
 
         Raises:
             FollowingError: the rotation leads to a collision.
         """
-        limits, current = self.parameters.limits, situation.velocity
+        limits, current = self.parameters.limits, control_input.velocity
         command = Velocity(
-            _brake(current.x, limits.deceleration.x, situation.period),
-            _brake(current.y, limits.deceleration.y, situation.period),
-            rotation_speed(angle, current.yaw, situation.period, limits.max_velocity.yaw, limits.acceleration.yaw),
+            _brake(current.x, limits.deceleration.x, control_input.period),
+            _brake(current.y, limits.deceleration.y, control_input.period),
+            rotation_speed(angle, current.yaw, control_input.period, limits.max_velocity.yaw, limits.acceleration.yaw),
         )
         yaw_rate = abs(command.yaw)
         seconds = min(self.parameters.simulated_seconds, abs(angle) / yaw_rate) if yaw_rate > 0.0 else 0.0
-        if not is_free(situation, command, seconds):
+        if not is_free(control_input, command, seconds):
             raise FollowingError("there is an obstacle where the robot would turn")
         return command
 
-    def _best_velocity(self, situation: Situation) -> Velocity:
+    def _best_velocity(self, control_input: ControlInput) -> Velocity:
         """Return the next cycle's velocity towards the best collision-free candidate.
 
         Footprints are checked in the order of the scores, best first.
@@ -145,28 +145,30 @@ class SamplingFollower(Follower):
             FollowingError: every candidate that was checked leads to a collision.
         """
         parameters = self.parameters
-        candidates = self._candidates(situation)
+        candidates = self._candidates(control_input)
         motions = predict_poses(
-            situation.pose, candidates, np.linspace(0.0, parameters.simulated_seconds, parameters.step_count + 1)[1:]
+            control_input.pose,
+            candidates,
+            np.linspace(0.0, parameters.simulated_seconds, parameters.step_count + 1)[1:],
         )
-        costs = situation.costmap.cost_at(motions[..., :2]).astype(np.float64)
+        costs = control_input.costmap.cost_at(motions[..., :2]).astype(np.float64)
         costs[costs == UNKNOWN] = 0.0
         max_costs: NDArray[np.float64] = costs.max(axis=1)
         free_indices = np.flatnonzero(max_costs < INSCRIBED)
-        motion_costs = self._motion_costs(motions[free_indices], max_costs[free_indices] / INSCRIBED, situation)
+        motion_costs = self._motion_costs(motions[free_indices], max_costs[free_indices] / INSCRIBED, control_input)
         for index in free_indices[np.argsort(motion_costs)][:_MAX_FOOTPRINTS]:
             best = Velocity(*map(float, candidates[index]))
-            if max_costs[index] <= 0.0 or is_free(situation, best, parameters.simulated_seconds):
-                return self._reachable(best, situation)
+            if max_costs[index] <= 0.0 or is_free(control_input, best, parameters.simulated_seconds):
+                return self._reachable(best, control_input)
         raise FollowingError("every sampled velocity leads to a collision")
 
-    def _candidates(self, situation: Situation) -> NDArray[np.float64]:
+    def _candidates(self, control_input: ControlInput) -> NDArray[np.float64]:
         """Return velocities that are reachable within the simulated time, of shape (candidates, 3)."""
         parameters, limits = self.parameters, self.parameters.limits
         max_velocity = (min(limits.max_velocity.x, self._max_speed), limits.max_velocity.y, limits.max_velocity.yaw)
         axes = []
         for axis, count in enumerate(parameters.sample_counts):
-            current, max_change = situation.velocity[axis], limits.acceleration[axis] * parameters.simulated_seconds
+            current, max_change = control_input.velocity[axis], limits.acceleration[axis] * parameters.simulated_seconds
             low, high = (
                 max(limits.min_velocity[axis], current - max_change),
                 min(max_velocity[axis], current + max_change),
@@ -177,12 +179,12 @@ class SamplingFollower(Follower):
         candidates: NDArray[np.float64] = np.stack([axis_samples.ravel() for axis_samples in mesh], axis=-1)
         return candidates
 
-    def _reachable(self, target: Velocity, situation: Situation) -> Velocity:
+    def _reachable(self, target: Velocity, control_input: ControlInput) -> Velocity:
         """Return the velocity nearest to a target that the robot can reach in the next cycle.
 
         All components complete the same fraction of their change.
         """
-        limits, current, period = self.parameters.limits, situation.velocity, situation.period
+        limits, current, period = self.parameters.limits, control_input.velocity, control_input.period
         fraction = 1.0
         for old_speed, new_speed, acceleration, deceleration in zip(
             current, target, limits.acceleration, limits.deceleration, strict=True
@@ -193,14 +195,14 @@ class SamplingFollower(Follower):
         return Velocity(*(before + fraction * (after - before) for before, after in zip(current, target, strict=True)))
 
     def _motion_costs(
-        self, motions: NDArray[np.float64], costs: NDArray[np.float64], situation: Situation
+        self, motions: NDArray[np.float64], costs: NDArray[np.float64], control_input: ControlInput
     ) -> NDArray[np.float64]:
         """Return the costs of motions, in meters of the path, of shape (motions,).
 
         `motions` are the predicted poses, and `costs` are the highest costs in the costmap, from 0 to 1.
         """
         parameters = self.parameters
-        path = situation.path
+        path = control_input.path
         lengths = distances_along(path)
         checked_points = motions[:, [parameters.step_count // 2, -1], :2]
         squared = ((checked_points[:, :, None] - path[None, None, :, :2]) ** 2).sum(axis=-1)

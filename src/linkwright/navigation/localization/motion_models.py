@@ -46,7 +46,7 @@ MotionModel = Callable[[Poses, Pose, Pose, Noise, np.random.Generator], None]
 
 
 def wrap_angle(angle: float) -> float:
-    """Return an angle wrapped to -pi to pi."""
+    """Return an angle in radians, wrapped to -pi to pi."""
     return atan2(sin(angle), cos(angle))
 
 

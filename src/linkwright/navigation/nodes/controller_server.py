@@ -18,7 +18,14 @@ from linkwright.graph import Graph, ParameterType, TransformException
 from linkwright.graph.actions.goal import ServerGoalHandle
 from linkwright.graph.lifecycle.states import INACTIVE
 from linkwright.messages import get_message
-from linkwright.navigation.following.follower import ZERO_VELOCITY, Follower, FollowingError, Pose, Situation, Velocity
+from linkwright.navigation.following.follower import (
+    ZERO_VELOCITY,
+    ControlInput,
+    Follower,
+    FollowingError,
+    Pose,
+    Velocity,
+)
 from linkwright.navigation.following.path import FollowedPath
 from linkwright.navigation.nodes.costmap import CostmapNode, make_costmap
 from linkwright.navigation.nodes.followers import make_follower, make_goal_checker, make_progress_checker
@@ -211,7 +218,7 @@ class ControllerNode(ManagedNode):
             return
         if not self._progress_checker.makes_progress((x, y, yaw), now_ns):
             raise GoalError("FAILED_TO_MAKE_PROGRESS", "Failed to make progress")
-        situation = Situation(
+        control_input = ControlInput(
             pose=pose,
             velocity=velocity,
             path=_transform_poses(frame, self._path.poses_ahead(self._local_radius)),
@@ -221,7 +228,7 @@ class ControllerNode(ManagedNode):
             xy_tolerance=self._goal_checker.xy_tolerance,
         )
         try:
-            command = self._follower.velocity(situation)
+            command = self._follower.compute_velocity(control_input)
         except FollowingError as error:
             self._tolerate_failure(str(error), now_ns)
             return

@@ -11,7 +11,7 @@ from math import floor, hypot, inf
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.navigation.planning.potential import Cell, Floats
+from linkwright.navigation.planning.potential import Cell, FloatArray
 
 Position = tuple[float, float]
 """A position as row and column, in cells. The middle of cell (0, 0) is (0.5, 0.5)."""
@@ -26,7 +26,7 @@ _NEIGHBOR_OFFSETS = [(row, column) for row in (-1, 0, 1) for column in (-1, 0, 1
 class _Slope:
     """The gradient of a potential, computed and cached on demand."""
 
-    def __init__(self, costs: Floats) -> None:
+    def __init__(self, costs: FloatArray) -> None:
         self._costs = costs
         self._rows, self._columns = costs.shape
         self._gradients: dict[Cell, Position | None] = {}
@@ -110,7 +110,7 @@ def _difference(previous: float, current: float, following: float) -> float:
     return min(0.0, following - current) if following < inf else 0.0
 
 
-def descend(costs: Floats, source: Cell, start: Position) -> Generator[None, None, NDArray[np.float64]]:
+def descend(costs: FloatArray, source: Cell, start: Position) -> Generator[None, None, NDArray[np.float64]]:
     """Extract a path by descent on a potential.
 
     The generator yields regularly, so that other callbacks can run.

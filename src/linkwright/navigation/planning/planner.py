@@ -20,7 +20,7 @@ from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, MAX_PASSAB
 from linkwright.navigation.costmaps.layered import Pose
 from linkwright.navigation.grids.rays import cells_on_lines
 from linkwright.navigation.planning.descent import descend
-from linkwright.navigation.planning.potential import Cell, Floats, compute_potential, crossing_prices
+from linkwright.navigation.planning.potential import Cell, FloatArray, compute_potential, crossing_prices
 
 _ESCAPE_PRICE: Final = 2530.0
 """The price of crossing a cell that is too near to an obstacle, if the robot starts in such a cell."""
@@ -139,7 +139,7 @@ def _occupied_error(problem: Problem, subject: str, pose: Pose) -> PlanError:
     return PlanError(problem, f"{subject} Coordinates of({pose[0]:f}, {pose[1]:f}) was in lethal cost")
 
 
-def _open_escape(prices: Floats, costmap: Costmap, cell: Cell, start: Pose) -> None:
+def _open_escape(prices: FloatArray, costmap: Costmap, cell: Cell, start: Pose) -> None:
     """Make the cells between a start near an obstacle and the nearest free cell passable.
 
     Raises:
@@ -159,7 +159,7 @@ def _open_escape(prices: Floats, costmap: Costmap, cell: Cell, start: Pose) -> N
 
 
 def _nearest_reachable_cell(
-    costs_to_start: Floats, costmap: Costmap, goal: Pose, cell: Cell, settings: Settings
+    costs_to_start: FloatArray, costmap: Costmap, goal: Pose, cell: Cell, settings: Settings
 ) -> Cell:
     """Return the reachable cell nearest to a goal, within the tolerance.
 
@@ -189,7 +189,7 @@ def _nearest_reachable_cell(
     raise PlanError(Problem.NO_VALID_PATH, f"Failed to create plan with tolerance of: {settings.tolerance:f}")
 
 
-def _thin_path(path_cells: NDArray[np.float64], prices: Floats) -> NDArray[np.float64]:
+def _thin_path(path_cells: NDArray[np.float64], prices: FloatArray) -> NDArray[np.float64]:
     """Drop every second point of a path where a straight line avoids unreachable cells."""
     cells = np.floor(path_cells).astype(np.int64)
     dropped = np.arange(1, len(path_cells) - 1, 2)

@@ -20,21 +20,21 @@ from numpy.typing import NDArray
 
 from linkwright.navigation.costmaps.costmap import MAX_PASSABLE, UNKNOWN
 
-Floats = NDArray[np.float64]
+FloatArray = NDArray[np.float64]
 Cell = tuple[int, int]
 """Row and column."""
 
-NEUTRAL: Final = 50.0
+NEUTRAL_COST: Final = 50.0
 """The price of crossing a cell of cost 0."""
 _COST_FACTOR: Final = 0.8
 _MAX_COST: Final = 253.0
 """The maximum price of a cell, which is also the price of an unknown cell."""
 _STEPS_BETWEEN_CHECKS: Final = 4
 """The number of steps of the wave between two checks of the cells that were held back."""
-_MIN_GAIN: Final = 1e-3 * NEUTRAL
+_MIN_GAIN: Final = 1e-3 * NEUTRAL_COST
 
 
-def crossing_prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> Floats:
+def crossing_prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> FloatArray:
     """Return the price of crossing each cell, infinite where the robot does not fit.
 
     Args:
@@ -44,17 +44,17 @@ def crossing_prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> 
     Returns:
         Prices, of the shape of the costs.
     """
-    table = np.minimum(NEUTRAL + _COST_FACTOR * np.arange(256.0), _MAX_COST)
+    table = np.minimum(NEUTRAL_COST + _COST_FACTOR * np.arange(256.0), _MAX_COST)
     table[MAX_PASSABLE + 1 :] = np.inf
     if allow_unknown:
         table[UNKNOWN] = _MAX_COST
-    prices: Floats = table[costs]
+    prices: FloatArray = table[costs]
     return prices
 
 
 def compute_potential(
-    price: Floats, source: Cell, target: Cell | None = None, *, heuristic: bool = False
-) -> Generator[None, None, Floats]:
+    price: FloatArray, source: Cell, target: Cell | None = None, *, heuristic: bool = False
+) -> Generator[None, None, FloatArray]:
     """Compute the cost of the cheapest path from a cell to each other cell.
 
     The generator yields after each step of the wave, so that other callbacks can run.
@@ -77,7 +77,7 @@ def compute_potential(
     update_bounds = np.where(
         prices < np.inf, np.inf, -np.inf
     )  # Like `costs`, except that obstacles can never become cheaper.
-    last_positions = np.zeros(prices.size, np.intp)
+    last_index = np.zeros(prices.size, np.intp)
     offsets = np.array([[-1], [1], [-width], [width]])
     start_index = (source[0] + 1) * width + source[1] + 1
     target_index = None if target is None else (target[0] + 1) * width + target[1] + 1
@@ -120,26 +120,26 @@ def compute_potential(
             front, new_costs = front[is_promising], new_costs[is_promising]
         neighbors = front + offsets
         neighbors = neighbors[update_bounds.take(neighbors) > new_costs + min_increase]
-        last_positions[neighbors] = order = np.arange(neighbors.size)
-        front = neighbors[last_positions.take(neighbors) == order]
-    result: Floats = costs.reshape(rows + 2, width)[1:-1, 1:-1]
+        last_index[neighbors] = order = np.arange(neighbors.size)
+        front = neighbors[last_index.take(neighbors) == order]
+    result: FloatArray = costs.reshape(rows + 2, width)[1:-1, 1:-1]
     return result
 
 
-def _potential_after_crossing(row_neighbor: Floats, column_neighbor: Floats, price: Floats) -> Floats:
+def _potential_after_crossing(row_neighbor: FloatArray, column_neighbor: FloatArray, price: FloatArray) -> FloatArray:
     """Return the potential of cells from their prices and the cheaper neighbor on each axis."""
     low, high = np.minimum(row_neighbor, column_neighbor), np.maximum(row_neighbor, column_neighbor)
     difference = np.minimum(high - low, price)  # A larger difference means that only one axis counts.
-    value: Floats = low + 0.5 * (difference + np.sqrt(2.0 * price * price - difference * difference))
+    value: FloatArray = low + 0.5 * (difference + np.sqrt(2.0 * price * price - difference * difference))
     return value
 
 
-def _min_cost_to_target(price: Floats, target: Cell) -> Floats:
+def _min_cost_to_target(price: FloatArray, target: Cell) -> FloatArray:
     """Return a lower bound of the cost from each cell to the target.
 
     The result is flat, and includes a border of one cell.
     """
     rows, columns = price.shape
     y, x = np.arange(-1.0, rows + 1) - target[0], np.arange(-1.0, columns + 1) - target[1]
-    bounds: Floats = (float(price.min()) * np.hypot(y[:, None], x[None, :])).ravel()
+    bounds: FloatArray = (float(price.min()) * np.hypot(y[:, None], x[None, :])).ravel()
     return bounds

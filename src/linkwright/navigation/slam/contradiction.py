@@ -9,7 +9,7 @@ from math import pi
 
 import numpy as np
 
-from linkwright.navigation.slam.poses import Floats, relative_pose, transform_points
+from linkwright.navigation.slam.poses import FloatArray, relative_pose, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
 _MAX_RAY_ANGLE = 0.03
@@ -19,7 +19,9 @@ _MIN_DEPTH = 0.3
 _MIN_POINTS = 20
 
 
-def contradiction_share(first: PlanarScan, first_pose: Floats, second: PlanarScan, second_pose: Floats) -> float:
+def contradiction_share(
+    first: PlanarScan, first_pose: FloatArray, second: PlanarScan, second_pose: FloatArray
+) -> float:
     """Return the share of a scan's points through which the other scan's rays pass.
 
     The share is computed for both scans, and the larger one is returned, from 0 to 1.
@@ -36,7 +38,7 @@ def contradiction_share(first: PlanarScan, first_pose: Floats, second: PlanarSca
     )
 
 
-def _share_passed_through(viewer: PlanarScan, other: PlanarScan, pose: Floats) -> float:
+def _share_passed_through(viewer: PlanarScan, other: PlanarScan, pose: FloatArray) -> float:
     """Return the share of another scan's points that the viewer's rays pass through.
 
     `pose` is the pose of the other scan in the viewer's frame.

@@ -14,7 +14,7 @@ from linkwright.navigation.slam.contradiction import contradiction_share
 from linkwright.navigation.slam.matching import Match, match_scan
 from linkwright.navigation.slam.occupancy import OccupancyMap
 from linkwright.navigation.slam.pose_graph import PoseGraph
-from linkwright.navigation.slam.poses import Floats, compose, relative_pose, wrap_angles
+from linkwright.navigation.slam.poses import FloatArray, compose, relative_pose, wrap_angles
 from linkwright.navigation.slam.reference import Reference
 from linkwright.navigation.slam.scan import PlanarScan
 from linkwright.navigation.slam.search import Search
@@ -50,8 +50,8 @@ class Outcome:
         loop_count: the number of closed loops.
     """
 
-    pose: Floats
-    covariance: Floats
+    pose: FloatArray
+    covariance: FloatArray
     is_matched: bool
     response: float
     link_count: int = 0
@@ -78,9 +78,9 @@ class Mapper:
         self.occupancy = occupancy
         self.graph = PoseGraph()
         self.scans: list[PlanarScan] = []
-        self.odometry: list[Floats] = []
-        self._last_processed: tuple[Floats, int] | None = None
-        self._map_pose: Floats | None = None
+        self.odometry: list[FloatArray] = []
+        self._last_processed: tuple[FloatArray, int] | None = None
+        self._map_pose: FloatArray | None = None
         self._session = 0
 
     @property
@@ -88,7 +88,7 @@ class Mapper:
         """The time of the last processed scan in nanoseconds, or 0 before the first scan."""
         return 0 if self._last_processed is None else self._last_processed[1]
 
-    def replace_graph(self, graph: PoseGraph, scans: list[PlanarScan], odometry: list[Floats]) -> None:
+    def replace_graph(self, graph: PoseGraph, scans: list[PlanarScan], odometry: list[FloatArray]) -> None:
         """Replace the graph, and erase the old scans from the map.
 
         The new scans are not drawn yet.
@@ -98,7 +98,7 @@ class Mapper:
         self.graph, self.scans, self.odometry = graph, scans, odometry
         self.begin_session(None)
 
-    def begin_session(self, pose: Floats | None) -> None:
+    def begin_session(self, pose: FloatArray | None) -> None:
         """Start a new session at a pose.
 
         The first scan is matched around this pose. Scans of earlier sessions no longer count as the latest scans.
@@ -114,7 +114,7 @@ class Mapper:
         elif len(self.graph.poses):
             self._map_pose = self.graph.poses[0].copy()
 
-    def should_process(self, odometry: Floats, stamp_ns: int, since: tuple[Floats, int] | None = None) -> bool:
+    def should_process(self, odometry: FloatArray, stamp_ns: int, since: tuple[FloatArray, int] | None = None) -> bool:
         """Return whether enough time has passed and the robot has moved or turned enough.
 
         Args:
@@ -135,7 +135,7 @@ class Mapper:
             or abs(motion[2]) >= self.settings.minimum_travel_heading
         )
 
-    def predict_pose(self, odometry: Floats) -> Floats:
+    def predict_pose(self, odometry: FloatArray) -> FloatArray:
         """Return the pose in the map, of shape (3,), predicted by odometry since the last scan."""
         if self._map_pose is None:
             return odometry
@@ -145,7 +145,7 @@ class Mapper:
             else compose(self._map_pose, relative_pose(self._last_processed[0], odometry))
         )
 
-    def process(self, scan: PlanarScan, odometry: Floats) -> Steps[Outcome]:
+    def process(self, scan: PlanarScan, odometry: FloatArray) -> Steps[Outcome]:
         """Add a scan to the graph and draw the changes to the map, in steps.
 
         Args:
@@ -178,7 +178,7 @@ class Mapper:
         yield from self.redraw()
         return _outcome(self._map_pose, information, best_match, links, loops)
 
-    def localize(self, scan: PlanarScan, odometry: Floats) -> Steps[Outcome]:
+    def localize(self, scan: PlanarScan, odometry: FloatArray) -> Steps[Outcome]:
         """Localize a scan, in steps, without changing the graph.
 
         The arguments are the same as for `process`.
@@ -210,12 +210,12 @@ class Mapper:
             self.occupancy.draw(number, scan, pose)
             yield
 
-    def _add(self, scan: PlanarScan, odometry: Floats, pose: Floats) -> int:
+    def _add(self, scan: PlanarScan, odometry: FloatArray, pose: FloatArray) -> int:
         self.scans.append(scan)
         self.odometry.append(odometry)
         return self.graph.add_node(pose)
 
-    def _match_first_scan(self, scan: PlanarScan, guess: Floats, odometry: Floats) -> Steps[Outcome]:
+    def _match_first_scan(self, scan: PlanarScan, guess: FloatArray, odometry: FloatArray) -> Steps[Outcome]:
         """Add the first scan of a session, matched against scans of earlier sessions."""
         nodes = self._nearest_scans(guess)
         best_match = yield from self._match(nodes, scan, guess, self.settings.loop)
@@ -230,26 +230,26 @@ class Mapper:
         yield from self.redraw()
         return _outcome(pose, information, best_match)
 
-    def _recent_scans_near(self, pose: Floats) -> list[int]:
+    def _recent_scans_near(self, pose: FloatArray) -> list[int]:
         """Return the numbers of the latest scans of this session that are near a pose."""
         begin = max(self._session, len(self.scans) - self.settings.scan_buffer_size)
         is_near = self._distances(pose) <= self.settings.scan_buffer_maximum_scan_distance
         return [number for number in range(begin, len(self.scans)) if is_near[number]]
 
-    def _nearest_scans(self, pose: Floats) -> list[int]:
+    def _nearest_scans(self, pose: FloatArray) -> list[int]:
         """Return the numbers of the scans nearest to a pose, of all sessions, nearest first."""
         order = np.argsort(self._distances(pose), kind="stable")
         return [int(index) for index in order[: 2 * self.settings.scan_buffer_size]]
 
-    def _distances(self, pose: Floats) -> Floats:
+    def _distances(self, pose: FloatArray) -> FloatArray:
         offsets = self.graph.poses[:, :2] - pose[:2]
-        result: Floats = np.hypot(offsets[:, 0], offsets[:, 1])
+        result: FloatArray = np.hypot(offsets[:, 0], offsets[:, 1])
         return result
 
-    def _nearest_node(self, nodes: list[int], pose: Floats) -> int:
+    def _nearest_node(self, nodes: list[int], pose: FloatArray) -> int:
         return nodes[int(np.argmin(self._distances(pose)[nodes]))]
 
-    def _match(self, nodes: list[int], scan: PlanarScan, guess: Floats, search: Search) -> Steps[Match | None]:
+    def _match(self, nodes: list[int], scan: PlanarScan, guess: FloatArray, search: Search) -> Steps[Match | None]:
         """Match a scan against the scans of some nodes.
 
         Returns None if the match is not good enough or is too far from the guess.
@@ -321,7 +321,7 @@ class Mapper:
         ) is not None
 
     def _connect(
-        self, number: int, chain: list[int], search: Search, min_response: float, *, around: Floats | None = None
+        self, number: int, chain: list[int], search: Search, min_response: float, *, around: FloatArray | None = None
     ) -> Steps[Match | None]:
         """Match a node against a chain of nodes, add an edge, and return the match.
 
@@ -347,13 +347,15 @@ def _worst_variance(best_match: Match) -> float:
     return float(np.linalg.inv(best_match.information + _MIN_INFORMATION * np.eye(3)).diagonal()[:2].max())
 
 
-def _outcome(pose: Floats, information: Floats, best_match: Match | None, links: int = 0, loops: int = 0) -> Outcome:
-    covariance: Floats = np.asarray(np.linalg.inv(information), dtype=np.float64)
+def _outcome(
+    pose: FloatArray, information: FloatArray, best_match: Match | None, links: int = 0, loops: int = 0
+) -> Outcome:
+    covariance: FloatArray = np.asarray(np.linalg.inv(information), dtype=np.float64)
     response = 0.0 if best_match is None else best_match.response
     return Outcome(pose.copy(), covariance, best_match is not None, response, links, loops)
 
 
-def _odometric_information(moved: Floats) -> Floats:
+def _odometric_information(moved: FloatArray) -> FloatArray:
     """Return the information matrix, of shape (3, 3), of an odometry motion of shape (3,).
 
     The standard deviations are 3 cm and 0.02 rad at rest, and grow by about 10 % of the motion.
@@ -361,5 +363,5 @@ def _odometric_information(moved: Floats) -> Floats:
     rotation = abs(float(wrap_angles(moved)[2]))
     position_deviation = 0.03 + 0.1 * float(np.hypot(moved[0], moved[1])) + 0.03 * rotation
     yaw_deviation = 0.02 + 0.1 * rotation + 0.05 * float(np.hypot(moved[0], moved[1]))
-    result: Floats = np.diag((position_deviation**-2, position_deviation**-2, yaw_deviation**-2))
+    result: FloatArray = np.diag((position_deviation**-2, position_deviation**-2, yaw_deviation**-2))
     return result

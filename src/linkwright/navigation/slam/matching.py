@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 
-from linkwright.navigation.slam.poses import Floats, transform_points, wrap_angles
+from linkwright.navigation.slam.poses import FloatArray, transform_points, wrap_angles
 from linkwright.navigation.slam.reference import LikelihoodField, Reference
 from linkwright.navigation.slam.scan import PlanarScan
 from linkwright.navigation.slam.search import Search, best_pose
@@ -44,15 +44,15 @@ class Match:
         error: the root mean square of the points' distances from their walls, in meters.
     """
 
-    pose: Floats
+    pose: FloatArray
     response: float
-    information: Floats
+    information: FloatArray
     inliers: float
     error: float
 
 
 def match_scan(
-    reference: Reference, scan: PlanarScan, guess: Floats, search: Search, *, expand: bool = False
+    reference: Reference, scan: PlanarScan, guess: FloatArray, search: Search, *, expand: bool = False
 ) -> Steps[Match | None]:
     """Match a scan against earlier scans, in steps.
 
@@ -83,7 +83,7 @@ def match_scan(
     return _refine(reference, scan, guess, pose, response)
 
 
-def _refine(reference: Reference, scan: PlanarScan, guess: Floats, start: Floats, response: float) -> Match:
+def _refine(reference: Reference, scan: PlanarScan, guess: FloatArray, start: FloatArray, response: float) -> Match:
     """Return the match at a pose, refined by point-to-line ICP with Cauchy weights.
 
     Source: Censi, "An ICP variant using a point-to-line metric", 2008.
@@ -96,12 +96,12 @@ def _refine(reference: Reference, scan: PlanarScan, guess: Floats, start: Floats
     system = _normal_equations(reference, scan, pose, max_distance, scale)
     projection = _constrained_projection(system[0], len(scan.points))
     yaw_offset = wrap_angles(start - guess)[2]
-    shift: Floats = np.array((start[0] - guess[0], start[1] - guess[1], yaw_offset)) / scale
+    shift: FloatArray = np.array((start[0] - guess[0], start[1] - guess[1], yaw_offset)) / scale
     pose = guess + scale * (projection @ shift)
     for _ in range(_MAX_ITERATIONS):
         hessian, gradient, _, _ = _normal_equations(reference, scan, pose, max_distance, scale)
         projection = _constrained_projection(hessian, len(scan.points))
-        step: Floats = -np.linalg.pinv(projection @ hessian @ projection, rcond=1e-9, hermitian=True) @ (
+        step: FloatArray = -np.linalg.pinv(projection @ hessian @ projection, rcond=1e-9, hermitian=True) @ (
             projection @ gradient
         )
         step *= min(1.0, 0.2 / max(float(np.abs(step).max()), 1e-12))
@@ -114,22 +114,22 @@ def _refine(reference: Reference, scan: PlanarScan, guess: Floats, start: Floats
     unscaled = projection @ hessian @ projection / np.outer(scale, scale)
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
     axes = np.array(((cos, -sin, 0.0), (sin, cos, 0.0), (0.0, 0.0, 1.0)))
-    information: Floats = axes.T @ unscaled @ axes * (_INDEPENDENT_SHARE / max(error, _MIN_ERROR) ** 2)
+    information: FloatArray = axes.T @ unscaled @ axes * (_INDEPENDENT_SHARE / max(error, _MIN_ERROR) ** 2)
     pose[2] = (pose[2] + pi) % (2 * pi) - pi
     return Match(pose, response, information, inliers, error)
 
 
-def _constrained_projection(hessian: Floats, points: int) -> Floats:
+def _constrained_projection(hessian: FloatArray, points: int) -> FloatArray:
     """Return the projection onto the directions that the points constrain, of shape (3, 3)."""
     values, vectors = np.linalg.eigh(hessian)
     constrained = vectors[:, values > _MIN_INFORMATION_SHARE * points]
-    result: Floats = constrained @ constrained.T
+    result: FloatArray = constrained @ constrained.T
     return result
 
 
 def _normal_equations(
-    reference: Reference, scan: PlanarScan, pose: Floats, max_distance: float, scale: Floats
-) -> tuple[Floats, Floats, float, float]:
+    reference: Reference, scan: PlanarScan, pose: FloatArray, max_distance: float, scale: FloatArray
+) -> tuple[FloatArray, FloatArray, float, float]:
     """Return the normal equations of point-to-line matching at a pose.
 
     Returns:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
-from linkwright.navigation.slam.poses import Floats, transform_points
+from linkwright.navigation.slam.poses import FloatArray, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
 _MARGIN = 64
@@ -24,7 +24,7 @@ Cells = NDArray[np.int64]
 class _Trace:
     """The ray counts of one scan: distinct cells (row, column), with their passes and hits."""
 
-    pose: Floats
+    pose: FloatArray
     cells: Cells
     passes: NDArray[np.int32]
     hits: NDArray[np.int32]
@@ -53,7 +53,7 @@ class OccupancyMap:
         self._hits: NDArray[np.int32] = np.zeros((0, 0), dtype=np.int32)
         self._traces: dict[int, _Trace] = {}
 
-    def draw(self, number: int, scan: PlanarScan, pose: Floats) -> None:
+    def draw(self, number: int, scan: PlanarScan, pose: FloatArray) -> None:
         """Add a scan at a pose of the robot, in place of any scan with the same number.
 
         `pose` has shape (3,).
@@ -72,7 +72,7 @@ class OccupancyMap:
         if trace is not None:
             self._add_counts(trace, -1)
 
-    def drawn_pose(self, number: int) -> Floats | None:
+    def drawn_pose(self, number: int) -> FloatArray | None:
         """Return the pose at which a scan was added, or None if the scan is not in the map."""
         trace = self._traces.get(number)
         return None if trace is None else trace.pose
@@ -115,7 +115,7 @@ class OccupancyMap:
             setattr(self, name, enlarged)
         self._corner = low
 
-    def _trace_scan(self, scan: PlanarScan, pose: Floats) -> _Trace:
+    def _trace_scan(self, scan: PlanarScan, pose: FloatArray) -> _Trace:
         """Return the counts of the cells along all rays of a scan."""
         ends = transform_points(pose, np.concatenate((scan.points, scan.free_ends)))
         origin = transform_points(pose, scan.origin[None])[0] / self.resolution

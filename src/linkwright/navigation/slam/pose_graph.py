@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.navigation.grids.library import load_scipy
-from linkwright.navigation.slam.poses import Floats, wrap_angles
+from linkwright.navigation.slam.poses import FloatArray, wrap_angles
 from linkwright.navigation.slam.steps import Steps
 
 _MAX_ITERATIONS = 20
@@ -34,14 +34,14 @@ class PoseGraph:
         is_doubtful: for each edge, whether it may be wrong.
     """
 
-    poses: Floats = field(default_factory=lambda: np.zeros((0, 3)))
+    poses: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     first: list[int] = field(default_factory=list)
     second: list[int] = field(default_factory=list)
-    measured: list[Floats] = field(default_factory=list)
-    information: list[Floats] = field(default_factory=list)
+    measured: list[FloatArray] = field(default_factory=list)
+    information: list[FloatArray] = field(default_factory=list)
     is_doubtful: list[bool] = field(default_factory=list)
 
-    def add_node(self, pose: Floats) -> int:
+    def add_node(self, pose: FloatArray) -> int:
         """Add a node at a pose of shape (3,).
 
         Returns:
@@ -51,7 +51,7 @@ class PoseGraph:
         return len(self.poses) - 1
 
     def add_edge(
-        self, first: int, second: int, measured: Floats, information: Floats, *, is_doubtful: bool = False
+        self, first: int, second: int, measured: FloatArray, information: FloatArray, *, is_doubtful: bool = False
     ) -> None:
         """Add a measured relative pose between two nodes.
 
@@ -91,7 +91,7 @@ class PoseGraph:
         edges, components = np.arange(3 * len(self.first)), np.arange(3)
         rows = np.broadcast_to(edges.reshape(-1, 3, 1), (len(self.first), 3, 3)).ravel()
 
-        def block(values: Floats, nodes: list[int]) -> Any:
+        def block(values: FloatArray, nodes: list[int]) -> Any:
             columns = np.broadcast_to((3 * np.array(nodes)[:, None] + components)[:, None, :], values.shape)
             return sparse.csr_matrix((values.ravel(), (rows, columns.ravel())), shape=(len(edges), size))
 
@@ -100,12 +100,14 @@ class PoseGraph:
         weight = sparse.csr_matrix((information.ravel(), (rows, columns)), shape=(len(edges), len(edges)))
         weighted = jacobian.T @ weight
         matrix = (weighted @ jacobian)[3:, 3:] + 1e-9 * sparse.identity(size - 3)
-        step: Floats = np.asarray(linalg.spsolve(matrix.tocsc(), -(weighted @ residuals.ravel())[3:])).reshape(-1, 3)
+        step: FloatArray = np.asarray(linalg.spsolve(matrix.tocsc(), -(weighted @ residuals.ravel())[3:])).reshape(
+            -1, 3
+        )
         self.poses[1:] += step
         self.poses[:, 2] = wrap_angles(self.poses[:, 2])
         return float(np.abs(step).max())
 
-    def _linearized(self) -> tuple[Floats, Floats, Floats]:
+    def _linearized(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the residuals of the edges, (m, 3), and their Jacobians, (m, 3, 3) each.
 
         The Jacobians are with respect to the first and the second pose of each edge.

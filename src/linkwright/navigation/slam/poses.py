@@ -10,38 +10,40 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+FloatArray = NDArray[np.float64]
 
 
-def wrap_angles(angles: Floats) -> Floats:
+def wrap_angles(angles: FloatArray) -> FloatArray:
     """Return angles wrapped to -pi to pi."""
-    result: Floats = (angles + pi) % (2 * pi) - pi
+    result: FloatArray = (angles + pi) % (2 * pi) - pi
     return result
 
 
-def compose(b_in_a: Floats, c_in_b: Floats) -> Floats:
+def compose(b_in_a: FloatArray, c_in_b: FloatArray) -> FloatArray:
     """Return the poses of c in a, of shape (..., 3), from the poses of b in a and of c in b."""
     cos, sin = np.cos(b_in_a[..., 2]), np.sin(b_in_a[..., 2])
     x, y = c_in_b[..., 0], c_in_b[..., 1]
     yaw = wrap_angles(b_in_a[..., 2] + c_in_b[..., 2])
-    result: Floats = np.stack((b_in_a[..., 0] + cos * x - sin * y, b_in_a[..., 1] + sin * x + cos * y, yaw), axis=-1)
+    result: FloatArray = np.stack(
+        (b_in_a[..., 0] + cos * x - sin * y, b_in_a[..., 1] + sin * x + cos * y, yaw), axis=-1
+    )
     return result
 
 
-def inverse(b_in_a: Floats) -> Floats:
+def inverse(b_in_a: FloatArray) -> FloatArray:
     """Return the poses of a in b, of shape (..., 3), from the poses of b in a."""
     cos, sin = np.cos(b_in_a[..., 2]), np.sin(b_in_a[..., 2])
     x, y = b_in_a[..., 0], b_in_a[..., 1]
-    result: Floats = np.stack((-cos * x - sin * y, sin * x - cos * y, -b_in_a[..., 2]), axis=-1)
+    result: FloatArray = np.stack((-cos * x - sin * y, sin * x - cos * y, -b_in_a[..., 2]), axis=-1)
     return result
 
 
-def relative_pose(b_in_a: Floats, c_in_a: Floats) -> Floats:
+def relative_pose(b_in_a: FloatArray, c_in_a: FloatArray) -> FloatArray:
     """Return the poses of c in b, of shape (..., 3), from the poses of b in a and of c in a."""
     return compose(inverse(b_in_a), c_in_a)
 
 
-def transform_points(pose: Floats, points: Floats) -> Floats:
+def transform_points(pose: FloatArray, points: FloatArray) -> FloatArray:
     """Transform points from the frame at `pose` to the frame in which `pose` is given.
 
     Args:
@@ -49,5 +51,5 @@ def transform_points(pose: Floats, points: Floats) -> Floats:
         points: shape (n, 2).
     """
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
-    result: Floats = points @ np.array(((cos, sin), (-sin, cos))) + pose[:2]
+    result: FloatArray = points @ np.array(((cos, sin), (-sin, cos))) + pose[:2]
     return result

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.grids.library import load_scipy
-from linkwright.navigation.slam.poses import Floats, transform_points
+from linkwright.navigation.slam.poses import FloatArray, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
 _THINNING_CELL = 0.05
@@ -28,10 +28,10 @@ class Reference:
         poses: the poses of the scans, of shape (n, 3), in the frame of the reference.
     """
 
-    def __init__(self, scans: Sequence[PlanarScan], poses: Floats) -> None:
+    def __init__(self, scans: Sequence[PlanarScan], poses: FloatArray) -> None:
         pairs = [(scan, pose) for scan, pose in zip(scans, poses, strict=True) if len(scan.points)]
-        self.points: Floats = np.zeros((0, 2))
-        self._sensor_positions: Floats = np.zeros((0, 2))
+        self.points: FloatArray = np.zeros((0, 2))
+        self._sensor_positions: FloatArray = np.zeros((0, 2))
         if pairs:
             points = np.concatenate([transform_points(pose, scan.points) for scan, pose in pairs])
             sensors = np.concatenate(
@@ -39,14 +39,14 @@ class Reference:
             )
             self._average_by_cell(points, sensors)
 
-    def _average_by_cell(self, points: Floats, sensors: Floats) -> None:
+    def _average_by_cell(self, points: FloatArray, sensors: FloatArray) -> None:
         cells = np.floor((points - points.min(axis=0)) / _THINNING_CELL).astype(np.int64)
         _, index = np.unique(cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1], return_inverse=True)
         counts = np.bincount(index)
 
-        def mean(values: Floats) -> Floats:
+        def mean(values: FloatArray) -> FloatArray:
             sums = [np.bincount(index, weights=values[:, axis]) for axis in (0, 1)]
-            result: Floats = np.stack(sums, axis=-1) / counts[:, None]
+            result: FloatArray = np.stack(sums, axis=-1) / counts[:, None]
             return result
 
         self.points, self._sensor_positions = mean(points), mean(sensors)
@@ -71,10 +71,10 @@ class Reference:
         total = np.maximum(xx + yy, 1e-12)
         flatness = eigenvalue_differences / total  # 1 for a line, 0 for points scattered in all directions.
         flatness[distances.reshape(-1, count)[:, -1] > _MAX_NEIGHBOR_DISTANCE] = 0.0
-        self._normals: Floats = normals
-        self._flatness: Floats = flatness if count >= 3 else np.zeros(len(self.points))
+        self._normals: FloatArray = normals
+        self._flatness: FloatArray = flatness if count >= 3 else np.zeros(len(self.points))
 
-    def nearest(self, points: Floats) -> tuple[Floats, NDArray[np.int64], Floats, Floats, Floats]:
+    def nearest(self, points: FloatArray) -> tuple[FloatArray, NDArray[np.int64], FloatArray, FloatArray, FloatArray]:
         """Return the nearest reference point of each of the points, of shape (n, 2).
 
         Returns:
@@ -94,11 +94,11 @@ class LikelihoodField:
         smear_deviation: the standard deviation of the points' positions, in meters.
     """
 
-    def __init__(self, points: Floats, resolution: float, smear_deviation: float) -> None:
+    def __init__(self, points: FloatArray, resolution: float, smear_deviation: float) -> None:
         self.resolution = resolution
         deviation = max(smear_deviation, resolution / 2)
         margin = 3.1 * deviation + resolution  # Wide enough that the outermost cells are 0.
-        self.corner: Floats = points.min(axis=0) - margin
+        self.corner: FloatArray = points.min(axis=0) - margin
         size = np.ceil((points.max(axis=0) + margin - self.corner) / resolution).astype(int) + 1
         is_empty = np.ones((size[1], size[0]), dtype=bool)
         cells = np.floor((points - self.corner) / resolution).astype(int)

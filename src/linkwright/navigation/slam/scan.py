@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.navigation.slam.poses import Floats
+from linkwright.navigation.slam.poses import FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,18 +24,18 @@ class PlanarScan:
         stamp_ns: the stamp, in nanoseconds.
     """
 
-    points: Floats
-    free_ends: Floats
-    origin: Floats
+    points: FloatArray
+    free_ends: FloatArray
+    origin: FloatArray
     stamp_ns: int
 
 
 def planar_scan(
     ranges: NDArray[np.floating],
-    angles: Floats,
+    angles: FloatArray,
     limits: tuple[float, float],
     cut_off: tuple[float, float],
-    laser: tuple[Floats, Floats],
+    laser: tuple[FloatArray, FloatArray],
     stamp_ns: int,
 ) -> PlanarScan:
     """Convert the ranges of a laser to points.
@@ -59,6 +59,6 @@ def planar_scan(
     clipped = np.minimum(distances, cut_off[1])
     rotation, position = laser
     laser_points = np.stack((clipped * np.cos(ray_angles), clipped * np.sin(ray_angles)), axis=-1)
-    points: Floats = laser_points @ rotation[:2, :2].T + position[:2]
+    points: FloatArray = laser_points @ rotation[:2, :2].T + position[:2]
     is_hit = distances < cut_off[1]
     return PlanarScan(points[is_hit], points[~is_hit], np.asarray(position[:2], dtype=np.float64), stamp_ns)

@@ -14,7 +14,7 @@ from math import ceil, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.navigation.slam.poses import Floats
+from linkwright.navigation.slam.poses import FloatArray
 from linkwright.navigation.slam.reference import LikelihoodField
 from linkwright.navigation.slam.steps import Steps
 
@@ -70,7 +70,7 @@ class _Blocks:
     angle: NDArray[np.int64]
     row: NDArray[np.int64]
     column: NDArray[np.int64]
-    bound: Floats
+    bound: FloatArray
 
     def selected(self, selection: slice | NDArray[np.bool_]) -> _Blocks:
         return _Blocks(self.angle[selection], self.row[selection], self.column[selection], self.bound[selection])
@@ -79,14 +79,14 @@ class _Blocks:
 class _Window:
     """The poses around a guess, rated in blocks."""
 
-    def __init__(self, likelihood: LikelihoodField, points: Floats, guess: Floats, search: Search) -> None:
+    def __init__(self, likelihood: LikelihoodField, points: FloatArray, guess: FloatArray, search: Search) -> None:
         self._likelihood, self._search = likelihood, search
         stride = -(-len(points) // _MAX_POINTS)
         points = points[::stride]
         radius = float(np.quantile(np.hypot(points[:, 0], points[:, 1]), 0.8))
         step: float = min(search.angle_resolution, 1.5 * likelihood.resolution / max(radius, likelihood.resolution))
         count = ceil(search.angle_offset / step - 1e-9)
-        self.angles: Floats = np.arange(-count, count + 1, dtype=np.float64) * step
+        self.angles: FloatArray = np.arange(-count, count + 1, dtype=np.float64) * step
         self.half = ceil(search.dimension / 2 / likelihood.resolution - 1e-9)
         yaw = guess[2] + self.angles
         cos, sin = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
@@ -115,10 +115,10 @@ class _Window:
             self._columns[blocks.angle] + (blocks.column + offset)[:, None].astype(np.int32), 0, width - 1
         )
         responses = flat.take(rows * np.int32(width) + columns).mean(axis=1, dtype=np.float64)
-        bound: Floats = responses * self._penalty(blocks, level)
+        bound: FloatArray = responses * self._penalty(blocks, level)
         blocks.bound = bound
 
-    def _penalty(self, blocks: _Blocks, level: int) -> Floats:
+    def _penalty(self, blocks: _Blocks, level: int) -> FloatArray:
         search, block_end = self._search, (1 << level) - 1
 
         def nearest(first: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -128,7 +128,7 @@ class _Window:
         squared = (nearest(blocks.row) ** 2 + nearest(blocks.column) ** 2) * self._likelihood.resolution**2
         distance = 1 - _PENALTY_GAIN * squared / search.distance_variance_penalty
         angle = 1 - _PENALTY_GAIN * self.angles[blocks.angle] ** 2 / search.angle_variance_penalty
-        result: Floats = np.maximum(distance, search.minimum_distance_penalty) * np.maximum(
+        result: FloatArray = np.maximum(distance, search.minimum_distance_penalty) * np.maximum(
             angle, search.minimum_angle_penalty
         )
         return result
@@ -147,8 +147,8 @@ class _Window:
 
 
 def best_pose(
-    likelihood: LikelihoodField, points: Floats, guess: Floats, search: Search
-) -> Steps[tuple[Floats, float]]:
+    likelihood: LikelihoodField, points: FloatArray, guess: FloatArray, search: Search
+) -> Steps[tuple[FloatArray, float]]:
     """Search a window for the pose with the highest response, in steps.
 
     Args:
@@ -178,7 +178,9 @@ def best_pose(
         if blocks.bound[index] > best_response:
             best_response, best_block = float(blocks.bound[index]), blocks.selected(np.s_[index : index + 1])
     shift = np.array((best_block.column[0], best_block.row[0])) * likelihood.resolution
-    pose: Floats = np.array((guess[0] + shift[0], guess[1] + shift[1], guess[2] + window.angles[best_block.angle[0]]))
+    pose: FloatArray = np.array(
+        (guess[0] + shift[0], guess[1] + shift[1], guess[2] + window.angles[best_block.angle[0]])
+    )
     pose[2] = (pose[2] + pi) % (2 * pi) - pi
     return pose, best_response
 

@@ -25,7 +25,7 @@ from linkwright.files.input_files import read_file
 from linkwright.files.whole_files import write_whole_file
 from linkwright.navigation.slam.mapper import Mapper
 from linkwright.navigation.slam.pose_graph import PoseGraph
-from linkwright.navigation.slam.poses import Floats
+from linkwright.navigation.slam.poses import FloatArray
 from linkwright.navigation.slam.scan import PlanarScan
 
 EXTENSION = ".posegraph"
@@ -88,7 +88,7 @@ def load_graph(mapper: Mapper, path: Path) -> None:
     mapper.replace_graph(graph, scans, odometry)
 
 
-def _read(data: bytes) -> tuple[PoseGraph, list[PlanarScan], list[Floats]]:
+def _read(data: bytes) -> tuple[PoseGraph, list[PlanarScan], list[FloatArray]]:
     with np.load(BytesIO(data), allow_pickle=False) as archive:
         arrays = {name: archive[name] for name in archive.files}
     poses, edges, counts = arrays["poses"].reshape(-1, 3), arrays["edges"].reshape(2, -1), arrays["counts"]

@@ -34,7 +34,7 @@ _CONDITIONS = ("if", "unless")
 _NOT_COMPARED = frozenset({"pkg", "exec", "type", "plugin", "description", "doc", "cmd"})
 _QUOTED_COMMAND = re.compile(r"\$\(command (['\"])(.*)\1( \w+)?\)")
 _MAX_NODES = 20_000
-"""The maximum number of actions of a file. Aliases of YAML can repeat one billions of times."""
+"""The maximum number of actions of a file. YAML aliases can expand to billions of actions."""
 
 
 @dataclass
@@ -44,7 +44,7 @@ class LaunchTag:
     Attributes:
         name: the name of the tag.
         attributes: the attributes.
-        span: where it is.
+        span: the position of the tag in the file.
         text: the text inside it.
         children: the actions and settings inside it.
     """

@@ -12,15 +12,14 @@ from linkwright.packages.readers.python_values import PythonFile, argument_of, c
 
 _MAX_DEPTH = 30
 _MAX_LENGTH = 10_000
-"""The number of characters of an expression that are kept. Names that are used twice in names that are used twice could
-make it endless."""
+"""The maximum number of characters kept of an expression. If names refer to names, the text can grow exponentially."""
 _Part = Callable[[ast.expr | None], str]
 _COMPARISONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
 _TEXT_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
 _PROGRAM = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
-"""The program of a command, which is found without `FindExecutable`, too."""
+"""A command whose program is searched explicitly. The search is left out of the text, as commands always do it."""
 _OTHER_TYPES = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?|true|false|yes|no|on|off|\[.*\]|", re.IGNORECASE)
-"""Texts that are, without quotes, numbers, truth values, lists, or nothing."""
+"""Texts that are only strings if they are quoted. Otherwise, they are numbers, booleans, lists, or empty."""
 _ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
 
 

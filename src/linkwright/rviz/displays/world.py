@@ -27,7 +27,7 @@ from linkwright.rviz.displays.base.topic_display import SideTopic, TopicDisplay
 from linkwright.rviz.displays.world_rays import CHOICES, LidarRays
 from linkwright.rviz.frames.history import PlacedFrame
 from linkwright.rviz.lights import lights_of
-from linkwright.rviz.sensors import ShownLidar, sensors_of
+from linkwright.rviz.sensors import DisplayedLidar, sensors_of
 from linkwright.rviz.skies import daylight, fog_of
 from linkwright.rviz.viewpoints import camera_of, robots_of
 from linkwright.rviz.worlds import WorldContent, content_of
@@ -440,7 +440,7 @@ class WorldDisplay(TopicDisplay):
 
 
 def _world_scene(
-    revision: int, world: World, content: WorldContent, lidars: list[ShownLidar], cameras: list[CameraScene]
+    revision: int, world: World, content: WorldContent, lidars: list[DisplayedLidar], cameras: list[CameraScene]
 ) -> WorldScene:
     camera = camera_of(world)
     return WorldScene(

@@ -12,7 +12,7 @@ from linkwright.graph import SENSOR_DATA_QOS
 from linkwright.page.protocol.worlds import WorldRays
 from linkwright.rviz.displays.base.display import DisplayHost
 from linkwright.rviz.displays.base.topic_display import SideTopic
-from linkwright.rviz.sensors import ShownLidar
+from linkwright.rviz.sensors import DisplayedLidar
 
 CHOICES = ("Visualized", "All", "None")
 """The sensors to draw: the sensors with ``<visualize>true</visualize>``, all sensors, or none."""
@@ -35,13 +35,13 @@ class LidarRays:
 
     def __init__(self, host: DisplayHost, show: Callable[[WorldRays], None], hide: Callable[[str], None]) -> None:
         self._show, self._hide = show, hide
-        self._lidars: dict[str, ShownLidar] = {}
+        self._lidars: dict[str, DisplayedLidar] = {}
         self._drawn_lidars: set[str] = set()
         self._last_messages: dict[str, Any] = {}
         self._topics: dict[str, SideTopic] = {}
         self._host = host
 
-    def describe(self, lidars: Iterable[ShownLidar]) -> None:
+    def describe(self, lidars: Iterable[DisplayedLidar]) -> None:
         """Set the lidars of a world, and show their last measurements, if there are any."""
         self._lidars = {lidar.scene.name: lidar for lidar in lidars}
         self._hide_except(set())
@@ -98,7 +98,7 @@ class LidarRays:
         name = message.header.frame_id
         lidar = self._lidars.get(name)
         ranges = np.asarray(message.ranges, dtype=np.float32)
-        if lidar is not None and ranges.size != lidar.measured[0] * lidar.measured[1]:
+        if lidar is not None and ranges.size != lidar.measured_shape[0] * lidar.measured_shape[1]:
             return
         if (
             name in self._last_messages or len(self._last_messages) < _MAX_STORED_LIDARS
@@ -106,6 +106,6 @@ class LidarRays:
             self._last_messages[name] = message
         if lidar is None:
             return
-        rows, columns = lidar.every
+        rows, columns = lidar.strides
         self._drawn_lidars.add(name)
-        self._show(WorldRays(name, ranges.reshape(lidar.measured)[::rows, ::columns].ravel()))
+        self._show(WorldRays(name, ranges.reshape(lidar.measured_shape)[::rows, ::columns].ravel()))

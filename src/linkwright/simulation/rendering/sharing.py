@@ -61,7 +61,7 @@ class SharedRenderer:
         return self
 
 
-def shared_renderer(simulation: Simulation) -> SharedRenderer:
+def share_renderer(simulation: Simulation) -> SharedRenderer:
     """Register a camera, and return the shared renderer of its simulation."""
     if simulation not in _renderers:
         _renderers[simulation] = SharedRenderer(simulation)

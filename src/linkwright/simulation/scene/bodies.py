@@ -210,7 +210,7 @@ class BodyWriter:
         `counts` contains the number of geoms with each name, because names must be unique in a body.
         """
         collision = isinstance(item, Collision)
-        geoms = [] if isinstance(item, Collision) else self._meshes.wrapped(body, item, pose)
+        geoms = [] if isinstance(item, Collision) else self._meshes.add_textured_shape(body, item, pose)
         simple_geom = None if geoms else add_shape(body, item.geometry, pose, fixed=fixed)
         if simple_geom is not None:
             geoms = [simple_geom]

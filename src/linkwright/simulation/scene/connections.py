@@ -13,7 +13,14 @@ from linkwright.geometry.single import IDENTITY, Transform
 from linkwright.sdf.frames import FrameError, Frames
 from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.worlds import World
-from linkwright.simulation.scene.structure import PlacedJoint, Structure, TreeLink, is_below, placed_joint, structure_of
+from linkwright.simulation.scene.structure import (
+    KinematicTrees,
+    PlacedJoint,
+    TreeLink,
+    build_kinematic_trees,
+    is_below,
+    place_joint,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +38,7 @@ class Connections:
     poses: dict[str, Transform]
 
     def connect(
-        self, structure: Structure, name: str, pose: Transform, earlier_models: Iterable[str]
+        self, structure: KinematicTrees, name: str, pose: Transform, earlier_models: Iterable[str]
     ) -> ConnectedModel:
         """Return a model with the joints that connect it to earlier models.
 
@@ -94,7 +101,7 @@ class ConnectedModel:
         attached_to: the names of the models to which joints of the world connect this model.
     """
 
-    structure: Structure
+    structure: KinematicTrees
     loops: tuple[PlacedJoint, ...]
     attached_to: frozenset[str]
 
@@ -115,7 +122,7 @@ def connections_of(world: World) -> Connections:
     for model in world.models:
         if model.name in models - poses.keys():
             try:
-                structure = structure_of(model, model.name, frames.pose(model.name))
+                structure = build_kinematic_trees(model, model.name, frames.pose(model.name))
             except FrameError:
                 continue  # The scene reports this model.
             poses[model.name] = frames.pose(model.name)
@@ -159,7 +166,7 @@ def _placed_joints(world: World, frames: Frames) -> list[PlacedJoint]:
     joints_by_name: dict[str, PlacedJoint] = {}
     for joint in world.joints:
         try:
-            joint_at_pose = placed_joint(joint, frames, IDENTITY, "")
+            joint_at_pose = place_joint(joint, frames, IDENTITY, "")
         except FrameError:
             continue  # `check` reports this joint.
         if joint_at_pose.name not in joints_by_name and joint_at_pose.parent != joint_at_pose.child:

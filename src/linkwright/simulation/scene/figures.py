@@ -20,7 +20,7 @@ from linkwright.sdf.worlds import World
 from linkwright.simulation.scene.bodies import BodyWriter
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.shapes import set_pose
-from linkwright.simulation.scene.structure import Structure
+from linkwright.simulation.scene.structure import KinematicTrees
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import parse_file
 
@@ -118,7 +118,7 @@ def move_actors(figures: Iterable[Figure], model: Any, data: Any, seconds: float
             _set_mocap_pose(int(model.body(placed_link.name).mocapid[0]), compose(pose, placed_link.pose), data)
 
 
-def set_kinematic_poses(structure: Structure, moved: Transform, model: Any, data: Any) -> bool:
+def set_kinematic_poses(structure: KinematicTrees, moved: Transform, model: Any, data: Any) -> bool:
     """Set the poses of a model's kinematic links in MuJoCo's data.
 
     Returns whether the model has such links.

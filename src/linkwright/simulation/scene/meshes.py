@@ -170,7 +170,7 @@ class MeshLibrary:
             self._textured_meshes.add(name)
         return name
 
-    def wrapped(self, body: Any, visual: Visual, pose: Transform) -> list[Any]:
+    def add_textured_shape(self, body: Any, visual: Visual, pose: Transform) -> list[Any]:
         """Add a textured simple shape to a body as a mesh, and return the added geoms.
 
         The list is empty if the visual has no texture, or its shape cannot be textured.

@@ -24,7 +24,7 @@ from linkwright.simulation.scene.couplings import gearbox_coupling, screw_coupli
 from linkwright.simulation.scene.figures import add_figure, figures_of
 from linkwright.simulation.scene.meshes import MeshLibrary, modification_time
 from linkwright.simulation.scene.shapes import set_pose
-from linkwright.simulation.scene.structure import PlacedJoint, Structure, TreeLink, structure_of
+from linkwright.simulation.scene.structure import KinematicTrees, PlacedJoint, TreeLink, build_kinematic_trees
 from linkwright.simulation.scene.wheels import SKIDDING_GRIP, make_omnidirectional, make_rolling, make_sliding
 from linkwright.xmltree import Element
 
@@ -67,7 +67,7 @@ class SceneModel:
     name: str
     model: Model
     pose: Transform
-    structure: Structure
+    structure: KinematicTrees
     parts: list[Any] = field(default_factory=list)
     files: dict[Path, int] = field(default_factory=dict)
     attached_to: frozenset[str] = frozenset()
@@ -227,7 +227,7 @@ class Scene:
         """
         if name in self.models:
             raise LinkwrightError(Diagnostic("SIM102", phrase("a model '{name}' already exists", name=name)))
-        connected = self._connections.connect(structure_of(model, name, pose), name, pose, self.models)
+        connected = self._connections.connect(build_kinematic_trees(model, name, pose), name, pose, self.models)
         structure = connected.structure
         scene_model = self.models[name] = SceneModel(name, model, pose, structure, attached_to=connected.attached_to)
         poses = {
@@ -268,7 +268,7 @@ class Scene:
             FrameError: the pose of a link is not defined.
         """
         scene_model = self.models[name]
-        scene_model.structure = structure_of(scene_model.model, name, pose)
+        scene_model.structure = build_kinematic_trees(scene_model.model, name, pose)
         scene_model.pose = pose
         for tree_link in scene_model.structure.links:
             body = self.bodies[tree_link.link.name]
@@ -525,7 +525,7 @@ class Scene:
         equality.name1, equality.name2 = link_names[0], "" if link_names[1] == WORLD else link_names[1]
         return equality
 
-    def _self_collision_exclusions(self, structure: Structure) -> Iterator[Any]:
+    def _self_collision_exclusions(self, structure: KinematicTrees) -> Iterator[Any]:
         """Add and yield contact exclusions for links of a model without ``<self_collide>``.
 
         A pair of links may collide only if both have ``<self_collide>``.

@@ -48,7 +48,7 @@ class TreeLink:
 
 
 @dataclass(frozen=True, slots=True)
-class Structure:
+class KinematicTrees:
     """A model as kinematic trees.
 
     Attributes:
@@ -60,7 +60,7 @@ class Structure:
     loops: tuple[PlacedJoint, ...]
 
 
-def structure_of(model: Model, name: str, pose: Transform) -> Structure:
+def build_kinematic_trees(model: Model, name: str, pose: Transform) -> KinematicTrees:
     """Return the kinematic trees of a model.
 
     Joints with missing links are ignored.
@@ -79,15 +79,15 @@ def structure_of(model: Model, name: str, pose: Transform) -> Structure:
     for owner, owner_frames, owner_pose, path in _nested_models(model, frames, pose, name):
         for joint in owner.joints:
             try:
-                candidate = placed_joint(joint, owner_frames, owner_pose, path)
+                candidate = place_joint(joint, owner_frames, owner_pose, path)
             except FrameError:
-                continue  # `check` reports this joint.
+                continue  # `linkwright check` reports this joint.
             has_links = candidate.child in links and (candidate.parent in links or candidate.parent == WORLD)
             if has_links and candidate.parent != candidate.child:
-                while candidate.name in joints:  # MuJoCo requires unique names; `check` reports duplicates
+                while candidate.name in joints:  # MuJoCo requires unique names; `linkwright check` reports duplicates
                     candidate = replace(candidate, name=f"{candidate.name}~")
                 joints[candidate.name] = candidate
-    return _build_structure(links, joints.values())
+    return _build_trees(links, joints.values())
 
 
 def _nested_models(
@@ -105,7 +105,7 @@ def _nested_models(
         )
 
 
-def placed_joint(joint: Joint, frames: Frames, pose: Transform, path: str) -> PlacedJoint:
+def place_joint(joint: Joint, frames: Frames, pose: Transform, path: str) -> PlacedJoint:
     """Return a joint with its links, its pose and its axes.
 
     Args:
@@ -120,7 +120,7 @@ def placed_joint(joint: Joint, frames: Frames, pose: Transform, path: str) -> Pl
     link_names = [frames.link(end) for end in (joint.parent, joint.child)]
     parent, child = (link_name if link_name == WORLD else _qualified_name(path, link_name) for link_name in link_names)
     declared_axes = [axis for axis in (joint.axis, joint.axis2) if axis is not None]
-    axes = tuple((axis, _direction(frames.axis(joint, axis))) for axis in declared_axes)
+    axes = tuple((axis, _nonzero_direction(frames.axis(joint, axis))) for axis in declared_axes)
     name = _qualified_name(path, joint.name)
     return PlacedJoint(name, joint, parent, child, compose(pose, frames.pose(joint.name)), axes)
 
@@ -129,15 +129,15 @@ def _qualified_name(path: str, name: str) -> str:
     return f"{path}{SEPARATOR}{name}" if path else name
 
 
-def _direction(axis: Vector3) -> Vector3:
+def _nonzero_direction(axis: Vector3) -> Vector3:
     """Return the direction of an axis, or the z axis instead of zero, as in libsdformat.
 
-    `check` reports a direction that is zero.
+    `linkwright check` reports a direction that is zero.
     """
     return axis if sum(value * value for value in axis) > _MIN_AXIS_LENGTH**2 else (0.0, 0.0, 1.0)
 
 
-def _build_structure(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Structure:
+def _build_trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> KinematicTrees:
     parent_joints: dict[str, PlacedJoint] = {}
     loops: list[PlacedJoint] = []
     child_links: dict[str, list[str]] = {}
@@ -152,7 +152,7 @@ def _build_structure(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]
     ordered = [name for name in links if name not in parent_joints or parent_joints[name].parent == WORLD]
     for name in ordered:  # The list grows during the iteration.
         ordered += child_links.get(name, ())
-    return Structure(tuple(TreeLink(links[name], parent_joints.get(name)) for name in ordered), tuple(loops))
+    return KinematicTrees(tuple(TreeLink(links[name], parent_joints.get(name)) for name in ordered), tuple(loops))
 
 
 def is_below(parent_joints: Mapping[str, PlacedJoint], link: str, other: str) -> bool:

@@ -9,15 +9,15 @@ import numpy as np
 
 from linkwright.geometry.arrays import Array
 from linkwright.sdf.lights import Light
-from linkwright.vision.datasets.arrangement import Shot
-from linkwright.vision.datasets.stage import Stage
+from linkwright.vision.datasets.arrangement import Arrangement
+from linkwright.vision.datasets.randomized_world import RandomizedWorld
 from linkwright.vision.datasets.textures import Pixels, smooth_noise
 
 _NOISE_VALUES = 1 << 21
 """The number of noise values. They are drawn once, and each image uses them from a different offset."""
 
 
-def set_lights(stage: Stage, generator: np.random.Generator) -> None:
+def set_lights(world: RandomizedWorld, generator: np.random.Generator) -> None:
     """Replace the lights of a world with one to three random lights.
 
     All lights are directional. With a nearby light, OpenGL's rendering of an infinite plane would depend on the
@@ -33,34 +33,34 @@ def set_lights(stage: Stage, generator: np.random.Generator) -> None:
         direction = x, y, -abs(z) - 0.2
         lights.append(Light(f"light {number}", "directional", diffuse=diffuse, direction=direction))
     ambient = _tinted_white(generator, 0.15) * generator.uniform(0.1, 0.55)
-    stage.light(lights, ambient, generator.random(3))
+    world.light(lights, ambient, generator.random(3))
 
 
-def paint_surfaces(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
+def paint_surfaces(world: RandomizedWorld, arrangement: Arrangement, generator: np.random.Generator) -> None:
     """Recolor all objects and surroundings.
 
     Most objects keep their color or get a similar one.
     """
-    for prop in shot.placed_props:
+    for movable in arrangement.placed_objects:
         choice, new_colors = generator.random(), {}
         is_textured = generator.random() < 0.3
         number = int(generator.integers(1 << 16))
-        for geom in prop.geoms:
-            original_color = tuple(float(channel) for channel in stage.original_color(geom)[:3])
+        for geom in movable.geoms:
+            original_color = tuple(float(channel) for channel in world.original_color(geom)[:3])
             if original_color not in new_colors:
                 new_colors[original_color] = _similar_color(original_color, choice, generator)
-            if not stage.has_material(geom):
-                stage.paint(geom, new_colors[original_color], "object" if is_textured else "", number)
-    for geom in stage.distractors:
+            if not world.has_material(geom):
+                world.paint(geom, new_colors[original_color], "object" if is_textured else "", number)
+    for geom in world.distractors:
         is_patterned = generator.random() < 0.5
-        stage.paint(geom, generator.random(3), "wall" if is_patterned else "", int(generator.integers(1 << 16)))
-    for kind, geoms in (("wall", shot.structures), ("ground", stage.ground)):
+        world.paint(geom, generator.random(3), "wall" if is_patterned else "", int(generator.integers(1 << 16)))
+    for kind, geoms in (("wall", arrangement.structures), ("ground", world.ground)):
         is_uniform = generator.random() < 0.7
         color, is_patterned, number = _random_surface(generator)
         for geom in geoms:
             if not is_uniform:
                 color, is_patterned, number = _random_surface(generator)
-            stage.paint(geom, color, kind if is_patterned else "", number)
+            world.paint(geom, color, kind if is_patterned else "", number)
 
 
 def fill_backdrop(color: Pixels, geoms: Any, generator: np.random.Generator) -> None:
@@ -80,29 +80,29 @@ def fill_backdrop(color: Pixels, geoms: Any, generator: np.random.Generator) -> 
         ).astype(np.uint8)
 
 
-class Camera:
+class LensEffects:
     """The effects of a lens and a sensor: exposure, white balance, blur and noise."""
 
     def __init__(self) -> None:
         self._noise = np.random.default_rng(0).standard_normal(_NOISE_VALUES, dtype=np.float32)
 
-    def develop(self, color: Pixels, generator: np.random.Generator) -> Pixels:
+    def apply(self, color: Pixels, generator: np.random.Generator) -> Pixels:
         """Return an image with random effects of lens and sensor."""
         gain, gamma = np.exp(generator.normal(0.0, 0.18)), np.exp(generator.normal(0.0, 0.15))
         balance = np.exp(generator.normal(0.0, 0.05, 3))
         levels = np.linspace(0.0, 1.0, 256)[:, None] ** gamma * gain * balance
         lookup_table = np.clip(np.round(levels * 255), 0, 255).astype(np.uint8)
-        developed = np.empty_like(color)
+        result = np.empty_like(color)
         for channel in range(3):
-            developed[..., channel] = lookup_table[:, channel].take(color[..., channel])
+            result[..., channel] = lookup_table[:, channel].take(color[..., channel])
         if generator.random() < 0.35:
-            developed = _blurred(developed, float(generator.uniform(0.3, 1.6)))
+            result = _blurred(result, float(generator.uniform(0.3, 1.6)))
         if generator.random() < 0.7:
             strength = np.float32(generator.uniform(0.5, 9.0))
-            start = int(generator.integers(_NOISE_VALUES - developed.size)) if developed.size < _NOISE_VALUES else 0
-            noise = np.resize(self._noise[start:], developed.size).reshape(developed.shape)
-            developed = np.clip(developed + strength * noise, 0, 255).astype(np.uint8)
-        return developed
+            start = int(generator.integers(_NOISE_VALUES - result.size)) if result.size < _NOISE_VALUES else 0
+            noise = np.resize(self._noise[start:], result.size).reshape(result.shape)
+            result = np.clip(result + strength * noise, 0, 255).astype(np.uint8)
+        return result
 
 
 def _blurred(color: Pixels, radius: float) -> Pixels:

@@ -11,7 +11,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform, quaternion_from_rpy
 from linkwright.sdf.optics import Optics
 from linkwright.vision.datasets.options import Options
-from linkwright.vision.datasets.stage import Prop, Stage
+from linkwright.vision.datasets.randomized_world import MovableObject, RandomizedWorld
 
 _MAX_TRIES = 20
 _STEPS = 40
@@ -28,33 +28,33 @@ _CAMERA_CLEARANCE = 0.12
 
 
 @dataclass(frozen=True)
-class Shot:
+class Arrangement:
     """A camera pose with the objects and structures of an image.
 
     Attributes:
         optics: the camera's projection.
         pose: the camera's pose; the camera looks along x, with z up.
-        placed_props: the objects that were placed; some may be out of view.
+        placed_objects: the objects that were placed; some may be out of view.
         structures: the geoms of the surroundings that are not hidden.
     """
 
     optics: Optics
     pose: Transform
-    placed_props: tuple[Prop, ...]
+    placed_objects: tuple[MovableObject, ...]
     structures: tuple[int, ...]
 
 
 class _Ground:
     """The occupied areas of the ground, as rectangles and circles seen from above."""
 
-    def __init__(self, stage: Stage, geoms: list[int]) -> None:
-        data = stage.simulation.data
+    def __init__(self, world: RandomizedWorld, geoms: list[int]) -> None:
+        data = world.simulation.data
         horizontal_z = np.abs(data.geom_xmat[geoms].reshape(-1, 3, 3)[:, 2, :2]).max(initial=0.0, axis=1)
         is_upright = horizontal_z < 1e-3
-        half = stage.simulation.model.geom_aabb[geoms, 3:5]
-        centers = stage.simulation.model.geom_aabb[geoms, :2]
+        half = world.simulation.model.geom_aabb[geoms, 3:5]
+        centers = world.simulation.model.geom_aabb[geoms, :2]
         axes = data.geom_xmat[geoms].reshape(-1, 3, 3)[:, :2, :2]
-        bounds = stage.boxes[geoms]
+        bounds = world.boxes[geoms]
         self._half_sizes = np.where(is_upright[:, None], half, (bounds[:, 1, :2] - bounds[:, 0, :2]) / 2)
         self._axes = np.where(is_upright[:, None, None], axes, np.eye(2))
         rotated_centers = data.geom_xpos[geoms, :2] + np.einsum("gij,gj->gi", axes, centers)
@@ -82,37 +82,37 @@ class _Ground:
         self._occupied_circles.append((x, y, radius))
 
 
-def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> Shot:
-    """Place a camera, objects and distractors at random, and return the resulting shot.
+def arrange(world: RandomizedWorld, options: Options, generator: np.random.Generator) -> Arrangement:
+    """Place a camera, objects and distractors at random, and return the resulting arrangement.
 
     Args:
-        stage: the world, after `Stage.begin`.
+        world: the world, after `RandomizedWorld.reset`.
         options: the options of the dataset.
         generator: the random generator.
     """
-    structures = _choose_structures(stage, generator)
-    ground = _Ground(stage, structures)
+    structures = _choose_structures(world, generator)
+    ground = _Ground(world, structures)
     field = radians(generator.uniform(45.0, 100.0))
     focal = options.width / (2 * tan(field / 2))
     optics = Optics(options.width, options.height, focal, focal, options.width / 2, options.height / 2, 0.03, _FAR_CLIP)
-    x, y, heading = _choose_camera_pose(stage, ground, generator)
-    height = stage.floor + (exp(generator.uniform(log(0.08), log(0.8))) if generator.random() < 0.7 else
+    x, y, heading = _choose_camera_pose(world, ground, generator)
+    height = world.floor + (exp(generator.uniform(log(0.08), log(0.8))) if generator.random() < 0.7 else
                             generator.uniform(0.6, 2.5))  # fmt: skip
     ground.occupy(x, y, _CAMERA_CLEARANCE)
-    placed_props, target = [], None
-    for prop in _choose_props(stage, options, generator):
+    placed_objects, target = [], None
+    for movable in _choose_objects(world, options, generator):
         position = _find_free_position(
-            stage, ground, prop.radius, (x, y, heading), field, generator, _distance_range(prop, focal, options)
+            world, ground, movable.radius, (x, y, heading), field, generator, _distance_range(movable, focal, options)
         )
         if position is not None:
-            _place_prop(stage, prop, position, generator)
-            placed_props.append(prop)
-            target = target or (position, float(prop.corners[:, 2].max()))
-    for geom in stage.distractors:
+            _place_object(world, movable, position, generator)
+            placed_objects.append(movable)
+            target = target or (position, float(movable.corners[:, 2].max()))
+    for geom in world.distractors:
         if generator.random() < 0.35:
-            radius = stage.shape_distractor(geom, generator)
+            radius = world.shape_distractor(geom, generator)
             position = _find_free_position(
-                stage, ground, radius, (x, y, heading), field, generator, (_MIN_DISTANCE, _MAX_DISTANCE)
+                world, ground, radius, (x, y, heading), field, generator, (_MIN_DISTANCE, _MAX_DISTANCE)
             )
             if position is not None:
                 height_above_floor = generator.uniform(0.0, 1.5) if generator.random() < 0.2 else 0.0
@@ -121,7 +121,7 @@ def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> S
                     if generator.random() < 0.5
                     else _yaw_rotation(generator.uniform(-pi, pi))
                 )
-                stage.put_distractor(geom, np.array([*position, stage.floor + height_above_floor]), rotation)
+                world.put_distractor(geom, np.array([*position, world.floor + height_above_floor]), rotation)
     if target is None:
         pitch = generator.uniform(-0.1, 0.5)
     else:
@@ -129,27 +129,29 @@ def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> S
         distance = max(float(np.hypot(target_x - x, target_y - y)), 0.1)
         vertical_field = 2 * atan2(options.height / 2, focal)
         pitch = (
-            atan2(height - stage.floor - target_height / 2, distance) + generator.uniform(-0.3, 0.3) * vertical_field
+            atan2(height - world.floor - target_height / 2, distance) + generator.uniform(-0.3, 0.3) * vertical_field
         )
     roll = generator.normal(0.0, radians(12.0 if generator.random() < 0.1 else 1.5))
     pose = x, y, height, *quaternion_from_rpy((float(roll), float(np.clip(pitch, -1.0, 1.5)), heading))
-    return Shot(optics, pose, tuple(placed_props), tuple(structures))
+    return Arrangement(optics, pose, tuple(placed_objects), tuple(structures))
 
 
-def _choose_structures(stage: Stage, generator: np.random.Generator) -> list[int]:
+def _choose_structures(world: RandomizedWorld, generator: np.random.Generator) -> list[int]:
     """Hide some of the structures at random, and return the geoms of the others."""
     visible_geoms = []
-    for geoms in stage.structures.values():
+    for geoms in world.structures.values():
         if generator.random() < 0.25:
-            stage.hide(geoms)
+            world.hide(geoms)
         else:
             visible_geoms += geoms
     return visible_geoms
 
 
-def _choose_camera_pose(stage: Stage, ground: _Ground, generator: np.random.Generator) -> tuple[float, float, float]:
+def _choose_camera_pose(
+    world: RandomizedWorld, ground: _Ground, generator: np.random.Generator
+) -> tuple[float, float, float]:
     """Return the camera's x and y in m and heading in rad, with free space ahead if possible."""
-    minimum, maximum = stage.area
+    minimum, maximum = world.area
     x = y = heading = 0.0
     for _ in range(_MAX_TRIES):
         x, y = (float(coordinate) for coordinate in generator.uniform(minimum, maximum))
@@ -165,36 +167,36 @@ def _choose_camera_pose(stage: Stage, ground: _Ground, generator: np.random.Gene
     return x, y, heading
 
 
-def _choose_props(stage: Stage, options: Options, generator: np.random.Generator) -> list[Prop]:
+def _choose_objects(world: RandomizedWorld, options: Options, generator: np.random.Generator) -> list[MovableObject]:
     """Return randomly chosen objects.
 
     Each class is equally likely, regardless of its number of objects. In 4 % of the images, there are no objects.
     """
     if generator.random() < 0.04:
         return []
-    by_class: dict[int, list[Prop]] = {}
-    for prop in stage.props:
-        by_class.setdefault(prop.label, []).append(prop)
-    selected_props: list[Prop] = []
+    by_class: dict[int, list[MovableObject]] = {}
+    for movable in world.movable_objects:
+        by_class.setdefault(movable.label, []).append(movable)
+    selected_objects: list[MovableObject] = []
     for _ in range(int(generator.integers(1, options.max_objects + 1))):
-        classes = [label for label, props in by_class.items() if props]
+        classes = [label for label, movable_objects in by_class.items() if movable_objects]
         if not classes:
             break
-        props = by_class[classes[int(generator.integers(len(classes)))]]
-        selected_props.append(props.pop(int(generator.integers(len(props)))))
-    return selected_props
+        movable_objects = by_class[classes[int(generator.integers(len(classes)))]]
+        selected_objects.append(movable_objects.pop(int(generator.integers(len(movable_objects)))))
+    return selected_objects
 
 
-def _distance_range(prop: Prop, focal: float, options: Options) -> tuple[float, float]:
+def _distance_range(movable: MovableObject, focal: float, options: Options) -> tuple[float, float]:
     """Return the range of distances in m at which an object has a suitable size in an image."""
-    spans = np.sort(prop.corners.max(axis=0) - prop.corners.min(axis=0))
+    spans = np.sort(movable.corners.max(axis=0) - movable.corners.min(axis=0))
     nearest = max(focal * spans[2] / (_MAX_LENGTH * options.width), _MIN_DISTANCE)
     farthest = min(spans[2] / (_MIN_LENGTH * options.width), spans[1] / (1.2 * max(options.min_size, 1))) * focal
     return float(min(nearest, _MAX_DISTANCE / 2)), float(np.clip(farthest, 1.5 * nearest, _MAX_DISTANCE))
 
 
 def _find_free_position(
-    stage: Stage,
+    world: RandomizedWorld,
     ground: _Ground,
     radius: float,
     camera: tuple[float, float, float],
@@ -207,7 +209,7 @@ def _find_free_position(
     The position is marked as occupied.
     """
     x, y, heading = camera
-    minimum, maximum = stage.area
+    minimum, maximum = world.area
     nearest, may_be_hidden = distances[0] + radius, generator.random() < _OCCLUDED_SHARE
     for _ in range(_MAX_TRIES):
         if generator.random() < 0.9:
@@ -225,26 +227,28 @@ def _find_free_position(
     return None
 
 
-def _place_prop(stage: Stage, prop: Prop, position: tuple[float, float], generator: np.random.Generator) -> None:
+def _place_object(
+    world: RandomizedWorld, movable: MovableObject, position: tuple[float, float], generator: np.random.Generator
+) -> None:
     """Place an object at a position: usually upright, sometimes lying or above the ground."""
     rotation = _yaw_rotation(generator.uniform(-pi, pi))
-    if prop.is_round or generator.random() < 0.08:
+    if movable.is_round or generator.random() < 0.08:
         rotation = _random_rotation(generator)
     elif generator.random() < 0.06:
         rotation = rotation @ np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-    corners = prop.corners @ rotation.T
+    corners = movable.corners @ rotation.T
     minimum, maximum = corners.min(axis=0), corners.max(axis=0)
     height_above_floor = generator.uniform(0.1, 0.9) if generator.random() < 0.06 else 0.0
     bounds_center = (minimum + maximum) / 2
     is_tilted = rotation[2, 2] < 1.0 - 1e-9
     offset = -bounds_center[:2] if is_tilted else np.zeros(2)
     height = -float(minimum[2])
-    if prop.is_round:  # the bounding box of a rotated ball is larger than the ball
-        center = (prop.corners.min(axis=0) + prop.corners.max(axis=0)) / 2
+    if movable.is_round:  # the bounding box of a rotated ball is larger than the ball
+        center = (movable.corners.min(axis=0) + movable.corners.max(axis=0)) / 2
         height = float(center[2] - (rotation @ center)[2])
-    stage.place_prop(
-        prop,
-        np.array([position[0] + offset[0], position[1] + offset[1], stage.floor + height + height_above_floor]),
+    world.place_object(
+        movable,
+        np.array([position[0] + offset[0], position[1] + offset[1], world.floor + height + height_above_floor]),
         rotation,
     )
 

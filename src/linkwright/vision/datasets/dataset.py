@@ -15,7 +15,7 @@ from linkwright.process.processors import usable_processors
 from linkwright.vision.datasets.contact_sheet import MAX_SHEET_IMAGES, contact_sheet
 from linkwright.vision.datasets.folder import SHEET, DatasetFolder, write_error
 from linkwright.vision.datasets.options import FORMATS, Options
-from linkwright.vision.datasets.rendering import IMAGES_PER_PATTERN_SET, LabeledImage, Source, Studio
+from linkwright.vision.datasets.rendering import IMAGES_PER_PATTERN_SET, DatasetInput, DatasetRenderer, LabeledImage
 from linkwright.vision.datasets.workers import make_in_processes
 
 
@@ -47,7 +47,7 @@ def make_dataset(
     force: bool = False,
     append: bool = False,
     progress: Callable[[int], object] = lambda _: None,
-    begin: Callable[[Studio], object] = lambda _: None,
+    on_start: Callable[[DatasetRenderer], object] = lambda _: None,
 ) -> DatasetResult:
     """Make a dataset of labeled images.
 
@@ -63,7 +63,7 @@ def make_dataset(
         force: replace the dataset in the folder.
         append: add to the dataset in the folder.
         progress: called with the number of finished images after each image.
-        begin: called with the studio before the first image.
+        on_start: called with the renderer before the first image.
 
     Raises:
         LinkwrightError: VISION201 to VISION208, or an error in a world. The images finished before the error form a
@@ -72,16 +72,22 @@ def make_dataset(
     path = Path(path)
     options = options or Options()
     world_names = (worlds,) if isinstance(worlds, (str, Path)) else worlds
-    source = Source(tuple(map(str, world_names)), tuple(map(str, models)), str(classes) if classes else None, options)
+    source = DatasetInput(
+        tuple(map(str, world_names)), tuple(map(str, models)), str(classes) if classes else None, options
+    )
     workers = workers or usable_processors()
-    with closing(Studio(source)) as studio:
-        begin(studio)
-        folder = DatasetFolder(path, studio.classes, (options.width, options.height), tuple(formats), options.form)
+    with closing(DatasetRenderer(source)) as renderer:
+        on_start(renderer)
+        folder = DatasetFolder(
+            path, renderer.classes, (options.width, options.height), tuple(formats), options.image_format
+        )
         folder.open(force=force, append=append)
-        card = _run_card(source, studio)
+        card = _run_card(source, renderer)
         numbers = range(folder.first_number, folder.first_number + images)
         in_this_process = workers == 1 or images <= IMAGES_PER_PATTERN_SET
-        samples = map(studio.make, numbers) if in_this_process else make_in_processes(source, numbers, workers)
+        samples = (
+            map(renderer.render_image, numbers) if in_this_process else make_in_processes(source, numbers, workers)
+        )
         sheet_samples: list[LabeledImage] = []
         added, was_interrupted, image_error = 0, False, None
         try:
@@ -100,7 +106,7 @@ def make_dataset(
     if image_error is not None:
         raise image_error
     try:
-        write_whole_file(path / SHEET, contact_sheet(sheet_samples, studio.classes))
+        write_whole_file(path / SHEET, contact_sheet(sheet_samples, renderer.classes))
     except OSError as error:
         raise write_error(path, error) from None
     return DatasetResult(folder, added, was_interrupted)
@@ -116,15 +122,15 @@ def _yield_and_close(samples: Iterator[LabeledImage]) -> Iterator[LabeledImage]:
             close()
 
 
-def _run_card(source: Source, studio: Studio) -> dict[str, Any]:
+def _run_card(source: DatasetInput, renderer: DatasetRenderer) -> dict[str, Any]:
     worlds = [
         {"name": name, "file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
-        for name, path in zip(source.worlds, studio.worlds, strict=True)
+        for name, path in zip(source.worlds, renderer.worlds, strict=True)
     ]
     return {
         "version": __version__,
         "worlds": worlds,
-        "added": list(source.added),
-        "renderer": str(studio.render_method),
+        "added": list(source.added_models),
+        "renderer": str(renderer.render_method),
         "options": asdict(source.options),
     }

@@ -37,7 +37,7 @@ class DatasetFolder:
         classes: the names of the classes.
         size: width and height of images in pixels.
         formats: the label formats, ``coco`` and ``yolo``.
-        form: the image format, ``jpg`` or ``png``.
+        image_format: the image format, ``jpg`` or ``png``.
 
     Attributes:
         path: the folder.
@@ -46,11 +46,16 @@ class DatasetFolder:
     """
 
     def __init__(
-        self, path: Path, classes: Sequence[str], size: tuple[int, int], formats: Sequence[str], form: str
+        self, path: Path, classes: Sequence[str], size: tuple[int, int], formats: Sequence[str], image_format: str
     ) -> None:
         self.path = path
         self.first_number = 0
-        self._classes, self._size, self._formats, self._form = tuple(classes), size, tuple(formats), form
+        self._classes, self._size, self._formats, self._image_format = (
+            tuple(classes),
+            size,
+            tuple(formats),
+            image_format,
+        )
         self._images: dict[str, list[dict[str, Any]]] = {split: [] for split in SPLITS}
         self._annotations: dict[str, list[dict[str, Any]]] = {split: [] for split in SPLITS}
         self._runs: list[Any] = []
@@ -97,7 +102,7 @@ class DatasetFolder:
             OSError: the files cannot be written.
         """
         name = f"{sample.index:06d}"
-        image = self.path / "images" / sample.split / f"{name}.{self._form}"
+        image = self.path / "images" / sample.split / f"{name}.{self._image_format}"
         text = self.path / "labels" / sample.split / f"{name}.txt"
         width, height = self._size
         try:

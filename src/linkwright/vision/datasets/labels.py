@@ -12,8 +12,8 @@ import numpy as np
 
 from linkwright.sdf.optics import Optics
 from linkwright.simulation.rendering.renderer import Channels, Pixels, axes_of
-from linkwright.vision.datasets.arrangement import Shot
-from linkwright.vision.datasets.stage import Prop, Stage
+from linkwright.vision.datasets.arrangement import Arrangement
+from linkwright.vision.datasets.randomized_world import MovableObject, RandomizedWorld
 
 Box = tuple[int, int, int, int]
 """Left, top, right and bottom in pixels, where right and bottom are the first column and row outside."""
@@ -47,33 +47,35 @@ class Label:
     run_lengths: tuple[int, ...]
 
 
-def label_image(stage: Stage, shot: Shot, geoms: Pixels, min_size: int, min_visible: float) -> list[Label]:
+def label_image(
+    world: RandomizedWorld, arrangement: Arrangement, geoms: Pixels, min_size: int, min_visible: float
+) -> list[Label]:
     """Return the labels of all objects that are visible in an image.
 
     Args:
-        stage: the world in the state of the image.
-        shot: the camera and the objects.
+        world: the world in the state of the image.
+        arrangement: the camera and the objects.
         geoms: the geom at each pixel, -1 for none, shape (height, width).
         min_size: the minimum length in pixels of a box's shorter side; a smaller object is ignored. For an object's
             largest geom, half of this length is enough.
         min_visible: the minimum visible fraction of an object and of its largest geom; a less visible object is
             ignored.
     """
-    numbers = np.zeros(stage.simulation.model.ngeom + 1, dtype=np.uint8)  # the last entry is for geom -1: none
-    for number, prop in enumerate(shot.placed_props, start=1):
-        numbers[prop.geoms] = number
+    numbers = np.zeros(world.simulation.model.ngeom + 1, dtype=np.uint8)  # the last entry is for geom -1: none
+    for number, movable in enumerate(arrangement.placed_objects, start=1):
+        numbers[movable.geoms] = number
     objects = numbers[geoms]
     labels = []
-    for number, prop in enumerate(shot.placed_props, start=1):
+    for number, movable in enumerate(arrangement.placed_objects, start=1):
         box = box_of(objects == number)
         if box is None:
             continue
         left, top, right, bottom = box
         mask = objects == number
         area = int(np.count_nonzero(mask[top:bottom, left:right]))
-        full_box, full_count, main_count = _measure_unoccluded(stage, shot, prop, box)
+        full_box, full_count, main_count = _measure_unoccluded(world, arrangement, movable, box)
         full_count = max(full_count, area)
-        main_mask = geoms[top:bottom, left:right] == prop.main_geom
+        main_mask = geoms[top:bottom, left:right] == movable.main_geom
         is_small = min(right - left, bottom - top) < min_size or _shorter_side(main_mask) < min_size / 2
         is_truncated = (
             full_box[0] < 0 or full_box[1] < 0 or full_box[2] > geoms.shape[1] or full_box[3] > geoms.shape[0]
@@ -81,7 +83,7 @@ def label_image(stage: Stage, shot: Shot, geoms: Pixels, min_size: int, min_visi
         is_hidden = area < min_visible * full_count or int(np.count_nonzero(main_mask)) < min_visible * main_count
         is_ignored = is_small or is_hidden
         labels.append(
-            Label(prop.label, box, full_box, area, area / full_count, is_truncated, is_ignored, run_lengths_of(mask))
+            Label(movable.label, box, full_box, area, area / full_count, is_truncated, is_ignored, run_lengths_of(mask))
         )
     return labels
 
@@ -114,20 +116,24 @@ def run_lengths_of(mask: Any) -> tuple[int, ...]:
     return tuple([0, *counts] if flat[0] else counts)
 
 
-def _measure_unoccluded(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box, int, int]:
+def _measure_unoccluded(
+    world: RandomizedWorld, arrangement: Arrangement, movable: MovableObject, visible: Box
+) -> tuple[Box, int, int]:
     """Return an object's full box, its pixel count, and the pixel count of its largest geom.
 
     The measurement ignores occlusion and truncation. An object larger than the image is rendered smaller, so its box is
     accurate only to a few pixels.
     """
-    left, top, right, bottom = _projected_bounds(stage, shot, prop, visible)
-    optics = shot.optics
+    left, top, right, bottom = _projected_bounds(world, arrangement, movable, visible)
+    optics = arrangement.optics
     scale = min(1.0, optics.width / (right - left), optics.height / (bottom - top))
     width, height = max(int((right - left) * scale), 1), max(int((bottom - top) * scale), 1)
     middle = (optics.cx - left) * scale, (optics.cy - top) * scale
     optics_of_part = Optics(width, height, optics.fx * scale, optics.fy * scale, *middle, optics.near, optics.far)
-    geoms = _render_alone(stage, prop, lambda: stage.renderer.render(optics_of_part, shot.pose, Channels.GEOMS).geoms)
-    mask = np.isin(geoms, prop.geoms)
+    geoms = _render_alone(
+        world, movable, lambda: world.renderer.render(optics_of_part, arrangement.pose, Channels.GEOMS).geoms
+    )
+    mask = np.isin(geoms, movable.geoms)
     box = box_of(mask)
     if box is None:
         return visible, 0, 0
@@ -137,22 +143,22 @@ def _measure_unoccluded(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> t
         max(ceil(box[2] / scale) + left, visible[2]),
         max(ceil(box[3] / scale) + top, visible[3]),
     )
-    main_pixels = np.count_nonzero(geoms == prop.main_geom)
+    main_pixels = np.count_nonzero(geoms == movable.main_geom)
     return full_box, round(np.count_nonzero(mask) / scale**2), round(main_pixels / scale**2)
 
 
-def _projected_bounds(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
+def _projected_bounds(world: RandomizedWorld, arrangement: Arrangement, movable: MovableObject, visible: Box) -> Box:
     """Return the rectangle of the image plane that contains an object, in pixels.
 
     The rectangle reaches at most one image width and height beyond the image. It has this maximum size if part of the
     object is behind the camera.
     """
-    optics, data, model = shot.optics, stage.simulation.data, stage.simulation.model
+    optics, data, model = arrangement.optics, world.simulation.data, world.simulation.model
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-    local = model.geom_aabb[prop.geoms, None, :3] + signs * model.geom_aabb[prop.geoms, None, 3:]
-    rotations = data.geom_xmat[prop.geoms].reshape(-1, 3, 3)
-    world_corners = np.einsum("gij,gcj->gci", rotations, local) + data.geom_xpos[prop.geoms, None, :]
-    camera_corners = (world_corners.reshape(-1, 3) - np.array(shot.pose[:3])) @ axes_of(shot.pose)
+    local = model.geom_aabb[movable.geoms, None, :3] + signs * model.geom_aabb[movable.geoms, None, 3:]
+    rotations = data.geom_xmat[movable.geoms].reshape(-1, 3, 3)
+    world_corners = np.einsum("gij,gcj->gci", rotations, local) + data.geom_xpos[movable.geoms, None, :]
+    camera_corners = (world_corners.reshape(-1, 3) - np.array(arrangement.pose[:3])) @ axes_of(arrangement.pose)
     margin_x, margin_y = int(_MARGIN * optics.width), int(_MARGIN * optics.height)
     minimum, maximum = np.array([-margin_x, -margin_y]), np.array([optics.width + margin_x, optics.height + margin_y])
     if (camera_corners[:, 2] > optics.near).all():
@@ -164,14 +170,14 @@ def _projected_bounds(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box
     return left, top, right, bottom
 
 
-def _render_alone(stage: Stage, prop: Prop, render: Callable[[], Any]) -> Any:
+def _render_alone(world: RandomizedWorld, movable: MovableObject, render: Callable[[], Any]) -> Any:
     """Return the result of `render`, called while all other objects are hidden."""
-    data = stage.simulation.data
+    data = world.simulation.data
     positions = data.geom_xpos.copy()
-    prop_positions = positions[prop.geoms].copy()
+    object_positions = positions[movable.geoms].copy()
     try:
-        stage.hide(range(stage.simulation.model.ngeom))
-        data.geom_xpos[prop.geoms] = prop_positions
+        world.hide(range(world.simulation.model.ngeom))
+        data.geom_xpos[movable.geoms] = object_positions
         return render()
     finally:
         data.geom_xpos[:] = positions

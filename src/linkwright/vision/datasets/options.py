@@ -26,7 +26,7 @@ class Options:
         largest geom, half of this length is enough.
         min_visible: the minimum visible fraction of an object and of its largest geom; a less visible object is
             ignored.
-        form: the image format, ``jpg`` or ``png``.
+        image_format: the image format, ``jpg`` or ``png``.
     """
 
     width: int = 640
@@ -39,4 +39,4 @@ class Options:
     fixed_properties: tuple[str, ...] = ()
     min_size: int = 12
     min_visible: float = 0.5
-    form: str = "jpg"
+    image_format: str = "jpg"

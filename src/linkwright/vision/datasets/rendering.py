@@ -16,12 +16,12 @@ from linkwright.sdf.models import Model
 from linkwright.simulation.rendering.renderer import Channels
 from linkwright.simulation.server.worlds import load_world
 from linkwright.simulation.simulation import Simulation
-from linkwright.vision.datasets.appearance import Camera, fill_backdrop, paint_surfaces, set_lights
+from linkwright.vision.datasets.appearance import LensEffects, fill_backdrop, paint_surfaces, set_lights
 from linkwright.vision.datasets.arrangement import arrange
 from linkwright.vision.datasets.classes import ClassRules, default_rules, find_objects, original_name, read_classes
 from linkwright.vision.datasets.labels import Label, label_image
 from linkwright.vision.datasets.options import SPLITS, Options
-from linkwright.vision.datasets.stage import Stage
+from linkwright.vision.datasets.randomized_world import RandomizedWorld
 
 IMAGES_PER_PATTERN_SET = 50
 """The number of consecutive images that use the same patterns."""
@@ -32,18 +32,18 @@ _PATTERN_STREAM, _IMAGE_STREAM, _SPLIT_STREAM = range(3)
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class DatasetInput:
     """The worlds and options of a dataset.
 
     Attributes:
         worlds: the files or the names of worlds.
-        added: the files of robots or models to add to each world.
+        added_models: the files of robots or models to add to each world.
         classes: the file of class rules; None for one class per model.
         options: how images are made.
     """
 
     worlds: tuple[str, ...]
-    added: tuple[str, ...]
+    added_models: tuple[str, ...]
     classes: str | None
     options: Options
 
@@ -65,7 +65,7 @@ class LabeledImage:
     labels: tuple[Label, ...]
 
 
-class Studio:
+class DatasetRenderer:
     """The renderer and labeler of the images of a dataset.
 
     An image depends only on its number and the seed.
@@ -83,12 +83,12 @@ class Studio:
         LinkwrightError: VISION202 there is nothing to label; VISION204 Pillow is missing; an error in a world.
     """
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: DatasetInput) -> None:
         self._options = source.options
-        self._image = _load_pillow()
+        self._pillow_image = _load_pillow()
         worlds = [load_world(name) for name in source.worlds]
         self.worlds = tuple(world.path for world in worlds)
-        added_models = [_load_model(Path(path)) for path in source.added]
+        added_models = [_load_model(Path(path)) for path in source.added_models]
         simulations = [Simulation(world.world, world.finder) for world in worlds]
         for simulation in simulations:
             for model in added_models:
@@ -96,55 +96,55 @@ class Studio:
             simulation.refresh()
         rules = default_rules(simulations) if source.classes is None else read_classes(Path(source.classes))
         self.classes = tuple(rules.patterns)
-        _share_models(simulations, rules)
+        _add_models_of_other_worlds(simulations, rules)
         objects = [find_objects(simulation, rules) for simulation in simulations]
         for path, world_objects in zip(source.worlds, objects, strict=True):
             if not world_objects:
                 raise _no_objects_error(path, source.classes)
         used_labels = {scene_object.label for image_objects in objects for scene_object in image_objects}
         self.unused = tuple(name for number, name in enumerate(self.classes) if number not in used_labels)
-        self._stages = [
-            Stage(simulation, image_objects, self._options.copies, self._options.distractors)
+        self._randomized_worlds = [
+            RandomizedWorld(simulation, image_objects, self._options.copies, self._options.distractors)
             for simulation, image_objects in zip(simulations, objects, strict=True)
         ]
-        self.render_method = self._stages[0].renderer.method
+        self.render_method = self._randomized_worlds[0].renderer.method
         self._pattern_sets: dict[int, int] = {}
-        self._camera = Camera()
+        self._lens = LensEffects()
 
-    def make(self, index: int) -> LabeledImage:
+    def render_image(self, index: int) -> LabeledImage:
         """Render the image with a number, and return it with its labels."""
-        options, stage_index = self._options, index % len(self._stages)
-        stage, pattern_set = self._stages[stage_index], index // IMAGES_PER_PATTERN_SET
-        if self._pattern_sets.get(stage_index) != pattern_set:
-            stage.set_patterns(np.random.default_rng((options.seed, _PATTERN_STREAM, pattern_set, stage_index)))
-            self._pattern_sets[stage_index] = pattern_set
+        options, world_index = self._options, index % len(self._randomized_worlds)
+        world, pattern_set = self._randomized_worlds[world_index], index // IMAGES_PER_PATTERN_SET
+        if self._pattern_sets.get(world_index) != pattern_set:
+            world.set_patterns(np.random.default_rng((options.seed, _PATTERN_STREAM, pattern_set, world_index)))
+            self._pattern_sets[world_index] = pattern_set
         generator = np.random.default_rng((options.seed, _IMAGE_STREAM, index))
-        stage.begin()
-        shot = arrange(stage, options, generator)
+        world.reset()
+        arrangement = arrange(world, options, generator)
         if "lights" not in options.fixed_properties:
-            set_lights(stage, generator)
+            set_lights(world, generator)
         if "colors" not in options.fixed_properties:
-            paint_surfaces(stage, shot, generator)
-        image = stage.renderer.render(shot.optics, shot.pose, Channels.COLOR | Channels.GEOMS)
+            paint_surfaces(world, arrangement, generator)
+        image = world.renderer.render(arrangement.optics, arrangement.pose, Channels.COLOR | Channels.GEOMS)
         assert image.color is not None
         assert image.geoms is not None
-        labels = label_image(stage, shot, image.geoms, options.min_size, options.min_visible)
+        labels = label_image(world, arrangement, image.geoms, options.min_size, options.min_visible)
         color = image.color
         if "lights" not in options.fixed_properties:
             fill_backdrop(color, image.geoms, generator)
         if "lens" not in options.fixed_properties:
-            color = self._camera.develop(color, generator)
+            color = self._lens.apply(color, generator)
         return LabeledImage(index, split_of(index, options), self._encode(color, generator), tuple(labels))
 
     def close(self) -> None:
         """Release the renderers."""
-        for stage in self._stages:
-            stage.close()
+        for world in self._randomized_worlds:
+            world.close()
 
     def _encode(self, color: Any, generator: np.random.Generator) -> bytes:
         file = BytesIO()
-        image = self._image.fromarray(color)
-        if self._options.form == "png":
+        image = self._pillow_image.fromarray(color)
+        if self._options.image_format == "png":
             image.save(file, "PNG", compress_level=1)
         else:
             quality = 92 if "lens" in self._options.fixed_properties else int(generator.integers(60, 96))
@@ -180,7 +180,7 @@ def _load_model(path: Path) -> Model:
     return model
 
 
-def _share_models(simulations: Sequence[Simulation], rules: ClassRules) -> None:
+def _add_models_of_other_worlds(simulations: Sequence[Simulation], rules: ClassRules) -> None:
     """Add the labeled models of each world to all other worlds."""
     models_by_world = [dict(simulation.scene.models) for simulation in simulations]
     for simulation in simulations:

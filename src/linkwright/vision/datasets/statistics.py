@@ -39,35 +39,35 @@ class ClassStatistics:
 
 
 def compute_statistics(
-    classes: Sequence[str], size: tuple[int, int], annotations: Iterable[Mapping[str, Any]]
+    classes: Sequence[str], image_size: tuple[int, int], annotations: Iterable[Mapping[str, Any]]
 ) -> dict[str, ClassStatistics]:
     """Return the statistics of each class.
 
     Args:
         classes: the names of the classes.
-        size: width and height of images in pixels.
+        image_size: width and height of images in pixels.
         annotations: the annotations of all images, in COCO's format.
     """
     statistics = {name: ClassStatistics() for name in classes}
-    images: dict[str, set[int]] = {name: set() for name in classes}
+    image_ids: dict[str, set[int]] = {name: set() for name in classes}
     for annotation in annotations:
         name = classes[annotation["category_id"] - 1]
         class_statistics = statistics[name]
         if annotation["iscrowd"]:
             class_statistics.ignored += 1
             continue
-        images[name].add(annotation["image_id"])
+        image_ids[name].add(annotation["image_id"])
         class_statistics.objects += 1
-        side = next(size_name for size_name, limit in _SIZE_LIMITS if sqrt(annotation["area"]) < limit)
-        setattr(class_statistics, side, getattr(class_statistics, side) + 1)
+        size_class = next(label for label, limit in _SIZE_LIMITS if sqrt(annotation["area"]) < limit)
+        setattr(class_statistics, size_class, getattr(class_statistics, size_class) + 1)
         class_statistics.hidden += annotation["visibility"] < _MIN_VISIBLE
         class_statistics.truncated += bool(annotation["truncated"])
         left, top, width, height = annotation["bbox"]
-        column = min(int(3 * (left + width / 2) / size[0]), 2)
-        row = min(int(3 * (top + height / 2) / size[1]), 2)
+        column = min(int(3 * (left + width / 2) / image_size[0]), 2)
+        row = min(int(3 * (top + height / 2) / image_size[1]), 2)
         class_statistics.thirds[3 * row + column] += 1
-    for name, image_ids in images.items():
-        statistics[name].images = len(image_ids)
+    for name, class_image_ids in image_ids.items():
+        statistics[name].images = len(class_image_ids)
     return statistics
 
 

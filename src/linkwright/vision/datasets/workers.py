@@ -13,13 +13,13 @@ from contextlib import suppress
 from multiprocessing.connection import Connection, wait
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.vision.datasets.rendering import IMAGES_PER_PATTERN_SET, LabeledImage, Source, Studio
+from linkwright.vision.datasets.rendering import IMAGES_PER_PATTERN_SET, DatasetInput, DatasetRenderer, LabeledImage
 
 _PATIENCE = 10.0
 """The seconds that a process has to exit before it is killed."""
 
 
-def make_in_processes(source: Source, numbers: range, workers: int) -> Iterator[LabeledImage]:
+def make_in_processes(source: DatasetInput, numbers: range, workers: int) -> Iterator[LabeledImage]:
     """Yield images that several processes make at the same time.
 
     Args:
@@ -67,7 +67,7 @@ def _split_by_patterns(numbers: range) -> Iterator[range]:
 
 
 class _Worker:
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: DatasetInput) -> None:
         spawn = multiprocessing.get_context("spawn")
         self.connection, child_connection = spawn.Pipe()
         self.remaining_count = 0
@@ -112,20 +112,20 @@ class _Worker:
         self._process.close()
 
 
-def _run_worker(source: Source, connection: Connection) -> None:
+def _run_worker(source: DatasetInput, connection: Connection) -> None:
     """Make the requested images in a worker process until the connection is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_exit_with_parent, daemon=True).start()
     sys.stdout = sys.stderr
     with suppress(EOFError, OSError):
         try:
-            studio = Studio(source)
+            renderer = DatasetRenderer(source)
         except LinkwrightError as error:
             connection.send(error.diagnostics)
             return
         while True:
             for number in connection.recv():
-                connection.send(studio.make(number))
+                connection.send(renderer.render_image(number))
 
 
 def _exit_with_parent() -> None:

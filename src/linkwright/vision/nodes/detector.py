@@ -63,7 +63,7 @@ from linkwright.vision.detectors.options import MAX_SIZE, DetectorOptions
 from linkwright.vision.detectors.registry import DEFAULT_DETECTOR, make_detector
 from linkwright.vision.detectors.settings import setting_error
 from linkwright.vision.nodes.detection_messages import MESSAGE_MAKERS, image_message
-from linkwright.vision.nodes.dialects import DARKNET_ROS, OURS, YOLO_ROS, YOLOV5_ROS, YOLOV5_ROS2, Dialect
+from linkwright.vision.nodes.dialects import DARKNET_ROS, LINKWRIGHT, YOLO_ROS, YOLOV5_ROS, YOLOV5_ROS2, Dialect
 from linkwright.vision.nodes.image_watch import ImageWatch
 from linkwright.vision.nodes.latest_worker import LatestWorker
 
@@ -101,7 +101,7 @@ class DetectorNode(SingleNode):
     """
 
     DEFAULT_NAME = "yolo_node"
-    DIALECT: ClassVar[Dialect] = OURS
+    DIALECT: ClassVar[Dialect] = LINKWRIGHT
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._graph = graph

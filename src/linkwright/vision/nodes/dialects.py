@@ -50,7 +50,7 @@ class Dialect:
     message_type: str = VISION
 
 
-OURS = Dialect()
+LINKWRIGHT = Dialect()
 YOLO_ROS = Dialect(debug_image_topics=("debug_image", "dbg_image"), message_type=YOLO)
 YOLOV5_ROS = Dialect(
     model="weights",

@@ -46,7 +46,7 @@ class _MissingWriter:
     deadline: float | None = None
 
 
-class Departures:
+class DdsDepartureMonitor:
     """A detector that decides whether publishers that disappeared were lost.
 
     Only the discovery thread may call the methods, except `watch`.

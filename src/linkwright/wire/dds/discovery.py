@@ -49,7 +49,7 @@ _READER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL, history
 
 
 class Discovery:
-    """Fills the tables of the remote graph and publishes the graph of this process.
+    """The discovery of a domain, which fills the tables of the remote graph and publishes the graph of this process.
 
     A gid has 24 bytes for ROS 2 up to Humble and 16 from Iron on. An announcement with the wrong size makes ``ros2 node
     list`` of Humble fail, or leaves our nodes without names. Our announcements use the size of the ROS 2 nodes that
@@ -260,7 +260,7 @@ INTERVALS = (0.02, 0.1, 0.2, 0.4, 0.8)
 
 
 class DiscoveryRequests:
-    """Creates readers of ``ros_discovery_info`` until every participant has announced its nodes.
+    """The extra readers of ``ros_discovery_info``, which exist until every participant has announced its nodes.
 
     Without these extra readers, some announcements would arrive only after seconds. A writer of Fast DDS repeats its
     last announcement to a reader when it discovers the reader. Often Cyclone does not know the writer at that

@@ -12,7 +12,7 @@ from typing import Any
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.dds.cyclone import CycloneError
-from linkwright.wire.dds.departures import Departures
+from linkwright.wire.dds.departures import DdsDepartureMonitor
 from linkwright.wire.dds.discovery import Discovery
 from linkwright.wire.dds.discovery_info import NodeEntities
 from linkwright.wire.dds.domain import Domain
@@ -63,7 +63,7 @@ class Engine(AnyEngine):
         self,
         settings: Settings,
         remote: RemoteGraph,
-        departures: Departures,
+        departures: DdsDepartureMonitor,
         work: Work,
         logger: Logger,
     ) -> None:
@@ -120,7 +120,7 @@ class Engine(AnyEngine):
             self._discovery.publish([])
         deadline = time.monotonic() + CLOSING_TIME
         for topic in (*self._outgoing.values(), *self._closing_deadlines):
-            if not topic.acknowledged(max(0, int((deadline - time.monotonic()) * 1e9))):
+            if not topic.wait_until_acknowledged(max(0, int((deadline - time.monotonic()) * 1e9))):
                 break
         self._pacer.stop(CLOSING_TIME)
         if self._fast is not None:
@@ -320,7 +320,7 @@ class Engine(AnyEngine):
     def _close_finished_topics(self) -> None:
         now = time.monotonic()
         for topic, deadline in tuple(self._closing_deadlines.items()):
-            if now >= deadline or topic.acknowledged(0):
+            if now >= deadline or topic.wait_until_acknowledged(0):
                 del self._closing_deadlines[topic]
                 self._waiting.pop(topic, None)
                 topic.close()

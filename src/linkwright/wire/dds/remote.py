@@ -158,7 +158,7 @@ class RemoteEndpoint:
 class DepartureWatch(Protocol):
     """A receiver of notifications about endpoints that disappear.
 
-    `wire.dds.departures.Departures` implements this protocol.
+    `wire.dds.departures.DdsDepartureMonitor` implements this protocol.
     """
 
     def endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
@@ -325,7 +325,7 @@ class RemoteGraph(RemoteEntities):
                     return False
         return self.have_all_announced()
 
-    def our_processes(self) -> set[int]:
+    def linkwright_process_ids(self) -> set[int]:
         """Return the known process ids of running Linkwright processes on this machine."""
         own_participants = [
             participant for participant in self.participants() if participant.is_ours and not participant.has_died()

@@ -184,7 +184,7 @@ class OutgoingTopic(MirroredTopic):
         """
         return self._backlog is not None and self._backlog.write_queued()
 
-    def acknowledged(self, nanoseconds: int) -> bool:
+    def wait_until_acknowledged(self, nanoseconds: int) -> bool:
         """Wait until all reliable readers have acknowledged all published samples.
 
         Returns False if that takes longer than the given time.
@@ -214,7 +214,7 @@ class OutgoingTopic(MirroredTopic):
         self._dds.dds_assert_liveliness(self.entity)
 
     def _acknowledged(self, seconds: float | None) -> bool:
-        return self.acknowledged(0x7FFF_FFFF_FFFF_FFFF if seconds is None else int(seconds * 1e9))
+        return self.wait_until_acknowledged(0x7FFF_FFFF_FFFF_FFFF if seconds is None else int(seconds * 1e9))
 
     def _wait_for_acks(self, nanoseconds: int) -> bool:
         """Wait until all readers have acknowledged the written samples.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.graph.log.logger import Logger
 from linkwright.wire.background import BackgroundTransport, TransportOptions
-from linkwright.wire.dds.departures import Departures
+from linkwright.wire.dds.departures import DdsDepartureMonitor
 from linkwright.wire.dds.local_sockets import other_processes
 from linkwright.wire.dds.remote import RemoteGraph
 from linkwright.wire.dds.settings import Range, Settings
@@ -16,15 +16,15 @@ from linkwright.wire.engine import Engine
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-SETTLED_AFTER = 0.3
+SETTLE_TIME_S = 0.3
 """Seconds without changes after which discovery counts as complete."""
 
-_SETTLED_AMONG_KNOWN = 0.05
+_SETTLE_TIME_ALL_KNOWN_S = 0.05
 """The same, if all processes are known. A process may still be creating participants or endpoints."""
 
 
 class DdsTransport(BackgroundTransport):
-    """Mirrors the graph of this process in a DDS domain.
+    """The transport that mirrors the graph of this process in a DDS domain.
 
     Args:
         settings: the domain and how to join it.
@@ -37,7 +37,7 @@ class DdsTransport(BackgroundTransport):
             logger.warning(warning)
         self._settings = settings
         self._remote = RemoteGraph()
-        self._departures = Departures(self._remote)
+        self._departures = DdsDepartureMonitor(self._remote)
         super().__init__(settings.domain_id, self._remote, self._departures, logger, **options)
 
     def _make_engine(self) -> Engine:
@@ -46,10 +46,10 @@ class DdsTransport(BackgroundTransport):
 
         return DdsEngine(self._settings, self._remote, self._departures, self._work, self._logger)
 
-    def _has_settled(self, quiet: float) -> bool:
+    def _has_settled(self, quiet_s: float) -> bool:
         """Return whether all participants have announced their nodes and the remote graph is stable."""
         return self._remote.is_complete() and (
-            quiet >= SETTLED_AFTER or (quiet >= _SETTLED_AMONG_KNOWN and self._knows_all_processes())
+            quiet_s >= SETTLE_TIME_S or (quiet_s >= _SETTLE_TIME_ALL_KNOWN_S and self._knows_all_processes())
         )
 
     def _knows_all_processes(self) -> bool:
@@ -60,7 +60,10 @@ class DdsTransport(BackgroundTransport):
         """
         if self._settings.range is not Range.MACHINE:
             return False
-        process_count, known_processes = other_processes(self._settings.domain_id), self._remote.our_processes()
+        process_count, known_processes = (
+            other_processes(self._settings.domain_id),
+            self._remote.linkwright_process_ids(),
+        )
         return (
             process_count is not None and os.getpid() not in known_processes and len(known_processes) >= process_count
         )

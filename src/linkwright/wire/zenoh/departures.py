@@ -44,7 +44,7 @@ class _MissingPublisher:
     deadline: float
 
 
-class Departures:
+class ZenohDepartureMonitor:
     """A detector that decides whether publishers that disappeared were lost.
 
     Only the discovery thread may call the methods, except `watch`.

@@ -23,8 +23,8 @@ from linkwright.wire.engine import Work, ends_by_error
 from linkwright.wire.guarded_calls import guarded
 from linkwright.wire.type_names import dds_type
 from linkwright.wire.zenoh import qos_text, tokens
-from linkwright.wire.zenoh.departures import Departures
-from linkwright.wire.zenoh.interests import OURS, Interests
+from linkwright.wire.zenoh.departures import ZenohDepartureMonitor
+from linkwright.wire.zenoh.interests import KEY_PREFIX, Interests
 from linkwright.wire.zenoh.opening import SessionOpener
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.services import IncomingService, RemoteServer
@@ -57,7 +57,7 @@ class Engine(AnyEngine):
         self,
         settings: Settings,
         remote: RemoteGraph,
-        departures: Departures,
+        departures: ZenohDepartureMonitor,
         work: Work,
         logger: Logger,
         opener: SessionOpener,
@@ -321,7 +321,7 @@ class Engine(AnyEngine):
 
         Return whether that changes the remote graph.
         """
-        if key.startswith(OURS):
+        if key.startswith(KEY_PREFIX):
             self._record_session(appeared=appeared, key=key)
             return False
         token = tokens.read(key)
@@ -377,7 +377,7 @@ class Engine(AnyEngine):
         departure_token.undeclare()
 
     def _own_token(self, state: str) -> str:
-        return f"{OURS}/{self._settings.domain_id}/{self._session_id}/{state}"
+        return f"{KEY_PREFIX}/{self._settings.domain_id}/{self._session_id}/{state}"
 
 
 _OPPOSITE = {

@@ -17,7 +17,7 @@ from zenoh.handlers import Callback
 
 from linkwright.wire.zenoh import tokens
 
-OURS = "@linkwright"
+KEY_PREFIX = "@linkwright"
 """Linkwright's sessions have a token ``@linkwright/<domain>/<session>/here``, and add ``left`` before they end."""
 
 
@@ -36,7 +36,7 @@ class Interests:
         self._liveliness = session.liveliness()
         self._on_token = on_token
         self._token_pattern = f"{tokens.ROOT}/{domain_id}/**"
-        self._sessions = f"{OURS}/{domain_id}"
+        self._sessions = f"{KEY_PREFIX}/{domain_id}"
         self._counts: Counter[str] = Counter()
         self._declared: dict[str, Any] = {}
         self._followed_sessions: AbstractSet[str] = frozenset()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 from linkwright.graph.log.logger import Logger
 from linkwright.wire.background import BackgroundTransport, TransportOptions
 from linkwright.wire.engine import Engine
-from linkwright.wire.zenoh.departures import Departures
+from linkwright.wire.zenoh.departures import ZenohDepartureMonitor
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.settings import Settings
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from linkwright.wire.zenoh.engine import Engine as ZenohEngine
     from linkwright.wire.zenoh.opening import SessionOpener
 
-SETTLED_AFTER = 0.4
+SETTLE_TIME_S = 0.4
 """Seconds without changes after which discovery counts as complete, if another session is connected."""
 
 _ANSWERED_WITHIN = 2.0
@@ -33,7 +33,7 @@ _ALONE_AFTER = 1.4
 
 
 class ZenohTransport(BackgroundTransport):
-    """Mirrors the graph of this process in a Zenoh session.
+    """The transport that mirrors the graph of this process in a Zenoh session.
 
     Args:
         settings: the domain and how to join it.
@@ -44,7 +44,7 @@ class ZenohTransport(BackgroundTransport):
     def __init__(self, settings: Settings, logger: Logger, **options: Unpack[TransportOptions]) -> None:
         self._settings = settings
         self._remote = RemoteGraph()
-        self._departures = Departures(self._remote)
+        self._departures = ZenohDepartureMonitor(self._remote)
         self._zenoh_engine: ZenohEngine | None = None
         self._opener: SessionOpener | None = None
         self._connected_at = 0.0
@@ -108,4 +108,4 @@ class ZenohTransport(BackgroundTransport):
         if engine is None or not engine.has_neighbors():
             return quiet >= _ALONE_AFTER
         self._connected_at = self._connected_at or time.monotonic()
-        return min(quiet, time.monotonic() - self._connected_at) >= SETTLED_AFTER
+        return min(quiet, time.monotonic() - self._connected_at) >= SETTLE_TIME_S

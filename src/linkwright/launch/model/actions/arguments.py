@@ -42,7 +42,7 @@ def _read_choice_list(entity: Entity) -> list[str] | None:
 
 @expose_action("arg")
 class DeclareLaunchArgument(Action):
-    """Declares an argument of a launch file.
+    """An action that declares an argument of a launch file.
 
     The launch configuration with the argument's name receives the given value or the default value.
 
@@ -189,7 +189,7 @@ class DeclareLaunchArgument(Action):
 
 @expose_action("bool_arg")
 class DeclareBooleanLaunchArgument(DeclareLaunchArgument):
-    """Declares an argument that is true or false.
+    """An action that declares an argument that is true or false.
 
     Args:
         name: the argument's name.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @expose_action("let")
 class SetLaunchConfiguration(AssigningAction):
-    """Sets a launch configuration."""
+    """An action that sets a launch configuration."""
 
     def execute(self, context: LaunchContext) -> None:
         """Set the launch configuration."""
@@ -31,7 +31,7 @@ class SetLaunchConfiguration(AssigningAction):
 
 @expose_action("unset")
 class UnsetLaunchConfiguration(NamedAction):
-    """Unsets a launch configuration, if it is set."""
+    """An action that unsets a launch configuration, if it is set."""
 
     def execute(self, context: LaunchContext) -> None:
         """Unset the launch configuration."""
@@ -39,7 +39,7 @@ class UnsetLaunchConfiguration(NamedAction):
 
 
 class PushLaunchConfigurations(Action):
-    """Opens a scope of launch configurations.
+    """An action that opens a scope of launch configurations.
 
     `PopLaunchConfigurations` undoes the changes made in the scope.
     """
@@ -50,7 +50,7 @@ class PushLaunchConfigurations(Action):
 
 
 class PopLaunchConfigurations(Action):
-    """Closes a scope, and restores the launch configurations to their values before the scope."""
+    """An action that closes a scope, and restores the launch configurations to their values before the scope."""
 
     def execute(self, context: LaunchContext) -> None:
         """Close the scope."""
@@ -59,7 +59,7 @@ class PopLaunchConfigurations(Action):
 
 @expose_action("reset")
 class ResetLaunchConfigurations(Action):
-    """Removes all launch configurations, and then sets the given ones.
+    """An action that removes all launch configurations, and then sets the given ones.
 
     Args:
         launch_configurations: maps names to the values to set. Both are evaluated before the existing configurations

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @expose_action("set_env")
 class SetEnvironmentVariable(AssigningAction):
-    """Sets an environment variable."""
+    """An action that sets an environment variable."""
 
     def execute(self, context: LaunchContext) -> None:
         """Set the environment variable."""
@@ -40,7 +40,7 @@ class SetEnvironmentVariable(AssigningAction):
 
 @expose_action("unset_env")
 class UnsetEnvironmentVariable(NamedAction):
-    """Unsets an environment variable, if it is set."""
+    """An action that unsets an environment variable, if it is set."""
 
     def execute(self, context: LaunchContext) -> None:
         """Unset the environment variable."""
@@ -49,7 +49,7 @@ class UnsetEnvironmentVariable(NamedAction):
 
 @expose_action("append_env")
 class AppendEnvironmentVariable(AssigningAction):
-    """Adds a value to an environment variable that contains a list, such as a search path.
+    """An action that adds a value to an environment variable that contains a list, such as a search path.
 
     Args:
         name: the name of the variable.
@@ -99,7 +99,7 @@ class AppendEnvironmentVariable(AssigningAction):
 
 @expose_action("rep_env")
 class ReplaceEnvironmentVariables(Action):
-    """Replaces the entire environment with the given variables.
+    """An action that replaces the entire environment with the given variables.
 
     Args:
         environment: maps the names of the variables to their values.
@@ -130,7 +130,7 @@ class ReplaceEnvironmentVariables(Action):
 
 @expose_action("push_env")
 class PushEnvironment(Action):
-    """Opens a scope of environment variables.
+    """An action that opens a scope of environment variables.
 
     `PopEnvironment` undoes the changes made in the scope.
     """
@@ -142,7 +142,7 @@ class PushEnvironment(Action):
 
 @expose_action("pop_env")
 class PopEnvironment(Action):
-    """Closes a scope, and restores the environment variables to their values before the scope."""
+    """An action that closes a scope, and restores the environment variables to their values before the scope."""
 
     def execute(self, context: LaunchContext) -> None:
         """Close the scope."""
@@ -151,7 +151,7 @@ class PopEnvironment(Action):
 
 @expose_action("reset_env")
 class ResetEnvironment(Action):
-    """Restores the environment to its state at the start of the launch."""
+    """An action that restores the environment to its state at the start of the launch."""
 
     def execute(self, context: LaunchContext) -> None:
         """Restore the environment."""

@@ -38,7 +38,7 @@ class _HandlerAction(Action):
 
 
 class RegisterEventHandler(_HandlerAction):
-    """Registers an event handler."""
+    """An action that registers an event handler."""
 
     def execute(self, context: LaunchContext) -> None:
         """Register the event handler."""
@@ -62,7 +62,7 @@ class RegisterEventHandler(_HandlerAction):
 
 
 class UnregisterEventHandler(_HandlerAction):
-    """Unregisters an event handler."""
+    """An action that unregisters an event handler."""
 
     def execute(self, context: LaunchContext) -> None:
         """Unregister the event handler."""
@@ -70,7 +70,7 @@ class UnregisterEventHandler(_HandlerAction):
 
 
 class EmitEvent(Action):
-    """Emits an event for the launch to handle."""
+    """An action that emits an event for the launch to handle."""
 
     def __init__(self, *, event: events.Event, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -94,7 +94,7 @@ class EmitEvent(Action):
 
 @expose_action("shutdown")
 class Shutdown(EmitEvent):
-    """Shuts the launch down.
+    """An action that shuts the launch down.
 
     If the action runs because a process ended, it also logs the name of the process.
     """

@@ -38,7 +38,7 @@ _DEFAULT_TIMEOUT = "5"
 
 
 class ExecuteLocal(Action):
-    """Starts a process and monitors it until it ends.
+    """An action that starts a process and monitors it until it ends.
 
     Args:
         process_description: the program to run.
@@ -315,7 +315,7 @@ class ExecuteLocal(Action):
 
 @expose_action("executable")
 class ExecuteProcess(ExecuteLocal):
-    """Starts a process from a command and monitors the process until it ends.
+    """An action that starts a process from a command and monitors the process until it ends.
 
     Args:
         cmd: program and arguments, see `Executable`.

@@ -12,7 +12,7 @@ from linkwright.launch.model.context import LaunchContext
 
 
 class OpaqueFunction(Action):
-    """Calls a function with the launch context, and visits the entities that it returns.
+    """An action that calls a function with the launch context, and visits the entities that it returns.
 
     Args:
         function: the function, which is called as ``function(context, *args, **kwargs)``.
@@ -46,7 +46,7 @@ class OpaqueFunction(Action):
 
 
 class OpaqueCoroutine(Action):
-    """Starts a coroutine.
+    """An action that starts a coroutine.
 
     The launch waits for the coroutine to finish, and a shutdown cancels it.
 

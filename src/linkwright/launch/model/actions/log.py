@@ -38,7 +38,7 @@ LEVELS = {
 
 @expose_action("log")
 class Log(Action):
-    """Writes a line to the log at a level.
+    """An action that writes a line to the log at a level.
 
     Args:
         msg: the line.
@@ -130,26 +130,26 @@ class _LogOfLevel(Log):
 
 @expose_action("log_info")
 class LogInfo(_LogOfLevel):
-    """Writes a line at level INFO."""
+    """An action that writes a line at level INFO."""
 
 
 @expose_action("log_debug")
 class LogDebug(_LogOfLevel):
-    """Writes a line at level DEBUG, shown only with ``--debug``."""
+    """An action that writes a line at level DEBUG, shown only with ``--debug``."""
 
     _LEVEL = "DEBUG"
 
 
 @expose_action("log_warning")
 class LogWarning(_LogOfLevel):
-    """Writes a line at level WARNING."""
+    """An action that writes a line at level WARNING."""
 
     _LEVEL = "WARNING"
 
 
 @expose_action("log_error")
 class LogError(_LogOfLevel):
-    """Writes a line at level ERROR.
+    """An action that writes a line at level ERROR.
 
     The launch continues after an error.
     """

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @expose_action("for_each")
 class ForEach(Action):
-    """Calls a function for each of several sets of values, and visits the returned entities.
+    """An action that calls a function for each of several sets of values, and visits the returned entities.
 
     Args:
         input_values: the sets of values, each a YAML mapping in braces, separated by semicolons.
@@ -99,7 +99,7 @@ class ForEach(Action):
 
 @expose_action("for")
 class ForLoop(Action):
-    """Calls a function for each index from 0, and visits the entities that the function returns.
+    """An action that calls a function for each index from 0, and visits the entities that the function returns.
 
     Args:
         length: the number of iterations.

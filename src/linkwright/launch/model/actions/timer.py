@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @expose_action("timer")
 class TimerAction(Action):
-    """Visits actions once, when a period has passed.
+    """An action that visits actions once, when a period has passed.
 
     Args:
         period: the period in seconds, as a number or substitutions.

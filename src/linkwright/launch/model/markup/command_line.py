@@ -41,7 +41,7 @@ def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
 
 
 class _ArgumentSplitter:
-    """Splits literal text and substitutions into the arguments of a command.
+    """A splitter of literal text and substitutions into the arguments of a command.
 
     Attributes:
         arguments: the finished arguments, each as a list of substitutions.

@@ -32,7 +32,7 @@ _STDERR_RULES = ("fail", "warn", "ignore", "capture")
 
 
 class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
-    """Evaluates to the standard output of a command.
+    """A substitution that evaluates to the standard output of a command.
 
     Args:
         command: the program and its arguments, quoted as in a shell.

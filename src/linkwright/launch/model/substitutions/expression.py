@@ -22,7 +22,7 @@ from linkwright.launch.model.substitution import (
 
 
 class PythonExpression(DeclaredSubstitution, tag="eval"):
-    """Evaluates to the value of a Python expression, as text.
+    """A substitution that evaluates to the value of a Python expression, as text.
 
     Args:
         expression: the expression.

@@ -41,7 +41,7 @@ def _normalize_operand(value: Any) -> list[Substitution]:
 
 
 class EqualsSubstitution(DeclaredSubstitution, tag="equals"):
-    """Evaluates to ``true`` if two texts are equal, otherwise to ``false``.
+    """A substitution that evaluates to ``true`` if two texts are equal, otherwise to ``false``.
 
     Numbers and booleans are compared by value.
     """
@@ -66,7 +66,7 @@ class EqualsSubstitution(DeclaredSubstitution, tag="equals"):
 
 
 class NotEqualsSubstitution(EqualsSubstitution, tag="not-equals"):
-    """Evaluates to ``true`` if two texts differ, otherwise to ``false``."""
+    """A substitution that evaluates to ``true`` if two texts differ, otherwise to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if the texts differ, otherwise ``false``."""
@@ -74,7 +74,7 @@ class NotEqualsSubstitution(EqualsSubstitution, tag="not-equals"):
 
 
 class NotSubstitution(DeclaredSubstitution, tag="not", shown="NotSubstitution({value})"):
-    """Evaluates to ``true`` if a boolean is false, otherwise to ``false``."""
+    """A substitution that evaluates to ``true`` if a boolean is false, otherwise to ``false``."""
 
     value: Texts = Texts()
 
@@ -84,7 +84,7 @@ class NotSubstitution(DeclaredSubstitution, tag="not", shown="NotSubstitution({v
 
 
 class AndSubstitution(DeclaredSubstitution, tag="and"):
-    """Evaluates to ``true`` if two booleans are both true, otherwise to ``false``."""
+    """A substitution that evaluates to ``true`` if two booleans are both true, otherwise to ``false``."""
 
     left: Texts = Texts()
     right: Texts = Texts()
@@ -98,7 +98,7 @@ class AndSubstitution(DeclaredSubstitution, tag="and"):
 
 
 class OrSubstitution(AndSubstitution, tag="or"):
-    """Evaluates to ``true`` if at least one of two booleans is true, otherwise to ``false``."""
+    """A substitution that evaluates to ``true`` if at least one of two booleans is true, otherwise to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if at least one value is true, otherwise ``false``."""
@@ -137,7 +137,7 @@ expose_substitution("all")(_parse_all)
 
 
 class AnySubstitution(_MultiValueSubstitution):
-    """Evaluates to ``true`` if at least one of several booleans is true, otherwise to ``false``."""
+    """A substitution that evaluates to ``true`` if at least one of several booleans is true, otherwise to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if at least one value is true, otherwise ``false``."""
@@ -145,7 +145,7 @@ class AnySubstitution(_MultiValueSubstitution):
 
 
 class AllSubstitution(_MultiValueSubstitution):
-    """Evaluates to ``true`` if several booleans are all true, otherwise to ``false``."""
+    """A substitution that evaluates to ``true`` if several booleans are all true, otherwise to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if all values are true, otherwise ``false``."""
@@ -155,7 +155,7 @@ class AllSubstitution(_MultiValueSubstitution):
 class IfElseSubstitution(
     DeclaredSubstitution, tag="if", shown="IfElseSubstitution({condition}, {if_value}, {else_value})"
 ):
-    """Evaluates to one of two texts, selected by a boolean.
+    """A substitution that evaluates to one of two texts, selected by a boolean.
 
     Args:
         condition: the boolean.

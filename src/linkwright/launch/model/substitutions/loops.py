@@ -26,7 +26,7 @@ def local_name(name: str) -> str:
 
 
 class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name}, default_value={default_value})"):
-    """Evaluates to a value of the current iteration of a `ForEach`.
+    """A substitution that evaluates to a value of the current iteration of a `ForEach`.
 
     Args:
         name: the name of the value.
@@ -77,7 +77,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
 
 
 class ForLoopIndex(ForEachVar, tag="index"):
-    """Evaluates to the current index of the `ForLoop` with the given name."""
+    """A substitution that evaluates to the current index of the `ForLoop` with the given name."""
 
     def __init__(self, name: SomeSubstitutionsType, **_: Any) -> None:
         super().__init__(name)

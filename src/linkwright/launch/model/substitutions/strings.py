@@ -61,7 +61,7 @@ class StringStripSubstitution(_OneTextSubstitution, tag="string-strip"):
 
 
 class IsEmptySubstitution(_OneTextSubstitution, tag="is-empty"):
-    """Evaluates to ``true`` if a text is empty, otherwise to ``false``."""
+    """A substitution that evaluates to ``true`` if a text is empty, otherwise to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if the text is empty, otherwise ``false``."""
@@ -69,7 +69,7 @@ class IsEmptySubstitution(_OneTextSubstitution, tag="is-empty"):
 
 
 class NotEmptySubstitution(_OneTextSubstitution, tag="not-empty"):
-    """Evaluates to ``true`` if a text is not empty, otherwise to ``false``."""
+    """A substitution that evaluates to ``true`` if a text is not empty, otherwise to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if the text is not empty, otherwise ``false``."""

@@ -31,7 +31,7 @@ _P = ParamSpec("_P")
 
 
 class _Wait:
-    """Waits until an event occurs or a condition holds.
+    """A wait until an event occurs or a condition holds.
 
     Args:
         context: the context of the launch.

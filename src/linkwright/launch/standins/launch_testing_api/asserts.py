@@ -156,7 +156,7 @@ def assertSequentialStdout(
 
 
 class SequentialTextChecker:
-    """Finds texts in the output of a process, each after the previous match.
+    """A search for texts in the output of a process, each after the previous match.
 
     Args:
         output: the output in chunks; each text must be within a single chunk.

@@ -20,7 +20,7 @@ _OutputTest = tuple[Any, Callable[[Any, bytes], Any], Callable[[Any, Any], bool]
 
 
 class LaunchTestService:
-    """Ends a launch when all its tests have finished.
+    """A service that ends a launch when all its tests have finished.
 
     `run` returns the status of the first failed test.
     """

@@ -9,7 +9,7 @@ from linkwright.launch.model.process_event_handlers import OnProcessIO
 
 
 class StdoutReadyListener(OnProcessIO):
-    """Executes actions when a process writes a text to standard output.
+    """An event handler that executes actions when a process writes a text to standard output.
 
     Args:
         target_action: the action of the process; None for all processes.

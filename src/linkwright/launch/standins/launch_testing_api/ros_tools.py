@@ -27,11 +27,11 @@ _STOP_TIMEOUT_SECONDS = 5.0
 
 
 class LaunchTestRunner(_LaunchTestRunner):
-    """Runs launches and the tests of each launch."""
+    """A runner of launches and the tests of each launch."""
 
 
 class WaitForTopics:
-    """Waits for a message on each of several topics.
+    """A wait for a message on each of several topics.
 
     An instance can be used as a context manager.
 
@@ -133,7 +133,7 @@ class WaitForTopics:
 
 
 class MessagePump:
-    """Runs the callbacks of a node in a thread.
+    """A thread that runs the callbacks of a node.
 
     Args:
         node: the node.
@@ -169,7 +169,7 @@ class MessagePump:
 
 
 class DataRepublisher:
-    """Transforms the messages of a topic, and publishes the results on another topic.
+    """A republisher that transforms the messages of a topic, and publishes the results on another topic.
 
     Args:
         node: the node that subscribes and publishes.

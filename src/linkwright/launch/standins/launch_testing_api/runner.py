@@ -31,7 +31,7 @@ class _LaunchDiedError(Exception):
 
 
 class _RunnerWorker:
-    """Runs one launch and its tests.
+    """A runner of one launch and its tests.
 
     Args:
         test_run: the tests to run.
@@ -141,7 +141,7 @@ class _RunnerWorker:
 
 
 class LaunchTestRunner:
-    """Runs several launches and the tests of each launch.
+    """A runner of several launches and the tests of each launch.
 
     Args:
         test_runs: the tests of each launch.

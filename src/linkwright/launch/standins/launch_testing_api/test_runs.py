@@ -157,11 +157,11 @@ class _Loader(unittest.TestLoader):
 
 
 class PreShutdownTestLoader(_Loader):
-    """Loads the tests that run during the launch."""
+    """A loader of the tests that run during the launch."""
 
 
 class PostShutdownTestLoader(_Loader):
-    """Loads the tests that run after the launch has ended."""
+    """A loader of the tests that run after the launch has ended."""
 
     is_after = True
 

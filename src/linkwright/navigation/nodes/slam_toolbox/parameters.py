@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwright.graph import Node, Parameter, ParameterType
 from linkwright.navigation.nodes.plugins import get_or_declare
-from linkwright.navigation.slam.poses import Floats
+from linkwright.navigation.slam.poses import FloatArray
 from linkwright.navigation.slam.search import Search
 from linkwright.navigation.slam.settings import MapperSettings
 from linkwright.nodes.settings import positive
@@ -78,7 +78,7 @@ class Settings:
     min_pass_through: int
     occupancy_threshold: float
     map_file_name: str
-    start: Floats | None
+    start: FloatArray | None
     mapper: MapperSettings
 
 
@@ -167,7 +167,7 @@ def _log_unsupported(node: Node) -> None:
         node.get_logger().info("enable_interactive_mode is not supported: scans cannot be moved by hand")
 
 
-def _start_pose(node: Node) -> Floats | None:
+def _start_pose(node: Node) -> FloatArray | None:
     """Return the initial pose in a saved map, or None for the pose of its first scan.
 
     A wrong number of values is logged, as in slam_toolbox.

@@ -33,7 +33,7 @@ from linkwright.navigation.nodes.slam_toolbox.markers import graph_markers
 from linkwright.navigation.nodes.slam_toolbox.parameters import Settings
 from linkwright.navigation.slam.mapper import Mapper, Outcome
 from linkwright.navigation.slam.occupancy import OccupancyMap
-from linkwright.navigation.slam.poses import Floats, compose, inverse
+from linkwright.navigation.slam.poses import FloatArray, compose, inverse
 from linkwright.navigation.slam.scan import PlanarScan, planar_scan
 from linkwright.navigation.slam.steps import Steps
 from linkwright.navigation.slam.storage import graph_path, load_graph
@@ -69,12 +69,12 @@ class Toolbox:
             load_scipy(subpackage)  # If SciPy is missing, NAV101 is raised here and not at the first scan.
         self.node, self.settings, self.localizes = node, settings, localizes
         self.mapper = self._new_mapper()
-        self.queue: deque[tuple[PlanarScan, Floats]] = deque()
+        self.queue: deque[tuple[PlanarScan, FloatArray]] = deque()
         self._keeps_all_scans = keeps_all_scans
         self._pending_scan: tuple[Any, int] | None = None
         self._work: Steps[Outcome | None] | None = None
-        self._processed_odometry: Floats | None = None
-        self._map_to_odom: Floats = np.zeros(3)
+        self._processed_odometry: FloatArray | None = None
+        self._map_to_odom: FloatArray = np.zeros(3)
         self._latest_stamp_ns: int | None = None
         self._scan_count = 0
         self._is_active: list[Any] = []
@@ -160,7 +160,7 @@ class Toolbox:
         self._map_to_odom = np.zeros(3)
         self._has_published = False
 
-    def load(self, name: str, start: Floats | None) -> None:
+    def load(self, name: str, start: FloatArray | None) -> None:
         """Load a saved graph, and start at a pose in it.
 
         Args:
@@ -179,7 +179,7 @@ class Toolbox:
         if self._is_active:
             self._start_work(self._redraw())
 
-    def start_session(self, pose: Floats) -> None:
+    def start_session(self, pose: FloatArray) -> None:
         """Start a session at a pose, of shape (3,), in the map.
 
         The next scan is matched around this pose.
@@ -232,7 +232,7 @@ class Toolbox:
         self._pending_scan = None
         self._queue_scan(message, _planar_pose(base), laser)
 
-    def _queue_scan(self, message: Any, odometry: Floats, laser: Transform) -> None:
+    def _queue_scan(self, message: Any, odometry: FloatArray, laser: Transform) -> None:
         if self._processed_odometry is not None and self.node.get_parameter("paused_new_measurements").value:
             return
         is_busy = self._work is not None
@@ -365,6 +365,6 @@ class Toolbox:
         self.node.set_parameters([Parameter("paused_new_measurements", value=is_paused)])
 
 
-def _planar_pose(pose: Transform) -> Floats:
+def _planar_pose(pose: Transform) -> FloatArray:
     """Return the x, y and yaw of a 3D pose."""
     return np.array((pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]))

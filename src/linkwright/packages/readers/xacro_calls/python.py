@@ -43,7 +43,7 @@ class _Reader:
             if isinstance(node, ast.Call) and called_name(node) in functions:
                 calls.setdefault(called_name(node), []).append((node, scope))
         self._texts = PythonTexts(file, calls)
-        self._handled: set[ast.AST] = set()
+        self._handled_nodes: set[ast.AST] = set()
 
     def read(self) -> None:
         """Collect the calls and inclusions of the file."""
@@ -51,18 +51,17 @@ class _Reader:
             if isinstance(node, ast.Call) and called_name(node).endswith("DeclareLaunchArgument"):
                 self._read_declaration(node, scope)
             elif isinstance(node, ast.Call) and called_name(node).endswith("Command") and node.args:
-                self._handled.update(
-                    _assigned_expressions(node.args[0], scope)
-                )  # its items may be fragments of command-line arguments
+                # The items of a list may be fragments of arguments, so they are not read as separate commands.
+                self._handled_nodes.update(_assigned_expressions(node.args[0], scope))
         for node, scope in self._nodes:
-            if node in self._handled:
-                self._handled.update(ast.iter_child_nodes(node))
+            if node in self._handled_nodes:
+                self._handled_nodes.update(ast.iter_child_nodes(node))
             elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
-                self._handled.add(node.value)  # skip docstrings
+                self._handled_nodes.add(node.value)  # skip docstrings
             elif isinstance(node, ast.Call):
-                self._call(node, scope)
+                self._handle_call(node, scope)
             elif isinstance(node, (ast.JoinedStr, ast.BinOp, ast.Constant, ast.List)):
-                self._command(node, scope)
+                self._record_command(node, scope)
 
     def _read_declaration(self, node: ast.Call, scope: Scope) -> None:
         name = self._texts.text(node.args[0] if node.args else argument_of(node, "name"), scope)
@@ -76,12 +75,12 @@ class _Reader:
             )
             self._file.declare(name[0], None if default is None else self._texts.text(default, scope), values)
 
-    def _call(self, node: ast.Call, scope: Scope) -> None:
+    def _handle_call(self, node: ast.Call, scope: Scope) -> None:
         name = called_name(node).rpartition(".")[2]
         if name == "Command":
             command = node.args[0] if node.args else argument_of(node, "command")
             self._record_call(parse_xacro_command(self._texts.text(command, scope)), node, is_command=True)
-            self._handled.update(ast.iter_child_nodes(node))
+            self._handled_nodes.update(ast.iter_child_nodes(node))
         elif name == "IncludeLaunchDescription":
             self._read_inclusion(node, scope)
         elif name == "robot_description" and isinstance(node.func, ast.Attribute):
@@ -89,18 +88,18 @@ class _Reader:
         else:
             self._read_expansion(node, name, scope)
 
-    def _command(self, node: ast.JoinedStr | ast.BinOp | ast.Constant | ast.List, scope: Scope) -> None:
+    def _record_command(self, node: ast.JoinedStr | ast.BinOp | ast.Constant | ast.List, scope: Scope) -> None:
         """Record the call in a text, or in a list of arguments, if it is a command line of xacro."""
         value = self._texts.value(node, scope)
         if isinstance(value, Items):
             tokens = [item for item in value.values if isinstance(item, tuple)]
-            line = joined((*token, " ") for token in tokens) if len(tokens) == len(value.values) else ()
+            command_line = joined((*token, " ") for token in tokens) if len(tokens) == len(value.values) else ()
         else:
-            line = value if isinstance(value, tuple) else ()
-        if any(isinstance(piece, str) and "xacro" in piece for piece in line):
-            self._record_call(parse_xacro_command(line), node, is_command=True)
+            command_line = value if isinstance(value, tuple) else ()
+        if any(isinstance(fragment, str) and "xacro" in fragment for fragment in command_line):
+            self._record_call(parse_xacro_command(command_line), node, is_command=True)
         if not isinstance(node, ast.List):
-            self._handled.update(ast.iter_child_nodes(node))
+            self._handled_nodes.update(ast.iter_child_nodes(node))
 
     def _read_expansion(self, node: ast.Call, name: str, scope: Scope) -> None:
         """Record a call of any function that receives the path of a description and a mapping."""
@@ -132,14 +131,13 @@ class _Reader:
             if file_path is not None
             else joined((("config/",), robot, (".urdf.xacro",)))
         )
-        folder = self._texts.text(package, scope) if package is not None else (*robot, "_moveit_config")
+        package_name = self._texts.text(package, scope) if package is not None else (*robot, "_moveit_config")
         mappings = self._texts.value(
             argument_of(node, "mappings") or (node.args[1] if len(node.args) > 1 else None), scope
         )
         arguments = dict(_entry_texts(mappings.values)) if isinstance(mappings, Entries) else {}
-        self._record_call(
-            (_share_path(folder, file), arguments), node, is_command=True
-        )  # arguments as from substitutions
+        # The builder passes its arguments on a command line, as the substitution `Command` does.
+        self._record_call((_share_path(package_name, file), arguments), node, is_command=True)
 
     def _read_inclusion(self, node: ast.Call, scope: Scope) -> None:
         source = node.args[0] if node.args else argument_of(node, "launch_description_source")

@@ -109,7 +109,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         for system in self._systems:
             system.begin()
         for controller in self._manager.controllers.values():
-            controller.next_ns = 0
+            controller.next_update_ns = 0
 
     def stop(self) -> None:
         """Close the controller manager, and save its state for the next instance.

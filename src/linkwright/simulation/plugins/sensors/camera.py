@@ -34,7 +34,7 @@ from linkwright.simulation.plugins.sensors.images import (
     fill_image,
 )
 from linkwright.simulation.rendering.renderer import Channels, RenderedImage
-from linkwright.simulation.rendering.sharing import shared_renderer
+from linkwright.simulation.rendering.sharing import share_renderer
 
 P = TypeVar("P")
 IMAGE, INFO, CLOUD = "sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"
@@ -70,7 +70,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
 
     def start(self) -> None:
         """Acquire the shared renderer, and create the cameras and the topics."""
-        self._shared = shared_renderer(self.simulation)
+        self._shared = share_renderer(self.simulation)
         super().start()
 
     def stop(self) -> None:

@@ -30,7 +30,7 @@ _DISTRACTOR_SHAPES = ("box", "capsule", "ellipsoid", "cylinder")
 
 
 @dataclass(frozen=True)
-class Prop:
+class MovableObject:
     """A group of geoms that is moved as one object.
 
     Attributes:
@@ -56,7 +56,7 @@ class Prop:
     is_round: bool
 
 
-class Stage:
+class RandomizedWorld:
     """A world with copies of its labeled objects, and with distractors.
 
     Args:
@@ -68,7 +68,7 @@ class Stage:
     Attributes:
         simulation: the world.
         renderer: renders the images of the world.
-        props: the objects and their copies.
+        movable_objects: the objects and their copies.
         distractors: the geoms of the objects without a label.
         ground: the geoms that are flat; they are always visible.
         structures: the other geoms of the surroundings, by model.
@@ -88,13 +88,17 @@ class Stage:
         simulation.mark_changed()
         simulation.refresh()
         model, data = simulation.model, simulation.data
-        self.props = [_make_prop(model, scene_object, bases[scene_object.name]) for scene_object in objects]
-        self.props += [_make_prop(model, copy, bases[original]) for copy, original in copies_with_originals]
+        self.movable_objects = [
+            _create_movable(model, scene_object, bases[scene_object.name]) for scene_object in objects
+        ]
+        self.movable_objects += [
+            _create_movable(model, copy, bases[original]) for copy, original in copies_with_originals
+        ]
         self.floor = float(np.median([bases[scene_object.name].bottom for scene_object in objects])) if objects else 0.0
         first = [model.geom(f"distractor {number}").id for number in range(distractors)]
         self.distractors = first
         labeled = {model.geom(name).id for name in object_geoms} | {
-            int(geom) for prop in self.props for geom in prop.geoms
+            int(geom) for movable in self.movable_objects for geom in movable.geoms
         }
         properties_used_by_plugins = [
             geom
@@ -120,30 +124,30 @@ class Stage:
         self._original_world = simulation.world
         self.renderer: Renderer = make_renderer(simulation)
 
-    def begin(self) -> None:
+    def reset(self) -> None:
         """Restore the poses and colors of all structures, and hide all objects."""
         model, data = self.simulation.model, self.simulation.data
         data.geom_xpos[:], data.geom_xmat[:] = self._initial_poses
         model.geom_rgba[:], model.geom_matid[:] = self._colors, self._materials
-        for prop in self.props:
-            data.geom_xpos[prop.geoms] = _HIDDEN_POSITION
+        for movable in self.movable_objects:
+            data.geom_xpos[movable.geoms] = _HIDDEN_POSITION
         self.hide(self.distractors)
 
     def hide(self, geoms: Sequence[int]) -> None:
         """Hide geoms by moving them far away."""
         self.simulation.data.geom_xpos[geoms] = _HIDDEN_POSITION
 
-    def place_prop(self, prop: Prop, position: Array, rotation: Array) -> None:
+    def place_object(self, movable: MovableObject, position: Array, rotation: Array) -> None:
         """Place an object.
 
         Args:
-            prop: the object.
+            movable: the object.
             position: the position of the center of its base, in m.
             rotation: its rotation matrix, shape (3, 3).
         """
         data = self.simulation.data
-        data.geom_xpos[prop.geoms] = position + prop.positions @ rotation.T
-        data.geom_xmat[prop.geoms] = (rotation @ prop.rotations).reshape(-1, 9)
+        data.geom_xpos[movable.geoms] = position + movable.positions @ rotation.T
+        data.geom_xmat[movable.geoms] = (rotation @ movable.rotations).reshape(-1, 9)
 
     def shape_distractor(self, geom: int, generator: np.random.Generator) -> float:
         """Give a distractor a random shape and size, and return its bounding radius in m.
@@ -226,7 +230,7 @@ class Stage:
             kind: [model.material(f"{kind} {number}").id for number in range(_PATTERNS_PER_KIND)]
             for kind in _PATTERN_SIZES
         }
-        self.begin()
+        self.reset()
         self.simulation.world = self._original_world
         self.renderer.close()
         self.renderer = make_renderer(self.simulation)  # images must not depend on what the previous renderer drew
@@ -344,13 +348,13 @@ def _measure_object(simulation: Simulation, scene_object: SceneObject) -> _Initi
     )
 
 
-def _make_prop(model: Any, scene_object: SceneObject, geometry: _InitialGeometry) -> Prop:
+def _create_movable(model: Any, scene_object: SceneObject, geometry: _InitialGeometry) -> MovableObject:
     geoms = np.array([model.geom(name).id for name in scene_object.geoms])
     radius = float(np.linalg.norm(geometry.corners[:, :2], axis=1).max())
     half_sizes = np.sort(model.geom_aabb[geoms, 3:], axis=1)
     main = int(geoms[np.argmax(half_sizes[:, 1] * half_sizes[:, 2])])
     poses = geometry.positions, geometry.rotations, geometry.corners
-    return Prop(scene_object.name, scene_object.label, geoms, main, *poses, radius, geometry.is_round)
+    return MovableObject(scene_object.name, scene_object.label, geoms, main, *poses, radius, geometry.is_round)
 
 
 def _opaque(color: Array) -> tuple[float, float, float, float]:
