@@ -17,7 +17,7 @@ _MAX_RESTS = 6
 """The number of other commands up to which their texts are shown."""
 _MAX_TEXT = 200
 _MIN_FOLDER = 3
-"""The number of parts from which the path of a folder stands for its files; paths of packages have fewer."""
+"""The number of parts from which a folder is named instead of its files; paths in packages have fewer."""
 _LONG_LIST = 5
 """The number of words of a command from which only the different ones are shown."""
 _MAX_NAMES = 8
