@@ -19,7 +19,6 @@ from linkwright.graph.executors import (
     SingleThreadedExecutor,
     TimeoutException,
 )
-from linkwright.graph.executors.multi_threaded import Workers
 from linkwright.graph.loop.future import Future
 from linkwright.messages import String
 from tests.waiting import SECONDS, is_waiting, wait_until
@@ -589,14 +588,3 @@ class TestOwnExecutors:
     def test_multi_threaded_executor_warns_about_single_thread(self):
         with pytest.warns(UserWarning, match="single thread"):
             MultiThreadedExecutor(1)
-
-
-def test_busy_workers_share_one_shutdown_timeout():
-    go_on = threading.Event()
-    workers = Workers(4, "busy", lambda: None)
-    for _ in range(4):
-        workers.submit(go_on.wait)
-    begin = time.monotonic()
-    assert not workers.close(1.0)
-    assert 1.0 <= time.monotonic() - begin < 3.0
-    go_on.set()

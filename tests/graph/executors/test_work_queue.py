@@ -1,4 +1,4 @@
-"""The queue of an executor: who is roused when, and Ctrl-C at any point of a wait."""
+"""The queue and the workers of an executor: which thread wakes when, and Ctrl-C at any point of a wait."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from linkwright.graph.executors.multi_threaded import Workers
 from linkwright.graph.executors.work import WorkQueue
 from tests.waiting import SECONDS, is_waiting, wait_until
 
@@ -111,3 +112,14 @@ def test_earlier_alarm_shortens_wait() -> None:
     assert not thread.is_alive()
     assert queue.take() is None
     assert called == [1]
+
+
+def test_busy_workers_share_one_shutdown_timeout():
+    go_on = threading.Event()
+    workers = Workers(4, "busy", lambda: None)
+    for _ in range(4):
+        workers.submit(go_on.wait)
+    begin = time.monotonic()
+    assert not workers.close(1.0)
+    assert 1.0 <= time.monotonic() - begin < 3.0
+    go_on.set()
