@@ -1,4 +1,4 @@
-"""Robots that include packages and files that neither version has."""
+"""Robots that include packages and files that are not found."""
 
 from __future__ import annotations
 
@@ -44,8 +44,19 @@ def test_rest_of_robot_is_compared_with_one_note(sensor_package, compare):
     ]
     assert review_subject.figures == []
     assert notes(result) == [
-        f"'{PATH}' is compared without the packages and files that neither version has: 'lidar_description'"
+        f"'{PATH}' is compared without the packages and files that are not found: 'lidar_description'"
     ]
+
+
+def test_note_does_not_call_a_file_missing_that_both_versions_have(package, compare):
+    right = '<xacro:include filename="$(find arm_description)/urdf/colors.xacro"/>'
+    text = ARM.replace("</robot>", right + "</robot>")
+    colors = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><material name="red"/></robot>'
+    package.commit({PATH: text.replace("/urdf/colors", "/colors"), "arm_description/urdf/colors.xacro": colors})
+    package.write({PATH: text})
+    result = compare(package)
+    assert notes(result) == [f"'{PATH}' is compared without the packages and files that are not found: 'colors.xacro'"]
+    assert [str(finding.message) for finding in result.fixed_findings]
 
 
 def test_values_of_a_call_of_a_missing_macro_are_compared(sensor_package, compare):

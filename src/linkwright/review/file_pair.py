@@ -85,7 +85,7 @@ class FilePair:
         images: images of both versions.
         scene: both versions in 3D.
         expanded: the elements of changed files that the compared robots show.
-        missing: the names of packages and files that neither version has, and that were left out.
+        missing: the names of packages and files that were left out because a version does not find them.
         is_lost: whether the new version cannot be read, and the old version can.
     """
 

@@ -40,14 +40,14 @@ def unreadable_notes(subjects: Sequence[Subject]) -> Iterator[Phrase]:
 
 
 def missing_notes(subjects: Sequence[Subject]) -> Iterator[Phrase]:
-    """Yield a note about the packages and files that neither version has."""
+    """Yield a note about the packages and files that were left out because a version does not find them."""
     incomplete = [subject for subject in subjects if subject.missing]
     names = sorted({name for subject in incomplete for name in subject.missing})
     if incomplete:
         yield counted(
-            "'{path}' is compared without the packages and files that neither version has: {names}",
-            "{count} descriptions, such as '{path}', are compared without the packages and files that neither version "
-            "has: {names}",
+            "'{path}' is compared without the packages and files that are not found: {names}",
+            "{count} descriptions, such as '{path}', are compared without the packages and files that are not found: "
+            "{names}",
             len(incomplete),
             path=incomplete[0].path,
             names=quoted_names([*names[:_MAX_NAMES], *["..."][: len(names) > _MAX_NAMES]]),

@@ -15,7 +15,7 @@ from linkwright.review.changes import Change
 from linkwright.review.file_pair import Fault, FilePair
 from linkwright.review.folders import without_folder
 from linkwright.review.robots.lone_robots import robot_text
-from linkwright.review.robots.partial_robots import PartialPair, missing_in_both, read_partial_robot
+from linkwright.review.robots.partial_robots import PartialPair, missing_names, read_partial_robot
 from linkwright.review.versions import Version
 
 _MAX_CASES = 12
@@ -144,7 +144,7 @@ def _case(pair: FilePair, name: str, values: _Values) -> Case | _Failure:
         return _Failure(name, values, old, new)
     old_error, new_error = partial.old.error, partial.new.error
     if old_error is None and new_error is None:
-        pair.missing.update(dict.fromkeys(missing_in_both(partial, models.old, models.new)))
+        pair.missing.update(dict.fromkeys(missing_names(partial, models.old, models.new)))
         if partial.unevaluated_names:
             pair.add_unevaluated(partial.unevaluated_names)
         return Case(name, partial.old.description, partial.new.description, models, partial)
@@ -247,7 +247,7 @@ def _partial_pair(models: Pair) -> PartialPair | None:
     if old is None or new is None:
         return None
     partial = PartialPair(old, new)
-    return partial if missing_in_both(partial, models.old, models.new) else None
+    return partial if missing_names(partial, models.old, models.new) else None
 
 
 def _report(pair: FilePair, failures: list[_Failure]) -> None:

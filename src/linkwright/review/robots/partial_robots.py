@@ -160,8 +160,8 @@ def _root_of(link: str, parents: Mapping[str, str]) -> str:
     return link
 
 
-def missing_in_both(pair: PartialPair, old: Model, new: Model) -> list[str]:
-    """Return the names of the packages and files that neither version has.
+def missing_names(pair: PartialPair, old: Model, new: Model) -> list[str]:
+    """Return the names of the packages and files that are left out because they are not found.
 
     The list is empty if nothing is missing, or if one of the versions has something that the other version needs.
     """
