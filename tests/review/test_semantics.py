@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.review.conftest import subject
+from tests.review.conftest import sentences, subject
 
 PATH = "arm_description/config/arm.srdf"
 SRDF = """<?xml version="1.0"?>
@@ -76,3 +76,53 @@ def test_group_in_a_macro_that_is_removed_is_breaking(package, compare):
     (change,) = subject(compare(package), path).changes
     assert str(change.sentence) == "macro 'arm_srdf': group ${prefix}arm removed"
     assert str(change.reason) == "programs that plan for the group '${prefix}arm' do not find it"
+
+
+MACROS = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="allow" params="first second"><disable_collisions link1="${first}" link2="${second}"/></xacro:macro>
+</robot>"""
+CALLS = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:include filename="macros.xacro"/>
+  <xacro:allow first="base_link" second="lower"/>
+  <xacro:allow first="base_link" second="upper"/>
+</robot>"""
+LOOP = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:include filename="macros.xacro"/>
+  <xacro:property name="links" value="${['lower', 'upper']}"/>
+  <xacro:macro name="rest" params="links">
+    <xacro:if value="${len(links) > 0}">
+      <xacro:allow first="base_link" second="${links[0]}"/>
+      <xacro:rest links="${links[1:]}"/>
+    </xacro:if>
+  </xacro:macro>
+  <xacro:rest links="${links}"/>
+</robot>"""
+CALLED = "arm_description/config/arm.srdf.xacro"
+DEFINED = "arm_description/config/macros.xacro"
+
+
+@pytest.fixture
+def calls(package):
+    package.commit({CALLED: CALLS, DEFINED: MACROS})
+    return package
+
+
+def test_other_spelling_of_the_same_expansion_is_no_change(calls, compare):
+    calls.write({CALLED: LOOP})
+    assert [sentences(part) for part in compare(calls).subjects] == []
+
+
+def test_included_file_changes_the_semantic_description(calls, compare):
+    calls.write({DEFINED: MACROS.replace('link2="${second}"', 'link2="${second}_link"')})
+    assert sentences(subject(compare(calls), CALLED)) == [
+        "disable_collisions: 2 pairs added: base_link - lower_link, base_link - upper_link",
+        "disable_collisions: 2 pairs removed: base_link - lower, base_link - upper",
+    ]
+
+
+def test_semantic_description_that_xacro_refuses_is_breaking(calls, compare):
+    calls.write({DEFINED: MACROS.replace("${first}", "${'%s'.format(first)}")})
+    result = compare(calls)
+    (change,) = subject(result, CALLED).changes
+    assert str(change.sentence).startswith("cannot be read any more: arm_description/config/macros.xacro:2: ")
+    assert change.reason is not None

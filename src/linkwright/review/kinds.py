@@ -35,6 +35,7 @@ from linkwright.review.files.worlds import compare_worlds, world_contents
 from linkwright.review.launches.contents import launch_contents
 from linkwright.review.launches.files import compare_launch_files
 from linkwright.review.robots.descriptions import compare_descriptions
+from linkwright.review.robots.semantics import SUFFIX, compare_expanded_semantics
 from linkwright.review.versions import Version
 
 _YAML_SUFFIXES = (".yaml", ".yml")
@@ -74,7 +75,16 @@ def _build_contents(read: Callable[[Version, str], BuildFacts], version: Version
     return build_contents(read(version, path))
 
 
+SEMANTIC_XACRO = KindRule(
+    SubjectKind.SEMANTICS,
+    compare_expanded_semantics,
+    (SUFFIX,),
+    phrase("semantic description added"),
+    phrase("semantic description removed"),
+    phrase("launch files and programs that name the file do not find it"),
+)
 _RULES = (
+    SEMANTIC_XACRO,
     KindRule(
         SubjectKind.DESCRIPTION,
         compare_descriptions,

@@ -29,7 +29,7 @@ from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
 from linkwright.review.installed_paths import keeps_installed_path
-from linkwright.review.kinds import LAUNCH_HELPER, MAP, KindRule, may_help_launch_files, rule_of
+from linkwright.review.kinds import LAUNCH_HELPER, MAP, SEMANTIC_XACRO, KindRule, may_help_launch_files, rule_of
 from linkwright.review.launches.formats import with_other_formats
 from linkwright.review.launches.helpers import makes_actions
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
@@ -38,6 +38,7 @@ from linkwright.review.parts import compare_parts
 from linkwright.review.references import lost_references
 from linkwright.review.renamed_packages import with_moved_files, without_consequences
 from linkwright.review.robots.lone_robots import read_lone_robot, robot_text
+from linkwright.review.robots.semantics import semantic_files
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -174,7 +175,7 @@ class _Reviewer:
             if file.path in self._maps:
                 paths.add((self._old_path(self._maps[file.path]), self._new_path(self._maps[file.path])))
                 continue
-            if rule is None or rule.kind in _EXPANDED or file.is_submodule:
+            if rule is None or rule is SEMANTIC_XACRO or rule.kind in _EXPANDED or file.is_submodule:
                 continue
             if self._is_part_of_a_robot(rule, file):
                 paths.add(self._package_build_file(file) or (file.old_path, file.new_path))
@@ -387,14 +388,14 @@ def _maps_of_images(versions: Versions, files: Sequence[ChangedFile]) -> Iterato
 
 
 def _targets(version: Version) -> set[str]:
-    """Return the paths of the complete descriptions and worlds of a version.
+    """Return the paths of the complete descriptions, semantic descriptions in xacro, and worlds of a version.
 
     A robot that another description includes is complete if a launch file starts it, too.
     """
     checker = version.checker()
     started = [file for file in included_robots(version.root) if checker.calls(file, ())]
     files = (version.relative(file) for file in (*find_targets([version.root]).files, *started))
-    return {path for path in files if path is not None}
+    return {path for path in files if path is not None} | semantic_files(version)
 
 
 def _package_folder(version: Version, path: str) -> Path | None:

@@ -41,9 +41,13 @@ class _Entry:
 def compare_semantics(pair: FilePair) -> None:
     """Compare two versions of a semantic description."""
     roots = pair.read(_root)
-    if roots is None:
-        return
-    old, new = ({(entry.tag, entry.name): entry for entry in _entries(root)} for root in roots)
+    if roots is not None:
+        compare_roots(pair, *roots)
+
+
+def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
+    """Compare two semantic descriptions by their root elements."""
+    old, new = ({(entry.tag, entry.name): entry for entry in _entries(root)} for root in (old_root, new_root))
     renamed = dict(_renamed(old, new))
     for key, entry in new.items():
         if key in old:
@@ -59,7 +63,7 @@ def compare_semantics(pair: FilePair) -> None:
             location = pair.location(entry.element.span(), is_old=True)
             pair.add(phrase("{entry} removed", entry=_title(entry)), location, removal_reason(entry.tag, entry.name))
     for tag in _PAIRS:
-        _compare_pairs(pair, tag, *(_pairs(root, tag) for root in roots))
+        _compare_pairs(pair, tag, *(_pairs(root, tag) for root in (old_root, new_root)))
 
 
 def semantic_contents(version: Version, path: str) -> Phrase | None:

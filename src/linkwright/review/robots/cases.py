@@ -258,8 +258,8 @@ def _report(pair: FilePair, failures: list[_Failure]) -> None:
     """
     names: dict[tuple[Fault | None, Fault | None], list[str]] = {}
     for failure in failures:
-        old = _fault(failure.old, pair.versions.old)
-        new = _fault(failure.new, pair.versions.new)
+        old = fault_of(failure.old, pair.versions.old)
+        new = fault_of(failure.new, pair.versions.new)
         if old is not None and failure.values.doubt and (pair.cases or failure is not failures[0]):
             continue
         if old is None and new is not None and not failure.values.is_of_new:
@@ -281,7 +281,8 @@ def _add_contents(pair: FilePair, description: Description | LinkwrightError) ->
         pair.changes.append(Change(robot_text(description.robot)))
 
 
-def _fault(result: Description | LinkwrightError, version: Version) -> Fault | None:
+def fault_of(result: Description | LinkwrightError, version: Version) -> Fault | None:
+    """Return why a version cannot be read, or None if it can."""
     if isinstance(result, Description):
         return None
     first = result.diagnostics[0]

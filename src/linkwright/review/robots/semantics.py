@@ -1,0 +1,57 @@
+"""The comparison of semantic descriptions in xacro, expanded with the defaults of their arguments."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.descriptions import Description, examine
+from linkwright.diagnostics import LinkwrightError
+from linkwright.review.file_pair import FilePair
+from linkwright.review.files.semantics import compare_roots
+from linkwright.review.parts.expanded import expanded_places
+from linkwright.review.robots.cases import fault_of
+from linkwright.review.versions import Version
+from linkwright.xacro.cache import read_document
+
+SUFFIX = ".srdf.xacro"
+_DEFINITIONS = frozenset({"xacro:macro", "xacro:property", "xacro:arg", "xacro:include"})
+
+
+def semantic_files(version: Version) -> set[str]:
+    """Return the paths of the semantic descriptions in xacro that contain more than definitions for other files."""
+    files = (file for file in version.root.rglob(f"*{SUFFIX}") if file.is_file())
+    paths = (version.relative(file) for file in files if _is_complete(file))
+    return {path for path in paths if path is not None}
+
+
+def compare_expanded_semantics(pair: FilePair) -> None:
+    """Compare two versions of a semantic description in xacro.
+
+    If neither version can be expanded, such as without a package of another repository, nothing is added: the files are
+    then compared as they are written.
+    """
+    old, new = (
+        _expanded(version, path)
+        for version, path in ((pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path))
+    )
+    if isinstance(old, Description) and isinstance(new, Description):
+        pair.expanded.update(expanded_places(pair.versions, old, new))
+        compare_roots(pair, old.document.root, new.document.root)
+    elif isinstance(old, Description) or isinstance(new, Description):
+        pair.add_faults(fault_of(old, pair.versions.old), fault_of(new, pair.versions.new))
+
+
+def _is_complete(file: Path) -> bool:
+    try:
+        root = read_document(str(file)).root
+    except (LinkwrightError, OSError):
+        return False
+    return any(element.tag not in _DEFINITIONS for element in root.elements())
+
+
+def _expanded(version: Version, path: str) -> Description | LinkwrightError:
+    file = version.file(path)
+    try:
+        return examine(file, packages=version.finder(file.parent))
+    except LinkwrightError as error:
+        return error
