@@ -33,7 +33,6 @@ ESCAPES = [
     "(lambda: 0)._body",
     "(lambda: 0)._around",
     "'{0.__class__}'.format(1)",
-    "'x'.format",
     "'x'.format_map(1)",
     "str.format('{0.__class__}', 1)",
     "str.join",
@@ -88,7 +87,6 @@ ESCAPES = [
     "python.type('').format",
     "python.type('').join",
     "python.type([]).extend",
-    "python.type('')('x').format",
     "python.type(xacro)",
     "python.type(print)",
     "python.type(None)",
@@ -210,7 +208,59 @@ def test_attributes_give_only_plain_values_and_methods(name: str) -> None:
             continue
         assert not name.startswith("_")
         assert not isinstance(result, type)
-        assert name not in ("format", "format_map")
+        assert name != "format_map"
+
+
+FIELDS = [
+    "{0.__class__}",
+    "{0.__class__.__mro__}",
+    "{0._x}",
+    "{name.__self__}",
+    "{1.__globals__}",
+    "{0:{name.__class__}}",
+    "{0.real.__class__!r}",
+    "{2.__init__}",
+    "{2.values}",
+    "{0:>99999}",
+    "{0}" * 2000,
+]
+
+
+@pytest.mark.parametrize("text", FIELDS)
+def test_fields_of_format_reach_no_more_than_expressions(text: str) -> None:
+    with pytest.raises(Fault):
+        evaluate("${pattern.format(1, lambda: 0, math, name=len)}", pattern=text)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("link{}", "link7"),
+        ("{0}_{0}", "7_7"),
+        ("{name:.2f}", "1.50"),
+        ("{0.real}", "7"),
+        ("{1[1]}", "b"),
+        ("{2[key]:>3}", "  9"),
+        ("{1[0]!r}", "'a'"),
+        ("{0:{3}}", "   7"),
+        ("{{}}", "{}"),
+    ],
+)
+def test_format_returns_the_text_that_python_returns(text: str, value: str) -> None:
+    assert evaluate("${pattern.format(7, ['a', 'b'], dict(key=9), 4, name=1.5)}", pattern=text) == value
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("{1}", "the call of 'format' has no value for the field '1'"),
+        ("{far}", "the call of 'format' has no value for the field 'far'"),
+        ("{0.}", "'0.' does not name a field"),
+    ],
+)
+def test_wrong_field_of_format_is_named(text: str, reason: str) -> None:
+    with pytest.raises(Fault, match=reason):
+        evaluate("${pattern.format(1)}", pattern=text)
 
 
 def test_yaml_file_cannot_execute_code() -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 
 from linkwright.diagnostics import phrase
 from linkwright.loading.lean_typing import Any
@@ -24,6 +24,8 @@ MAX_BITS = 20_000
 """The maximum number of bits in an integer."""
 MAX_DIGITS = 1_000
 """The maximum width or precision of a formatted number."""
+_MAX_FIELDS = 1_000
+"""The maximum number of fields of a string that is formatted."""
 
 
 class Module:
@@ -322,6 +324,53 @@ def formatted(value: Any, conversion: int, specification: str) -> str:
     return format(value, specification)
 
 
+_FIELD_STEP = r"\.([^.\[]+)|\[([^\]]+)\]"
+_FIELD_NAME = rf"(?P<first>[^.\[]*)(?P<steps>(?:{_FIELD_STEP})*)"
+"""A field of `str.format`, such as ``0.real`` or ``robot[name]``."""
+
+
+def _format(text: str, *values: Any, **named_values: Any) -> str:
+    """Return ``text.format(...)``, whose fields reach no more than expressions do.
+
+    Raises:
+        RefusalError: if a field reaches what expressions must not access, or if the text would be too long.
+        LookupError: if a field has no value.
+    """
+    from string import Formatter
+
+    if text.count("{") > _MAX_FIELDS:
+        raise RefusalError(phrase("the string has more than {count:,} fields", count=_MAX_FIELDS))
+    length = len(text)
+
+    class Fields(Formatter):
+        def get_field(self, field_name: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> tuple[Any, str]:
+            match = re.fullmatch(_FIELD_NAME, field_name)
+            if match is None:
+                raise ValueError(phrase("'{name}' does not name a field", name=field_name))
+            first = match["first"]
+            if first.isdecimal() and int(first) < len(args):
+                value = args[int(first)]
+            elif first in kwargs:
+                value = kwargs[first]
+            else:
+                raise LookupError(phrase("the call of 'format' has no value for the field '{name}'", name=first))
+            for name, key in re.findall(_FIELD_STEP, match["steps"]):
+                value = attribute(value, name) if name else subscript(value, int(key) if key.isdecimal() else key)
+            return value, first
+
+        def convert_field(self, value: Any, conversion: str | None) -> Any:
+            return super().convert_field(check_size(value), conversion)
+
+        def format_field(self, value: Any, format_spec: str) -> str:
+            nonlocal length
+            field = formatted(value, -1, format_spec)
+            length += len(field)
+            _check_length(length)
+            return field
+
+    return Fields().vformat(text, values, named_values)
+
+
 OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
     "Add": add,
     "Sub": operator.sub,
@@ -392,6 +441,7 @@ def _extend(items: list[Any], new_items: Any) -> None:
 _GROWING: dict[tuple[type, str], Callable[..., Any]] = {
     **{(str, name): _bounded_pad(name) for name in ("center", "ljust", "rjust", "zfill")},
     (str, "expandtabs"): _expandtabs,
+    (str, "format"): _format,
     (str, "join"): _join,
     (str, "replace"): _replace,
     (list, "extend"): _extend,
