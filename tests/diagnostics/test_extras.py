@@ -74,13 +74,14 @@ ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
 def test_unread_meshes_are_reported_once_per_check(without, tmp_path):
     def unread_in(folder):
         folder.mkdir()
-        small_mesh(folder)
+        mesh = small_mesh(folder)
+        mesh.write_text(f"{mesh.read_text()}# {folder.name}\n")
         (folder / "robot.urdf").write_text(ROBOT)
         return [diagnostic for diagnostic in examine(folder / "robot.urdf").diagnostics if diagnostic.code == "INR104"]
 
     assert unread_in(tmp_path / "with") == []
     without("trimesh")
-    unread = unread_in(tmp_path / "without")  # another file: what was read is kept
+    unread = unread_in(tmp_path / "without")  # another content: what was read is kept
     assert [(diagnostic.severity, diagnostic.hint) for diagnostic in unread] == [(Severity.INFO, install_hint("mesh"))]
 
 
