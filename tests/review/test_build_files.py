@@ -59,6 +59,7 @@ FILES = {
         ("find_package(rclcpp REQ", "find_package(Boost REQUIRED COMPONENTS thread)\nfind_package(rclcpp REQ",
          ["calls of find_package added: 'Boost', 'Boost thread'"], False),
         ("add_library(arm", "add_compile_options(-Wall)\nadd_library(arm", ["add_compile_options added: -Wall"], False),
+        ("add_library(arm", "check_everything()\nadd_library(arm", ["check_everything added"], False),
         ("RUNTIME DESTINATION lib/${PROJECT_NAME}", "RUNTIME DESTINATION bin",
          ["installed executables: 'driver': lib/arm -> bin", "installed executables: 'tuner': lib/arm -> bin"], True),
         ("set(CMAKE_CXX_STANDARD 14)", "set(X 1) # a comment\nset(CMAKE_CXX_STANDARD 14)", [], False),

@@ -499,11 +499,16 @@ CUBE = "v 0 0 0\nv 2 0 0\nv 0 3 0\nf 1 2 3\n"
         ("worlds/yard.sdf", YARD, "world added: models box, sun, gate, plugin 'p'"),
         ("models/car/model.sdf", CAR, "world added: links body, wheel, joints axle"),
         ("msg/Count.msg", "uint8 MAX=3\nint32 count\nstring[] names\n",
-         "interface added: int32 count, string[] names"),
+         "interface added: int32 count, string[] names, MAX = 3"),
+        ("msg/Mode.msg", "uint8 SLOW=0\nuint8 FAST=1\n", "interface added: SLOW = 0, FAST = 1"),
         ("srv/Ask.srv", "int32 a\n---\nbool b\n", "interface added: int32 request a, bool response b"),
         ("config/nav.yaml", "amcl:\n  ros__parameters: {alpha1: 0.1, alpha2: 0.2}\n",
          "parameter file added: parameters of amcl (2)"),
         ("config/settings.yaml", "speed: 1\nnames: [a, b]\n", "parameter file added: speed, names"),
+        ("config/log.yaml", "driver.log:\n  a: 1\n", "parameter file added: driver.log"),
+        ("test/config_launch.yaml", "driver.launch: {a: 1}\n", "parameter file added: driver.launch"),
+        ("launch/start.launch.yaml", "launch:\n- arg: {name: ip, unless: $(var sim)}\n",
+         "launch file added: argument 'ip' (unless $(var sim), required)"),
         ("config/bridge.yaml", BRIDGE, "parameter file added: bridged topics /scan"),
         ("rviz/arm.rviz", RVIZ, "RViz configuration added: displays Grid, Laser /scan"),
         ("srdf/arm.srdf", SRDF, "semantic description added: group 'arm', group_state 'arm/home'"),
@@ -515,3 +520,20 @@ def test_added_file_is_described_by_its_contents(repository, compare, name, text
     repository.commit({"p/package.xml": PACKAGE_XML.replace("arm_description", "p")})
     repository.write({f"p/{name}": text})
     assert sentences(subject(compare(repository), f"p/{name}")) == [expected]
+
+
+def test_messages_of_ros1_have_its_types_and_names(repository, compare):
+    manifest = PACKAGE_XML.replace("arm_description", "p").replace(
+        "<exec_depend>xacro</exec_depend>", "<buildtool_depend>catkin</buildtool_depend>"
+    )
+    text = "Header header\nHeader[] headers\ntime poseStamp\n"
+    repository.commit({"p/package.xml": manifest, "p/msg/Pose.msg": text})
+    repository.write({"p/msg/Pose.msg": text.replace("poseStamp", "stamp"), "p/msg/New.msg": text})
+    result = compare(repository)
+    assert sentences(subject(result, "p/msg/Pose.msg")) == [
+        "field 'stamp' of type builtin_interfaces/Time added",
+        "field 'poseStamp' removed",
+    ]
+    assert sentences(subject(result, "p/msg/New.msg")) == [
+        "interface added: std_msgs/Header header, std_msgs/Header[] headers, builtin_interfaces/Time poseStamp"
+    ]

@@ -75,6 +75,15 @@ def _build_contents(read: Callable[[Version, str], BuildFacts], version: Version
     return build_contents(read(version, path))
 
 
+PARAMETERS = KindRule(
+    SubjectKind.PARAMETERS,
+    compare_parameter_files,
+    _YAML_SUFFIXES,
+    phrase("parameter file added"),
+    phrase("parameter file removed"),
+    phrase("launch files and users that name the file do not find it"),
+    contents=parameter_contents,
+)
 SEMANTIC_XACRO = KindRule(
     SubjectKind.SEMANTICS,
     compare_expanded_semantics,
@@ -173,15 +182,7 @@ _RULES = (
         phrase("map removed"),
         phrase("launch files and users that name the file do not find it"),
     ),
-    KindRule(
-        SubjectKind.PARAMETERS,
-        compare_parameter_files,
-        _YAML_SUFFIXES,
-        phrase("parameter file added"),
-        phrase("parameter file removed"),
-        phrase("launch files and users that name the file do not find it"),
-        contents=parameter_contents,
-    ),
+    PARAMETERS,
     KindRule(
         SubjectKind.MESH,
         compare_meshes,

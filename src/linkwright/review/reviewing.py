@@ -29,8 +29,16 @@ from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
 from linkwright.review.installed_paths import keeps_installed_path
-from linkwright.review.kinds import LAUNCH_HELPER, MAP, SEMANTIC_XACRO, KindRule, may_help_launch_files, rule_of
-from linkwright.review.launches.formats import with_other_formats
+from linkwright.review.kinds import (
+    LAUNCH_HELPER,
+    MAP,
+    PARAMETERS,
+    SEMANTIC_XACRO,
+    KindRule,
+    may_help_launch_files,
+    rule_of,
+)
+from linkwright.review.launches.formats import is_launch_yaml, with_other_formats
 from linkwright.review.launches.helpers import makes_actions
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
 from linkwright.review.other_files import file_states
@@ -186,11 +194,14 @@ class _Reviewer:
 
     def _rule(self, old_path: str | None, new_path: str | None) -> KindRule | None:
         """Return the rule for a file, or None for a file that is not compared."""
-        rule = rule_of(new_path or old_path or "")
+        path = new_path or old_path or ""
+        rule = rule_of(path)
         sides = ((self._versions.old, old_path), (self._versions.new, new_path))
+        if rule is not None and rule.kind is SubjectKind.LAUNCH_FILE and path.endswith((".yaml", ".yml")):
+            rule = rule if any(is_launch_yaml(version.file(name)) for version, name in sides if name) else PARAMETERS
         if rule is not None and rule.kind is SubjectKind.PARAMETERS:
             return MAP if any(is_map(version.file(path)) for version, path in sides if path) else rule
-        if rule is None and may_help_launch_files(new_path or old_path or ""):
+        if rule is None and may_help_launch_files(path):
             is_helper = any(makes_actions(version.file(path)) for version, path in sides if path)
             return LAUNCH_HELPER if is_helper else None
         return rule

@@ -308,13 +308,14 @@ class TrustedMessages:
         return None
 
 
-def parse_source(source: SourceText, base: str, known_messages: KnownMessages) -> Definition:
+def parse_source(source: SourceText, base: str, known_messages: KnownMessages, *, is_ros1: bool = False) -> Definition:
     """Parse an interface file, as IDL if its suffix is ``.idl``.
 
     Args:
         source: the content of the file.
         base: the name of the interface, such as ``my_msgs/srv/Count``.
         known_messages: determines which messages exist, to check references.
+        is_ros1: whether to read the file as ROS 1 does; see `parse_interface`.
 
     Raises:
         DefinitionError: the file has mistakes.
@@ -323,7 +324,7 @@ def parse_source(source: SourceText, base: str, known_messages: KnownMessages) -
         from linkwright.messages.definitions.idl import parse_idl
 
         return parse_idl(source, base, known_messages)
-    return parse_interface(source, base, known_messages)
+    return parse_interface(source, base, known_messages, is_ros1=is_ros1)
 
 
 def wrong_kind_diagnostic(definition: Definition, kind: str) -> Diagnostic:

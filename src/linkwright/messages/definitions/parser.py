@@ -181,9 +181,9 @@ _LINE_PATTERN = re.compile(
     re.VERBOSE | re.DOTALL,
 )
 _ROS1_TYPES = {
-    "time": "'builtin_interfaces/Time'",
-    "duration": "'builtin_interfaces/Duration'",
-    "Header": "'std_msgs/Header'",
+    "time": "builtin_interfaces/Time",
+    "duration": "builtin_interfaces/Duration",
+    "Header": "std_msgs/Header",
 }
 
 _EXTRA_PART_HINTS = {
@@ -211,23 +211,28 @@ class KnownMessages(Protocol):
         """Return a hint with names that resemble a missing message's name, or None."""
 
 
-def parse_interface(source: SourceText, type_name: str, known_messages: KnownMessages) -> Definition:
+def parse_interface(
+    source: SourceText, type_name: str, known_messages: KnownMessages, *, is_ros1: bool = False
+) -> Definition:
     """Parse an interface file.
 
     Args:
         source: the content of the file.
         type_name: the name of the interface, such as ``my_msgs/srv/Count``.
         known_messages: determines which messages exist, to check references.
+        is_ros1: whether to read the file as ROS 1 does. Its names of fields may have capitals, and it has the types
+            ``time``, ``duration`` and ``Header``. These become the types of ROS 2 with the same fields.
 
     Raises:
         DefinitionError: the file has mistakes; the error contains all of them (MSG110 to MSG119).
     """
-    return _Reader(source, type_name, known_messages).read()
+    return _Reader(source, type_name, known_messages, is_ros1=is_ros1).read()
 
 
 class _Reader:
-    def __init__(self, source: SourceText, type_name: str, known_messages: KnownMessages) -> None:
+    def __init__(self, source: SourceText, type_name: str, known_messages: KnownMessages, *, is_ros1: bool) -> None:
         self._source = source
+        self._is_ros1 = is_ros1
         self._type_name = type_name
         self._package, self._kind, _ = type_name.split("/")
         self._known = known_messages
@@ -357,9 +362,11 @@ class _Reader:
             )
             return None
         type_name = f"{self._package}/msg/{text}"
+        if self._is_ros1 and text in _ROS1_TYPES:
+            return _ROS1_TYPES[text].replace("/", "/msg/")
         if text in _ROS1_TYPES and not self._known.has_message(type_name):
             self._report("MSG117", phrase("the type '{text}' is a ROS 1 type", text=text), start, len(text),
-                         phrase("use {name} in ROS 2", name=_ROS1_TYPES[text]))  # fmt: skip
+                         phrase("use {name} in ROS 2", name=f"'{_ROS1_TYPES[text]}'"))  # fmt: skip
             return None
         if is_interface_name(text):
             return self._existing_message(type_name, text, start)
@@ -393,7 +400,7 @@ class _Reader:
     def _add_field(
         self, section: _Section, kind: FieldType | None, name: str, name_offset: int, default: str, default_offset: int
     ) -> None:
-        if not is_field_name(name):
+        if not (is_field_name(name) or (self._is_ros1 and name.isidentifier())):
             hint = phrase("field names are lower case with single underscores")
             suggested_name = re.sub(r"_+", "_", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()).strip("_")
             if is_field_name(suggested_name):

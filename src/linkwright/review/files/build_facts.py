@@ -305,13 +305,16 @@ def _compare_rest(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         pair.add(phrase("other build settings changed: {names}", names=listed(names)), None)
         return
     for name in names:
-        old_text, new_text = ("; ".join(text for other, text in items if other == name) for items in (gone, come))
-        if old_text and new_text:
+        old_texts, new_texts = ([text for other, text in items if other == name] for items in (gone, come))
+        old_text, new_text = "; ".join(old_texts), "; ".join(new_texts)
+        if old_texts and new_texts:
             pair.add(_words_text(name, old_text, new_text), None)
-        elif new_text:
-            pair.add(phrase("{parameter} added: {items}", parameter=name, items=shortened(new_text, _MAX_TEXT)), None)
+        elif new_texts:
+            text = phrase("{parameter} added: {items}", parameter=name, items=shortened(new_text, _MAX_TEXT))
+            pair.add(text if new_text else phrase("{parameter} added", parameter=name), None)
         else:
-            pair.add(phrase("{parameter} removed: {items}", parameter=name, items=shortened(old_text, _MAX_TEXT)), None)
+            text = phrase("{parameter} removed: {items}", parameter=name, items=shortened(old_text, _MAX_TEXT))
+            pair.add(text if old_text else phrase("{parameter} removed", parameter=name), None)
 
 
 def _words_text(name: str, old: str, new: str) -> Phrase:

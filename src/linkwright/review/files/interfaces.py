@@ -9,10 +9,12 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.messages.definitions.interfaces import Constant, Definition, Field, structures_of
 from linkwright.messages.definitions.library import TrustedMessages, parse_source, read_source
-from linkwright.packages import enclosing_package
+from linkwright.packages import MANIFEST, enclosing_package
+from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
 from linkwright.review.versions import Version
+from linkwright.xacro.cache import read_document
 
 _SEPARATOR = "---"
 _MAX_FIELDS = 10
@@ -40,13 +42,14 @@ def compare_interfaces(pair: FilePair) -> None:
 
 
 def interface_contents(version: Version, path: str) -> Phrase | None:
-    """Return the fields of an interface with their types, or None if there are none."""
+    """Return the fields of an interface with their types, and the constants with their values, or None for none."""
     parts = structures_of(_read(version.file(path)))
     names = [
         f"{field.type.to_msg_text()} {part}{field.name}"
         for structure, part in zip(parts, _PARTS[len(parts)], strict=True)
         for field in structure.fields
     ]
+    names += [f"{constant.name} = {constant.value}" for structure in parts for constant in structure.constants]
     return joined_first(names, _MAX_FIELDS) if names else None
 
 
@@ -54,7 +57,8 @@ def _read(file: Path) -> Definition:
     package = enclosing_package(file.parent)
     kind = file.parent.name if file.suffix == ".idl" else file.suffix.removeprefix(".")
     type_name = f"{package[0] if package else file.parent.name}/{kind}/{file.stem}"
-    return parse_source(read_source(file), type_name, TrustedMessages())
+    is_ros1 = package is not None and Manifest(read_document(str(package[1] / MANIFEST))).is_ros1
+    return parse_source(read_source(file), type_name, TrustedMessages(), is_ros1=is_ros1)
 
 
 class _Places:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -62,8 +61,8 @@ def parameter_contents(version: Version, path: str) -> Phrase | None:
     if counts:
         names = [f"{node} ({count})" for node, count in counts.items()]
         return phrase("parameters of {names}", names=joined_first(names, _MAX_NAMES))
-    keys = dict.fromkeys(re.split(r"[.\[]", name, maxsplit=1)[0] for name in values)
-    return joined_first(list(keys), _MAX_NAMES) if keys else None
+    keys = [str(key.value) for key, _ in root.value]
+    return joined_first(keys, _MAX_NAMES) if keys else None
 
 
 def _root(text: str) -> yaml.Node | None:

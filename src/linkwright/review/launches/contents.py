@@ -30,7 +30,9 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
 
 def _with_settings(entry: Entry) -> Phrase:
     """Return the title of an action with its settings, such as the default of an argument."""
-    if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
-        return phrase("{entry} (required)", entry=title(entry))
     items = settings_text(entry)
+    if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
+        if items is None:
+            return phrase("{entry} (required)", entry=title(entry))
+        return phrase("{entry} ({items}, required)", entry=title(entry), items=items)
     return title(entry) if items is None else phrase("{entry} ({items})", entry=title(entry), items=items)

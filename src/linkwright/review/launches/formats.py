@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 from linkwright.files.git_repository import ChangedFile
 
@@ -35,3 +35,11 @@ def _key(path: str | None) -> tuple[str, str]:
     if not _SUFFIX.search(pure_path.name):
         return "", ""
     return str(pure_path.parent), _SUFFIX.sub("", pure_path.name)
+
+
+def is_launch_yaml(file: Path) -> bool:
+    """Return whether a YAML file has the key of a launch file. Other files have such names, too."""
+    try:
+        return re.search(rb"(?m)^launch[ \t]*:", file.read_bytes()) is not None
+    except OSError:
+        return False
