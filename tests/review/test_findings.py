@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, phrase
+from linkwright.review.folders import finding_with_package_uris
 from tests.repositories import ARM, MACRO, PACKAGE_XML
 from tests.review.conftest import breaking
 
@@ -133,3 +137,32 @@ def generate_launch_description():
         "arm_description/launch/all.launch.py",
         "arm_description/launch/all.launch.xml",
     ]
+
+
+def test_finding_that_moves_to_another_file_is_neither_new_nor_fixed(package, compare):
+    include = '<xacro:include filename="$(find arm_description)/urdf/parts.xacro"/>'
+    with_parts = ARM.replace("</robot>", f"{include}</robot>")
+    head, parts = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro">', SEGMENT.replace("segment", "parts")
+    unused = '<xacro:macro name="cap" params="color"><link name="cap"/></xacro:macro>'
+    call = '<xacro:cap color="red"/>'
+    attached = '<joint name="j" type="fixed"><parent link="base_link"/><child link="cap"/></joint>'
+    text = with_parts.replace("</robot>", f"{call}{attached}</robot>")
+    package.commit({PATH: text.replace(call, unused + call), parts: f"{head}</robot>"})
+    package.commit({PATH: text, parts: f"{head}{unused}</robot>"})
+    result = compare(package, "HEAD~1..HEAD")
+    assert (codes(result.new_findings), codes(result.fixed_findings)) == ([], [])
+
+
+def test_checks_that_stop_at_different_errors_find_nothing_new_in_unchanged_files(package, compare):
+    bare = MACRO.replace("</robot>", '<property name="length" value="1"/></robot>')
+    broken = ARM.replace("<xacro:include", 30 * '<link name="${lost_name}"/>' + "<xacro:include", 1)
+    lost = '<xacro:include filename="$(find lost_description)/lost.xacro"/>'
+    package.commit({PATH: broken, SEGMENT: bare})
+    package.commit({PATH: ARM.replace("<xacro:include", f"{lost}<xacro:include", 1)})
+    assert codes(compare(package, "HEAD~1..HEAD").new_findings) == ["PKG101"]
+
+
+def test_share_folders_of_the_computer_become_uris():
+    message = phrase("there is no '{path}'", path="/home/ann/.cache/shares/1f/arm/meshes/arm.stl")
+    finding = finding_with_package_uris(Diagnostic("SDF162", message), {"arm": Path("/home/ann/.cache/shares/1f/arm")})
+    assert str(finding.message) == "there is no 'package://arm/meshes/arm.stl'"

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.lint.engine import Checked
+from linkwright.lint.finding import Finding
 from linkwright.lint.known_findings import count_keys, new_findings
 from linkwright.lint.targets import DESCRIPTIONS, Targets
+from linkwright.review.folders import finding_with_package_uris, without_folder
 from linkwright.review.versions import Version, Versions
 
 
@@ -20,24 +23,34 @@ class Findings:
     Attributes:
         diagnostics: the findings.
         files: the paths of the descriptions and of the files that they include, if they could be read.
+        reading_errors: the codes and messages of the errors for which descriptions could not be read.
     """
 
     diagnostics: list[Diagnostic]
     files: frozenset[str]
+    reading_errors: frozenset[tuple[str, str]]
 
 
 def find(version: Version, targets: Targets) -> Findings:
     """Return the findings of a version about some files and packages."""
     files: set[str] = set()
+    errors: set[tuple[str, str]] = set()
 
     def add_files(checked: Checked) -> None:
         if checked.robot is None and checked.sdf is None:
+            errors.update(
+                (finding.code, without_folder(str(finding.message), version.root))
+                for finding in checked.diagnostics
+                if finding.severity is Severity.ERROR and not isinstance(finding, Finding)
+            )
             return
         included = () if checked.subject is None else checked.subject.sources
         files.update(path for file in (checked.path, *included) if (path := version.relative(file)) is not None)
 
     diagnostics, _ = version.checker().check(targets, [version.root], add_files)
-    return Findings(diagnostics, frozenset(files))
+    shares = {name: share for name, share in version.shares.items() if not share.is_relative_to(version.root)}
+    findings = [finding_with_package_uris(finding, shares) for finding in diagnostics]
+    return Findings(findings, frozenset(files), frozenset(errors))
 
 
 def compare_findings(
@@ -46,7 +59,7 @@ def compare_findings(
     """Return the findings that only the new version has, and those that only the old version has.
 
     A finding in a description that the other version has but could not read, or that no robot there includes, may be
-    as old as the file. It is neither new nor fixed.
+    as old as the file. It is neither new nor fixed, and neither is one whose text has moved to another file.
 
     Args:
         versions: both versions.
@@ -55,6 +68,7 @@ def compare_findings(
         new_paths: the new paths of renamed files, by old path.
     """
     old_paths = {new_path: old_path for old_path, new_path in new_paths.items()}
+    changed = {path for file in versions.changed_files for path in (file.old_path, file.new_path) if path}
     sides = ((versions.new, new, old, versions.old, old_paths), (versions.old, old, new, versions.new, new_paths))
     added, fixed = (
         [
@@ -62,11 +76,27 @@ def compare_findings(
             for finding in new_findings(
                 own.diagnostics, version.root, count_keys(other.diagnostics, other_version.root, _inverse(names))
             )
-            if _is_comparable(finding, version, own, other, other_version, names)
+            if _is_comparable(finding, version, own, other, other_version, names, changed)
         ]
         for version, own, other, other_version, names in sides
     )
-    return added, fixed
+    return _unmoved(added, fixed), _unmoved(fixed, added)
+
+
+def _unmoved(findings: Sequence[Diagnostic], others: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Return the findings without those that the other version has in another file."""
+    counts = Counter(map(_text, others))
+    result = []
+    for finding in findings:
+        if counts[_text(finding)] > 0:
+            counts[_text(finding)] -= 1
+        else:
+            result.append(finding)
+    return result
+
+
+def _text(finding: Diagnostic) -> tuple[str, str]:
+    return finding.code, str(finding.message)
 
 
 def _inverse(names: Mapping[str, str]) -> dict[str, str]:
@@ -80,13 +110,17 @@ def _is_comparable(
     other: Findings,
     other_version: Version,
     names: Mapping[str, str],
+    changed: Collection[str],
 ) -> bool:
     """Return whether the other version would have a finding, too, if its cause was there.
 
-    This is the case if both versions of the file could be read, and also if neither could.
+    This is the case if both versions of the file could be read, and also if neither could. However, checks that stop at
+    different errors reach different files. Then a finding in a file that has not changed says nothing.
     """
     path = None if finding.span is None else version.relative(finding.span.file)
     if path is None or not PurePosixPath(path).name.endswith(DESCRIPTIONS):
         return True
     other_path = names.get(path, path)
-    return other_path in other.files or path not in own.files or not other_version.file(other_path).exists()
+    if other_path in other.files or not other_version.file(other_path).exists():
+        return True
+    return path not in own.files and (path in changed or own.reading_errors == other.reading_errors)

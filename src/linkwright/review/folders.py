@@ -20,18 +20,43 @@ def without_folder(value: _Value, folder: Path) -> _Value:
 
     The arguments of phrases are treated in the same way. Paths in packages that are missing become URIs.
     """
+
+    def change(text: str) -> str:
+        text = text.replace(f"file://{folder}/", "").replace(f"{folder}/", "").replace(str(folder), ".")
+        return text.replace(f"{STAND_IN_FOLDER}/", "package://")
+
+    return _changed(value, change)
+
+
+def finding_with_package_uris(finding: Diagnostic, shares: Mapping[str, Path]) -> Diagnostic:
+    """Return a finding in which paths in share folders are URIs.
+
+    Args:
+        finding: the finding.
+        shares: the share folders outside the version, such as those that show installed files, by package.
+    """
+
+    def change(text: str) -> str:
+        for name, share in shares.items():
+            text = text.replace(f"{share}/", f"package://{name}/")
+        return text
+
+    return _changed_finding(finding, change)
+
+
+def _changed(value: _Value, change: Callable[[str], str]) -> _Value:
+    """Return a text, or a tuple or mapping of texts, with all texts and arguments of phrases changed."""
     if isinstance(value, Phrase):
-        if str(folder) not in value and STAND_IN_FOLDER not in value:
+        if change(str(value)) == str(value):
             return value
         create, arguments = cast("tuple[Callable[..., _Value], tuple[object, ...]]", value.__reduce__())
-        return create(*(without_folder(argument, folder) for argument in arguments))
+        return create(*(_changed(argument, change) for argument in arguments))
     if isinstance(value, str):
-        text = value.replace(f"file://{folder}/", "").replace(f"{folder}/", "").replace(str(folder), ".")
-        return cast(_Value, text.replace(f"{STAND_IN_FOLDER}/", "package://"))
+        return cast(_Value, change(value))
     if isinstance(value, tuple):
-        return cast(_Value, tuple(without_folder(item, folder) for item in value))
+        return cast(_Value, tuple(_changed(item, change) for item in value))
     if isinstance(value, Mapping):
-        return cast(_Value, {name: without_folder(item, folder) for name, item in value.items()})
+        return cast(_Value, {name: _changed(item, change) for name, item in value.items()})
     return value
 
 
@@ -69,6 +94,11 @@ def _subject_without_folder(subject: Subject, folder: Path) -> Subject:
 
 def _finding_without_folder(finding: Diagnostic, folder: Path) -> Diagnostic:
     """Return a finding with the texts of `without_folder`."""
-    notes = tuple(note._replace(message=without_folder(as_phrase(note.message), folder)) for note in finding.notes)
-    hint = None if finding.hint is None else without_folder(as_phrase(finding.hint), folder)
-    return finding.with_changes(message=without_folder(as_phrase(finding.message), folder), hint=hint, notes=notes)
+    return _changed_finding(finding, lambda text: without_folder(text, folder))
+
+
+def _changed_finding(finding: Diagnostic, change: Callable[[str], str]) -> Diagnostic:
+    """Return a finding with its message, hint and notes changed."""
+    notes = tuple(note._replace(message=_changed(as_phrase(note.message), change)) for note in finding.notes)
+    hint = None if finding.hint is None else _changed(as_phrase(finding.hint), change)
+    return finding.with_changes(message=_changed(as_phrase(finding.message), change), hint=hint, notes=notes)
