@@ -49,7 +49,7 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
         for structure, part in zip(parts, _PARTS[len(parts)], strict=True)
         for field in structure.fields
     ]
-    names += [f"{constant.name} = {constant.value}" for structure in parts for constant in structure.constants]
+    names += [f"{constant.name} = {constant.value!s}" for structure in parts for constant in structure.constants]
     return joined_first(names, _MAX_FIELDS) if names else None
 
 
