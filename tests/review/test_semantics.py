@@ -121,7 +121,7 @@ def test_included_file_changes_the_semantic_description(calls, compare):
 
 
 def test_semantic_description_that_xacro_refuses_is_breaking(calls, compare):
-    calls.write({DEFINED: MACROS.replace("${first}", "${'%s'.format(first)}")})
+    calls.write({DEFINED: MACROS.replace("${first}", "${first.__class__}")})
     result = compare(calls)
     (change,) = subject(result, CALLED).changes
     assert str(change.sentence).startswith("cannot be read any more: arm_description/config/macros.xacro:2: ")
