@@ -81,7 +81,7 @@ def test_json_settings_are_valid(title):
 
 def test_vscode_extension_sends_all_files():
     source = (EXTENSION / "src" / "server" / "documents.ts").read_text(encoding="utf-8")
-    lists = re.search(r"DESCRIPTIONS =([^;]*);.*?OF_PACKAGES =([^;]*);", source, re.DOTALL)
+    lists = re.search(r"DESCRIPTION_PATTERN =([^;]*);.*?PACKAGE_PATTERN =([^;]*);", source, re.DOTALL)
     assert lists is not None
     named = {name for written in lists.groups() for name in re.sub(r'[*]{2}/|["+\s{}]', "", written).split(",")}
     assert named == {pattern.removeprefix("*/") for pattern in ALL}

@@ -122,7 +122,7 @@ def test_missing_dependency_is_offered_as_package(at):
 
 
 def test_hover_explains_launch_classes_and_arguments(at):
-    assert at("No|de(package='a')").hover().startswith("**Node**: Starts a node.")
+    assert at("No|de(package='a')").hover().startswith("**Node**: An action that starts a node.")
     assert (
         at("Node(pack|age='a')").hover() == "`package`: the name of the package of the executable; None for a program."
     )
