@@ -138,7 +138,7 @@ export interface SimulationStatus {
   type: "simulation_status";
 }
 
-/** The reason why the simulation refused the page's request. */
+/** A notice about the page's request: why it was refused, or how its result differs from it. */
 export interface SimulationNotice {
   text: string;
   type: "simulation_notice";

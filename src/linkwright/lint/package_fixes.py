@@ -230,7 +230,7 @@ def _patterns(package: PackageContext, folder: str, glob: str) -> str:
     """Return the expression that lists the files in a folder.
 
     If the folder has subfolders, the expression has one pattern for each extension, because a folder in ``data_files``
-    is an error.
+    is an error. Files without an extension are then left out.
     """
     if not any(other.startswith(f"{folder}/") for other in package.folders):
         return f"{glob}('{folder}/*')"

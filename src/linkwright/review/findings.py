@@ -115,7 +115,7 @@ def _is_comparable(
     """Return whether the other version would have a finding, too, if its cause was there.
 
     This is the case if both versions of the file could be read, and also if neither could. However, checks that stop at
-    different errors reach different files. Then a finding in a file that has not changed says nothing.
+    different errors reach different files. A finding in a file that has not changed is then not compared.
     """
     path = None if finding.span is None else version.relative(finding.span.file)
     if path is None or not PurePosixPath(path).name.endswith(DESCRIPTIONS):

@@ -60,7 +60,7 @@ export class ThinLines {
     this.updateMaterial();
   }
 
-  /** Expands `box` by all lines, in the parent's frame. */
+  /** Expands `box` by all lines, in the world frame. */
   expandBox(box: Box3): void {
     if (this.root.visible) box.expandByObject(this.root);
   }

@@ -88,7 +88,7 @@ export class WideLines {
     this.updateMaterial();
   }
 
-  /** Expands `box` by the center lines, in the parent's frame. */
+  /** Expands `box` by the center lines, in the world frame. */
   expandBox(box: Box3): void {
     if (this.root.visible) box.expandByObject(this.root);
   }

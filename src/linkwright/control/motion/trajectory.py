@@ -49,7 +49,8 @@ class Trajectory:
     Args:
         points: at least one point, in order of time.
         start_ns: the time at which the trajectory starts; 0 to start when `begin` is called.
-        interpolated: whether joints move along the splines; otherwise the next point is commanded immediately.
+        interpolated: whether joints move along the splines; otherwise each point is commanded from the time of the
+            previous one, and the initial state until the time of the first point.
     """
 
     def __init__(self, points: Sequence[TrajectoryPoint], start_ns: int = 0, *, interpolated: bool = True) -> None:

@@ -87,7 +87,7 @@ class Judge:
     @property
     def simulation(self) -> Simulation:
         """The simulation, with the ground truth of the world."""
-        assert self._simulation is not None, "the run has started"
+        assert self._simulation is not None, "the run has not started"
         return self._simulation
 
     def pose(self, model: str = "") -> tuple[float, float, float]:

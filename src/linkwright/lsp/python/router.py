@@ -73,10 +73,11 @@ class _Question:
 class Router:
     """A router that forwards the messages of an editor to the language servers.
 
-    Linkwright's own server receives all of them, and the other servers those about Python files.
+    Linkwright's own server receives all of them, except a request to resolve a code action of another server. The other
+    servers receive the messages about Python files.
 
-    The other servers start when the editor opens the first Python file. All work is done by one thread, in the order
-    of `post`.
+    The other servers start when the editor opens the first Python file. One thread handles all messages in the order
+    of their arrival.
 
     Args:
         editor: the editor.

@@ -173,7 +173,7 @@ NO_SIMULATION = SimulationStatus(present=False, drivable=False, paused=False, ti
 
 
 class SimulationNotice(ServerMessage):
-    """The reason why the simulation refused the page's request."""
+    """A notice about the page's request: why it was refused, or how its result differs from it."""
 
     text: str
 

@@ -97,7 +97,11 @@ def _by_name(entries: Sequence[Entry]) -> dict[tuple[str, str], list[Entry]]:
 
 
 def _matched(old: list[Entry], new: list[Entry]) -> Iterator[Match]:
-    """Yield the pairs of entries with one name: equal ones, those with one node name, and the most similar ones."""
+    """Match the entries of a group, and yield each pair, and each entry without a partner in a pair with None.
+
+    Equal entries are matched first, then those with the same node name, then those that serve the same names, and then
+    the most similar ones.
+    """
     old_rest, new_rest = list(old), list(new)
     pairs: list[tuple[Entry, Entry]] = []
     criteria: tuple[Callable[[Entry, Entry], bool], ...] = (_are_equal, _have_same_node_name, _serve_same_names)
