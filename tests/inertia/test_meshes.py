@@ -191,3 +191,15 @@ def test_mesh_library_rereads_changed_mesh_only(tmp_path):
     CONE.copy().apply_scale(2).export(path)
     os.utime(path, ns=(1, 1))  # however coarse the clock of the file system is
     assert np.allclose(MeshLibrary(finder, tmp_path).read(path).bounds, np.multiply(first.bounds, 2))
+
+
+def test_equal_gltf_files_with_other_buffers_are_different_meshes(tmp_path):
+    paths = []
+    for name in ("old", "new"):
+        (tmp_path / name).mkdir()
+        paths.append(write(tmp_path / name, "gltf"))
+    corners = tmp_path / "new" / "gltf_buffer_1.bin"
+    corners.write_bytes((2 * np.frombuffer(corners.read_bytes(), np.float32)).tobytes())
+    library = MeshLibrary(PackageFinder(start=tmp_path), tmp_path)
+    old, new = map(library.read, paths)
+    assert np.allclose(new.bounds, np.multiply(old.bounds, 2))

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, phrase
-from linkwright.geometry.mesh_content import ContentKey, content_key
+from linkwright.geometry.mesh_content import ContentKey, shape_key
 from linkwright.geometry.outlines import Outline, SmallMesh, read_small
 from linkwright.geometry.shapes import MAX_COORDINATE
 from linkwright.loading.lean_typing import TYPE_CHECKING
@@ -134,7 +134,7 @@ def _mesh_bytes(_: object, mesh: TriangleMesh) -> int:
 _CACHE: BoundedCache[_FileKey | ContentKey, TriangleMesh] = BoundedCache(_CACHE_SIZE, _mesh_bytes)
 """The meshes of files by their content, which both versions of a repository have under other paths.
 
-Files that are too large for a key of their content have the key of the file.
+Files without a key of their content, such as very large ones, have the key of the file.
 """
 _CONTENT_KEYS: dict[_FileKey, _FileKey | ContentKey] = {}
 """The keys in `_CACHE` of files, by the path, the time of the last change in ns, and the size in bytes."""
@@ -156,7 +156,7 @@ def _read_cached(path: Path, real_path: str) -> TriangleMesh:
     file_key = real_path, file_status.st_mtime_ns, file_status.st_size
     key = _CONTENT_KEYS.get(file_key)
     if key is None:
-        key = _CONTENT_KEYS[file_key] = content_key(path) or file_key
+        key = _CONTENT_KEYS[file_key] = shape_key(path) or file_key
     mesh = _CACHE.values.get(key)
     if mesh is None:
         mesh = read_mesh(path)

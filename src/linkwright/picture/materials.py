@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.geometry.mesh_content import ContentKey, content_key
+from linkwright.geometry.mesh_content import ContentKey, surface_key
 from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, file_resolver
 from linkwright.geometry.mesh_parts import UNCOLORED, FileMaterial, MeshPart, Triangles, read_parts, read_simple_parts
 from linkwright.geometry.meshes import MAX_FILE_SIZE, read_mesh, unreadable
@@ -40,12 +40,6 @@ class MeshSurface:
     surface: Surface
     file_material: FileMaterial | None
     names: frozenset[str]
-
-
-_WITHOUT_OTHER_FILES = (".stl", ".dae")
-"""The formats in which a file without images contains everything that is drawn."""
-_NAME_OF_IMAGE = b"init_from"
-"""The tag in COLLADA before the name of the file of an image."""
 
 
 class SurfaceLibrary:
@@ -78,8 +72,7 @@ class SurfaceLibrary:
             raise unreadable(path, error.strerror or str(error)) from None
         key = os.path.realpath(path), status.st_mtime_ns, status.st_size, has_names
         if key not in self._surfaces:
-            is_alone = path.suffix.lower() in _WITHOUT_OTHER_FILES
-            content = content_key(path, unless=_NAME_OF_IMAGE) if is_alone else None
+            content = surface_key(path)
             known = None if content is None else self._by_content.get((content, has_names))
             self._surfaces[key] = self._read(path, status.st_size, has_names=has_names) if known is None else known
             if content is not None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from linkwright.descriptions.comparison import Comparison
 from linkwright.descriptions.pairs import Model, Pair
 from linkwright.diagnostics import LinkwrightError
-from linkwright.geometry.mesh_content import content_key
+from linkwright.geometry.mesh_content import surface_key
 from linkwright.geometry.shapes import Placement
 from linkwright.images.png import png
 from linkwright.picture import OUTLINE_COLOR, VIEWS, Scene, SurfaceLibrary, camera_for, render, robot_scene
@@ -105,7 +105,7 @@ def _shapes(model: Model, robot: Robot, link: str) -> list[Hashable]:
 
 def _mesh_key(model: Model, mesh: Mesh) -> Hashable:
     try:
-        key = content_key(model.resolve(mesh.filename))
+        key = surface_key(model.resolve(mesh.filename))
     except LinkwrightError:
         key = None
     return (key or mesh.filename), mesh.scale

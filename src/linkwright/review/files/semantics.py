@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined_first, phrase, term
+from linkwright.lint.targets import walk
 from linkwright.review.file_pair import FilePair
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
@@ -78,7 +79,7 @@ def disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
     Expressions of xacro in the names of links, such as prefixes, count as empty.
     """
     pairs: set[frozenset[str]] = set()
-    for file in (path for path in folder.rglob("*.srdf*") if path.name.endswith((".srdf", ".srdf.xacro"))):
+    for file in walk(folder, (".srdf", ".srdf.xacro"))[0]:
         with suppress(LinkwrightError, OSError):
             pairs |= {
                 frozenset(_EXPRESSION.sub("", element.attributes.get(name, "")) for name in ("link1", "link2"))

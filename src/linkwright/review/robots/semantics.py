@@ -6,6 +6,7 @@ from pathlib import Path
 
 from linkwright.descriptions import Description, examine
 from linkwright.diagnostics import LinkwrightError
+from linkwright.lint.targets import walk
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.semantics import compare_roots
 from linkwright.review.parts.expanded import expanded_places
@@ -19,7 +20,7 @@ _DEFINITIONS = frozenset({"xacro:macro", "xacro:property", "xacro:arg", "xacro:i
 
 def semantic_files(version: Version) -> set[str]:
     """Return the paths of the semantic descriptions in xacro that contain more than definitions for other files."""
-    files = (file for file in version.root.rglob(f"*{SUFFIX}") if file.is_file())
+    files, _ = walk(version.root, (SUFFIX,))
     paths = (version.relative(file) for file in files if _is_complete(file))
     return {path for path in paths if path is not None}
 
