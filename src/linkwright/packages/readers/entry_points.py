@@ -31,17 +31,26 @@ def read_setup_cfg_group(text: str, group: str) -> list[str]:
     return option_lines(text, "options.entry_points", group)
 
 
-def read_pyproject_group(text: str, group: str) -> list[str]:
-    """Return the lines of a group in a ``pyproject.toml``."""
+def parse_toml(text: str) -> dict[str, Any]:
+    """Return the document of a text in TOML.
+
+    Raises:
+        ValueError: the text has wrong syntax.
+    """
     if sys.version_info >= (3, 11):
         import tomllib
     else:
         import tomli as tomllib  # type: ignore[import-not-found, unused-ignore]
+    return tomllib.loads(text)
+
+
+def read_pyproject_group(text: str, group: str) -> list[str]:
+    """Return the lines of a group in a ``pyproject.toml``."""
     try:
-        project: Any = tomllib.loads(text)["project"]
+        project: Any = parse_toml(text)["project"]
         entry_points = project["scripts"] if group == PROGRAM_GROUP else project["entry-points"][group]
         return [f"{name} = {target}" for name, target in entry_points.items()]
-    except (tomllib.TOMLDecodeError, KeyError, TypeError, AttributeError):
+    except (ValueError, KeyError, TypeError, AttributeError):
         return []
 
 

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Iterator, Mapping
 from configparser import ConfigParser, Error
 from pathlib import Path, PurePosixPath
 from typing import Any
 
 from linkwright.diagnostics import foreign
+from linkwright.packages.readers.entry_points import parse_toml
 from linkwright.packages.readers.installed import PROGRAM_GROUP
 from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.files.build_facts import BuildFacts, Fact, FactKind, compare_build_files
 from linkwright.review.versions import Version
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib  # type: ignore[import-not-found, unused-ignore]
 
 SETUP_CFG = "setup.cfg"
 PYPROJECT = "pyproject.toml"
@@ -72,8 +67,8 @@ def read_pyproject(version: Version, path: str) -> BuildFacts:
         UnreadableFileError: the file has wrong syntax.
     """
     try:
-        document = tomllib.loads(version.file(path).read_text(encoding="utf-8", errors="replace"))
-    except tomllib.TOMLDecodeError as error:
+        document = parse_toml(version.file(path).read_text(encoding="utf-8", errors="replace"))
+    except ValueError as error:
         raise UnreadableFileError(foreign(str(error))) from error
     facts = _facts(path)
     project = _table(document, "project")
