@@ -83,6 +83,7 @@ PARAMETERS = KindRule(
     phrase("parameter file removed"),
     phrase("launch files and users that name the file do not find it"),
     contents=parameter_contents,
+    shows_removed=True,
 )
 SEMANTIC_XACRO = KindRule(
     SubjectKind.SEMANTICS,

@@ -7,14 +7,12 @@ from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
 from linkwright.review.launches.outlines import CONDITION, READING, Entry
-from linkwright.review.list_changes import list_items, shortened
+from linkwright.review.list_changes import EMPTY, list_items, shortened
 
 _MAX_TITLES = 4
 _MAX_SETTINGS = 5
 """The number of settings that the line about an added action shows."""
 _MAX_SETTING = 80
-EMPTY = "''"
-"""An empty value as users write it."""
 _MAX_NAME = 160
 TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
 _CHILD = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")
