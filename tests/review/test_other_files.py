@@ -46,7 +46,8 @@ XML_LAUNCH = """<launch>
         ('"use_sim_time", default_value="false"', '"use_sim_time"',
          "argument 'use_sim_time': default false removed", True),
         ('name="right"', 'name="rear"', "node 'arm/camera': name right -> rear", True),
-        ('        Node(package="arm", executable="camera", name="left"),\n', "", "node 'arm/camera' removed", True),
+        ('        Node(package="arm", executable="camera", name="left"),\n', "",
+         "node 'arm/camera' removed: name left", True),
         ("    return Launch", "    print('starting')\n    return Launch",
          "other code added: print('starting')", False),
         ('"arm/cmd"', '"cmd_vel"', "node 'arm/driver': remapping cmd arm/cmd -> cmd_vel", True),
@@ -98,7 +99,7 @@ SPAWNER = '["arm", "--controller-ros-args", "-r /arm/cmd:=/cmd"]'
                 "node 'tf2_ros/static_transform_publisher' added: arguments [5, 0, 0, base, top]",
             ],
         ),
-        ([(RVIZ, "")], ["node 'rviz2/rviz2' removed"]),
+        ([(RVIZ, "")], ["node 'rviz2/rviz2' removed: name rviz2"]),
         (
             [(', remappings=[("/arm/cmd", "/cmd")]', ""), ('["arm"]', SPAWNER)],
             [
