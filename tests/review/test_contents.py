@@ -165,3 +165,18 @@ def test_changed_collisions_have_images(repository):
     views = subject(result, URDF).images
     assert [view.name for view in views] == ["iso, collision", "front, collision"]
     assert views[0].old != views[0].new
+
+
+INTERFACES = """<robot name="r"><link name="base"/><ros2_control name="{name}" type="system">
+  <joint name="a">{interface}</joint><joint name="b">{interface}</joint>
+</ros2_control></robot>
+"""
+
+
+def test_interface_that_all_joints_gain_is_one_change(repository, compare):
+    repository.commit({URDF: INTERFACES.format(name="arm", interface='<state_interface name="position"/>')})
+    interfaces = '<state_interface name="position"/><state_interface name="effort"/>'
+    repository.write({URDF: INTERFACES.format(name="arm", interface=interfaces)})
+    (change,) = subject(compare(repository), URDF).changes
+    assert str(change.sentence) == "extension 'ros2_control arm': joint a state_interface effort added"
+    assert change.other_names == ("joint b",)

@@ -156,3 +156,13 @@ def test_name_that_callers_choose_is_not_a_lost_name(changes_of):
         f'<arg name="name" default="cam"/>{node}', f'<arg name="robot"/><arg name="name" default="$(arg robot)"/>{node}'
     )
     assert found_breaking == ["argument 'robot' added"]
+
+
+TRANSFORM = '<node pkg="tf2_ros" exec="static_transform_publisher" args="0 0 0 0 0 0 base wheel"/>'
+STATES = '<node pkg="joint_state_publisher" exec="joint_state_publisher"/>'
+
+
+@pytest.mark.parametrize(("old", "new", "count"), [("", "", 1), ("", STATES, 0), (STATES, STATES, 1)])
+def test_frame_of_a_joint_whose_position_is_published_now_may_not_be_lost(changes_of, old, new, count):
+    _, found_breaking = changes_of(TRANSFORM + old, new)
+    assert len(found_breaking) == count

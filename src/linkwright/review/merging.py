@@ -96,14 +96,14 @@ def _names(change: Change) -> tuple[str, ...]:
 
 def _content_of_part(change: Change) -> Hashable | None:
     """Return a key that is equal for the same change of other joints of the same hardware; None for other changes."""
-    if change.other_names:
-        return None
     new_name = _new_part_name(change)
     if new_name is not None:
+        if change.other_names:
+            return None
         tag, _, old_name = change.property_name.rpartition(" ")
         return change.effect, change.name, tag, name_edit(old_name, new_name)
     part = _PART.fullmatch(change.property_name)
-    return None if part is None else (change.effect, change.name, part["rest"], change.values)
+    return None if part is None else (change.effect, change.name, part["rest"], change.values, change.other_names)
 
 
 def _new_part_name(change: Change) -> str | None:
@@ -140,6 +140,8 @@ def _parameter_names(change: Change) -> tuple[str, ...]:
 def _as_one(changes: list[Change], names_of: Callable[[Change], tuple[str, ...]]) -> Change:
     first = changes[0]
     names = dict.fromkeys(name for change in changes for name in names_of(change))
+    if names_of is _part_names:
+        names |= dict.fromkeys(first.other_names)
     for name in names_of(first)[:1]:
         del names[name]
     locations: dict[Location, None] = {}

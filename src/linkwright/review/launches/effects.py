@@ -92,11 +92,18 @@ def removal_reason(
     if entry.name.startswith(_JOINT_STATES) and any(other.name.startswith(_JOINT_STATES) for other in new.entries):
         return None
     names = _served_names(entry, outline)
+    if entry.name.startswith(TRANSFORM_PUBLISHERS) and _publishes_states(new) and not _publishes_states(outline):
+        return None  # robot_state_publisher may place the frame, which belongs to a joint now
     if not names:
         if entry.name.startswith(TRANSFORM_PUBLISHERS):
             return phrase("programs that look up the frame of the node do not find it")
         return phrase("the topics and services of the node are missing")
     return _served_reason(entry, names, new)
+
+
+def _publishes_states(outline: LaunchOutline) -> bool:
+    """Return whether a file starts a program that publishes the positions of joints."""
+    return any(entry.kind == "node" and entry.name.startswith(_JOINT_STATES) for entry in outline.entries)
 
 
 def _starts_same_node(entry: Entry, other: Entry, old: LaunchOutline, new: LaunchOutline) -> bool:

@@ -254,9 +254,11 @@ def _known_value(difference: Difference) -> str:
 def _presence(difference: Difference, value: str | None) -> Phrase:
     """Return in one line that a property or a part was added or removed, with its value."""
     subject, name, part = term(difference.subject), difference.name, difference.property
+    if difference.new is not None and not value:
+        return phrase("{subject} '{name}': {property} added", subject=subject, name=name, property=part)
     if difference.new is not None:
         return phrase(
-            "{subject} '{name}': {property} added: {new}", subject=subject, name=name, property=part, new=value or "-"
+            "{subject} '{name}': {property} added: {new}", subject=subject, name=name, property=part, new=value
         )
     if not value:
         return phrase("{subject} '{name}': {property} removed", subject=subject, name=name, property=part)
