@@ -27,8 +27,9 @@ def test_plugin_of_the_same_role_replaces_another_one(repository, compare):
     result = compare(repository)
     assert sentences(subject(result, URDF)) == [
         (
-            "extension 'gazebo': plugin 'drive' (filename=libgazebo_ros_diff_drive.so, ros remapping cmd_vel:=base/cmd, "
-            "rate 9, topics 'odom') replaced by plugin 'gz::sim::systems::DiffDrive' (filename=gz-sim-diff-drive-system, "
+            "extension 'gazebo': plugin 'drive' (filename=libgazebo_ros_diff_drive.so, "
+            "ros remapping cmd_vel:=base/cmd, rate 9, topics 'odom') "
+            "replaced by plugin 'gz::sim::systems::DiffDrive' (filename=gz-sim-diff-drive-system, "
             "topic base/cmd, odom_topic odom)"
         )
     ]

@@ -43,8 +43,8 @@ def test_added_and_removed_node_has_its_contents(changes_of, is_added, word):
     assert changes == [
         (
             f"node 'cam/driver' {word}: name cam, arguments --fast, remapping image -> front/image, "
-            "environment variable DISPLAY :1, parameter rate 10, parameter gain 3, parameter pid.p 1, parameter pid.i 2, "
-            "parameter sizes [1, 2], parameters [cam.yaml (namespace lens)], output screen"
+            "environment variable DISPLAY :1, parameter rate 10, parameter gain 3, parameter pid.p 1, "
+            "parameter pid.i 2, parameter sizes [1, 2], parameters [cam.yaml (namespace lens)], output screen"
         )
     ]
 

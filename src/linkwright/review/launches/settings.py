@@ -128,7 +128,8 @@ class SettingChanges:
     def _add_remappings(self) -> None:
         """Add the changed remappings; those whose targets are edited in the same way as one change."""
         for places in self._remappings.values():
-            if len(places) < _MIN_GROUP:
+            edits = {(setting.name, setting.old, setting.new) for _, _, setting in places}
+            if len(places) < _MIN_GROUP or len(edits) == 1:
                 for entry, _, setting in places:
                     self._add(entry, setting.text, setting.reason)
                 continue
