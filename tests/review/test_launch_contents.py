@@ -166,3 +166,20 @@ STATES = '<node pkg="joint_state_publisher" exec="joint_state_publisher"/>'
 def test_frame_of_a_joint_whose_position_is_published_now_may_not_be_lost(changes_of, old, new, count):
     _, found_breaking = changes_of(TRANSFORM + old, new)
     assert len(found_breaking) == count
+
+
+def test_name_to_which_another_topic_of_the_node_is_remapped_is_not_lost(changes_of):
+    old = REMAP.format("scan_raw")
+    changes, found_breaking = changes_of(old, old.replace('from="scan"', 'from="lidar/scan"'))
+    assert changes == [
+        "node 'cam/driver': remapping lidar/scan scan_raw added",
+        "node 'cam/driver': remapping scan scan_raw removed",
+    ]
+    assert found_breaking == ["node 'cam/driver': remapping lidar/scan scan_raw added"]
+
+
+@pytest.mark.parametrize(("name", "is_breaking"), [("ekf_filter_node", False), ("filter", True)])
+def test_name_that_a_known_program_has_anyway_is_not_lost(changes_of, name, is_breaking):
+    node = '<node pkg="robot_localization" exec="ekf_node"{}/>'
+    _, found_breaking = changes_of(node.format(f' name="{name}"'), node.format(""))
+    assert bool(found_breaking) is is_breaking

@@ -43,6 +43,11 @@ _NAME_ARGUMENT = re.compile(
 )
 """The arguments whose values are, by their names, names that other programs use."""
 _MIN_SIMILARITY_OF_NAMES = 0.75
+_NAMES_OF_PROGRAMS = {
+    "robot_localization/ekf_node": "ekf_filter_node",
+    "robot_localization/ukf_node": "ukf_filter_node",
+}
+"""The names of nodes that are not given one, where the programs have other names."""
 _TRUTH = ("true", "false")
 _CODE = re.compile(r"\w\(")
 """A call in a name, whose result is unknown."""
@@ -176,6 +181,8 @@ def setting_reason(
         is_input = _SUBSCRIBERS.match(entry.name) and _INPUTS.fullmatch(source.lstrip("/~"))
         if is_input or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
             return None
+        if old is not None and old_outline.resolved(old) in _targets(entry, new_outline):
+            return None  # another topic of the node has the name now
         return _remapping_reason(source, old, new, old_outline, new_outline)
     if setting == "name" and None in (old, new) and _is_name_of_program(entry, old or new or ""):
         return None
@@ -311,6 +318,8 @@ def _is_name_of_program(entry: Entry, name: str) -> bool:
 
     The program is an executable or the class of a component, such as ``map_server`` and ``nav2::MapServer``.
     """
+    if _NAMES_OF_PROGRAMS.get(entry.name) == name:
+        return True
     program = entry.name.rpartition("/")[2].rpartition("::")[2].removesuffix(".py")
     return name_likeness(name, program) >= _MIN_SIMILARITY_OF_NAMES
 
@@ -337,6 +346,12 @@ def _remapping_reason(
 def _has_new_variable(old: str, new: str) -> bool:
     """Return whether a name has a variable without a known value that the old one does not have."""
     return not set(_VARIABLE.findall(new)) <= set(_VARIABLE.findall(old))
+
+
+def _targets(entry: Entry, outline: LaunchOutline) -> set[str]:
+    """Return the names to which an action remaps others."""
+    settings = entry.settings.items()
+    return {outline.resolved(value) for name, value in settings if name.startswith(REMAPPING)}
 
 
 def _are_remapped_elsewhere(names: str, outline: LaunchOutline) -> bool:
