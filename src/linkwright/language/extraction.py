@@ -18,7 +18,7 @@ from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
 from linkwright.language.workspace import Workspace
 from linkwright.language.written import MACRO, SourceElement, innermost_element, source_elements
 from linkwright.loading.deferred import lazy_pattern
-from linkwright.xacro.expressions.symbols import MATHEMATICS
+from linkwright.xacro.expressions.builtin_names import MATHEMATICS
 from linkwright.xmltree.patches import indentation, line_ending
 from linkwright.xmltree.tokens import Kind, TokenAttribute, tokens
 
