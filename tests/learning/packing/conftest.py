@@ -42,7 +42,12 @@ class FakeIndex:
 
 @pytest.fixture
 def index(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> FakeIndex:
-    folder = tmp_path / "index"
+    return create_index(tmp_path, monkeypatch)
+
+
+def create_index(parent: Path, monkeypatch: pytest.MonkeyPatch) -> FakeIndex:
+    """Create an index below a folder, and make pip and packs use it."""
+    folder = parent / "index"
     wheel = {
         name: write_wheel(folder, *name.split(" "))
         for name in (
@@ -58,7 +63,7 @@ def index(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> FakeIndex:
     }
     wheel["windows_only 1.0"] = write_wheel(folder, "windows-only", requires=["pure"])
     source = write_source(folder, "source")
-    own = tmp_path / "own"
+    own = parent / "own"
     needs = ["native>=1", "source", 'windows-only; sys_platform == "win32"']
     table = {
         "linkwright": {
