@@ -19,7 +19,7 @@ class RemoteTransport(Transport):
         self.publishers: list[EndpointInfo] = []
         graph.attach(self)
 
-    def look_around(self) -> None:
+    def start_discovery(self) -> None:
         pass
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
@@ -67,7 +67,7 @@ class RemotePublisher:
         for subscription in self._transport.graph.bus.subscriptions(self._info.name):
             subscription.receive(serialize(message), MessageInfo(0, 0, self._info.gid, is_remote=True))
 
-    def be_lost(self) -> None:
+    def disappear(self) -> None:
         """Disappear as if the process had been killed."""
         assert self._transport.lose is not None, "the graph does not watch for lost publishers"
         self._transport.publishers.remove(self._info)

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from linkwright.bridge.bridged_network import BridgedNetwork
 from linkwright.bridge.mirrors import MirroredPublisher
 from linkwright.bridge.outlet import Outlet
-from linkwright.bridge.side import Side
 from linkwright.bridge.streams import publisher_stream
 from linkwright.graph import Graph
 from linkwright.graph.actions.client import ActionClient
@@ -299,11 +299,11 @@ def test_lost_endpoint_triggers_new_discovery():
         def watch_lost(self, lost):
             self.lost = lost
 
-        def look_around(self):
+        def start_discovery(self):
             pass
 
     transport, graph = Transport(), Graph(threads=True)
-    Side("DDS", graph, transport, "b0", needs_hashes=False).watch(lambda: messages.append("look"))
+    BridgedNetwork("DDS", graph, transport, "b0", needs_hashes=False).watch(lambda: messages.append("look"))
     node = NodeIdentity("killed", "/")
     transport.lost(
         EndpointInfo(EndpointKind.PUBLISHER, node, "/rosout", "rcl_interfaces/msg/Log", QoSProfile(1), bytes(16))

@@ -101,7 +101,7 @@ def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, 
     fit = page.get_by_role("toolbar", name="Tools", exact=True).get_by_role("button", name="Fit", exact=True)
     fit.click()
     until(page, "lw.settled")
-    before = state(page, "robotsReach")
+    before = state(page, "robotsRightEdge")
     canvas = page.locator(".canvas-box canvas")
     middle = canvas.bounding_box()
     canvas.click(position={"x": middle["width"] / 2, "y": middle["height"] / 2})
@@ -110,20 +110,20 @@ def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, 
 
     def covers() -> bool:
         box = card.bounding_box()
-        return state(page, "robotsReach") > box["x"] - canvas.bounding_box()["x"]
+        return state(page, "robotsRightEdge") > box["x"] - canvas.bounding_box()["x"]
 
     reaches = before > middle["width"] - 10 - min(256, 0.55 * (middle["width"] - 20))
     assert fold.get_attribute("aria-expanded") == ("false" if reaches else "true")
     if reaches:
         assert card.bounding_box()["height"] < 45
         fold.click()
-        becomes(lambda: state(page, "robotsReach") < before, True)
+        becomes(lambda: state(page, "robotsRightEdge") < before, True)
         fit.click()  # where going aside is not enough
     becomes(covers, False)
     page.keyboard.press("Escape")
     card.wait_for(state="hidden")
     page.keyboard.press("Shift+F")
-    becomes(lambda: state(page, "robotsReach"), pytest.approx(before, abs=1))
+    becomes(lambda: state(page, "robotsRightEdge"), pytest.approx(before, abs=1))
 
 
 def test_robot_shifted_aside_stays_on_canvas(start, open_page, tmp_path):
@@ -134,10 +134,10 @@ def test_robot_shifted_aside_stays_on_canvas(start, open_page, tmp_path):
     page.get_by_role("toolbar", name="Tools", exact=True).get_by_role("button", name="Fit", exact=True).click()
     until(page, "lw.settled")
     # In the middle of the canvas it has as much room at its left as at its right.
-    reach, width = state(page, "robotsReach"), page.locator(".canvas-box canvas").bounding_box()["width"]
+    reach, width = state(page, "robotsRightEdge"), page.locator(".canvas-box canvas").bounding_box()["width"]
     page.locator(".inspect > button").click()
     page.locator(".inspect-card").wait_for()
-    becomes(lambda: state(page, "robotsReach"), pytest.approx(reach - (width - reach), abs=1))
+    becomes(lambda: state(page, "robotsRightEdge"), pytest.approx(reach - (width - reach), abs=1))
 
 
 TALL = """\

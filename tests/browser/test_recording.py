@@ -29,7 +29,7 @@ def program(start, tmp_path: Path) -> Program:
 def page(program: Program, open_page) -> Page:
     """A page that shows a robot, whose transforms come all the time."""
     shown: Page = open_page(program, wait=False)
-    until(shown, "lw.timeline?.live && lw.timeline.kept > 1000 && lw.timeline.length > 2 && lw.frames.tip")
+    until(shown, "lw.timeline?.live && lw.timeline.sizeBytes > 1000 && lw.timeline.length > 2 && lw.frames.tip")
     return shown
 
 

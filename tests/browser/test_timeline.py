@@ -203,7 +203,7 @@ def test_history_supports_pause_seek_and_return_to_live(start, open_page, tmp_pa
         '<parent link="base"/><child link="tip"/><axis xyz="0 0 1"/></joint></robot>'
     )
     page = open_page(start("view", str(model), "--history", "1MB"), wait=False)
-    until(page, "lw.timeline?.live && lw.timeline.kept > 1000 && lw.timeline.length > 2 && lw.frames.tip")
+    until(page, "lw.timeline?.live && lw.timeline.sizeBytes > 1000 && lw.timeline.length > 2 && lw.frames.tip")
     page.get_by_role("button", name="Pause (Space)").click()
     until(page, "!lw.timeline.live && !lw.timeline.playing")
     stood = state(page, "timeline")
@@ -216,7 +216,7 @@ def test_history_supports_pause_seek_and_return_to_live(start, open_page, tmp_pa
         box = live.bounding_box()
         assert (box["height"], box["x"] + box["width"] <= width) == (22, True)
     live.click()
-    until(page, "lw.timeline.live && lw.timeline.kept <= 1e6 && lw.frames.tip")
+    until(page, "lw.timeline.live && lw.timeline.sizeBytes <= 1e6 && lw.frames.tip")
 
 
 def test_viewer_without_history_has_no_timeline(start, open_page, tmp_path: Path):

@@ -88,7 +88,7 @@ def test_example_display_has_at_most_60_lines():
 async def test_example_display_draws_and_removes_tracked_objects(street):
     async with open_world(RvizConfig.parse(CONFIG)) as world, page(world.viewer) as client:
         await client.opened()
-        await client.send("ask_display_choices")
+        await client.send("request_display_choices")
         offered = (await client.until("display_choices"))["classes"]
         assert {"cls": CLASS, "messages": ["street_msgs/msg/TrackedObjects"]} in offered
         node = world.graph.create_node("perception")

@@ -27,7 +27,7 @@ class RemoteTransport(Transport):
     def __init__(self, *endpoints: EndpointInfo) -> None:
         self.endpoints = list(endpoints)
 
-    def look_around(self) -> None:
+    def start_discovery(self) -> None:
         pass
 
     def remote_nodes(self) -> list[NodeIdentity]:

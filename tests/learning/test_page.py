@@ -289,7 +289,7 @@ async def test_earlier_steps_are_taken_over_after_confirmation(tmp_path: Path) -
         await client.send("open_step", address="01-one-link/mass")
         step = await client.until("course_step", address="01-one-link/mass")
         assert step["missing_count"] == 1
-        await client.send("ask_catch_up")
+        await client.send("request_catch_up")
         files = await client.until("catch_up_files")
         assert (files["new"], files["replaced"]) == ([str(workspace / "robot.urdf")], [])
         assert not (workspace / "robot.urdf").exists()

@@ -64,7 +64,7 @@ def write(tmp_path: Path) -> Callable[..., Path]:
 
 
 @pytest.fixture
-def moved(write: Callable[..., Path]) -> Path:
+def moved_files(write: Callable[..., Path]) -> Path:
     return write(
         {
             "CMakeLists.txt": CMAKE,
@@ -128,7 +128,7 @@ def test_only_moved_folders_are_searched(write: Callable[..., Path], monkeypatch
 
     monkeypatch.setattr(Path, "rglob", rglob)
     cmake = read_cmake(SourceText("CMakeLists.txt", STAYING), package)
-    sources = {file.destination: file.source for file in cmake.moved(package, "share/arm")}
+    sources = {file.destination: file.source for file in cmake.moved_files(package, "share/arm")}
     assert sources == {"share/arm/base.stl": "meshes/base.stl", "share/arm/rviz/other.rviz": "rviz/arm.rviz"}
     assert read == ["meshes"]
 

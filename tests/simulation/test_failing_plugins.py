@@ -111,7 +111,7 @@ async def test_failing_plugin_stops_without_affecting_others(where):
             client.call_async(get_service(TRIGGER).Request())
         await _pass(server, graph)
         if transport.lose is not None:
-            commander.be_lost()
+            commander.disappear()
         await _pass(server, graph)
         server.reset()
         nodes = [name for name, _ in graph.get_node_names_and_namespaces()]

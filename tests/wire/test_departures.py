@@ -10,7 +10,7 @@ from linkwright.graph import EndpointInfo, NodeIdentity, QoSProfile
 from linkwright.graph.faults import ExternalShutdownException
 from linkwright.messages import String
 from linkwright.wire.dds import departures
-from linkwright.wire.dds.departures import GRACE, WITHDRAWAL_TIMEOUT_S, DdsDepartureMonitor
+from linkwright.wire.dds.departures import GRACE_S, WITHDRAWAL_TIMEOUT_S, DdsDepartureMonitor
 from linkwright.wire.dds.discovery_info import NodeEntities, ParticipantEntities
 from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant
 from linkwright.wire.engine import ends_by_error
@@ -37,7 +37,7 @@ class Scene:
 
     def announce(self, *writers: bytes) -> None:
         nodes = [NodeEntities("/far", "talker", writers=writers)] if writers else []
-        self.remote.entities_announced(ParticipantEntities(PARTICIPANT, nodes))
+        self.remote.on_entities_announced(ParticipantEntities(PARTICIPANT, nodes))
 
     def after(self, seconds: float) -> float | None:
         self.time += seconds
@@ -82,7 +82,7 @@ def test_participant_of_ended_process_is_lost_before_lease_expires(monkeypatch):
     running = False
     scene.after(1.0)
     assert not scene.lost
-    scene.after(2 * GRACE)
+    scene.after(2 * GRACE_S)
     assert [endpoint.name for endpoint in scene.lost] == ["/chatter"]
     scene.remote.remove_participant(PARTICIPANT)
     assert scene.after(2 * WITHDRAWAL_TIMEOUT_S) is None

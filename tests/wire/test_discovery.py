@@ -74,11 +74,11 @@ def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeyp
 
     announced = []
     other = processes("other")
-    entities_announced = other.transport._remote.entities_announced
+    on_entities_announced = other.transport._remote.on_entities_announced
 
     def listen(entities: ParticipantEntities) -> None:
         announced.append(entities)
-        entities_announced(entities)
+        on_entities_announced(entities)
 
     monkeypatch.setattr(other.transport._remote, "entities_announced", listen)
     monkeypatch.setattr(engine, "Engine", Late)

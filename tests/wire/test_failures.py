@@ -6,7 +6,7 @@ import threading
 
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
 from linkwright.messages import String, get_service
-from linkwright.wire.guarded_calls import guarded
+from linkwright.wire.guarded_calls import call_guarded
 from tests.waiting import wait_until
 from tests.wire.conftest import both_wires
 
@@ -144,7 +144,7 @@ def test_thread_continues_when_logging_fails(monkeypatch):
     def report(error):
         raise OSError(f"no log for '{error}'")
 
-    assert guarded(lambda: 5) == 5
-    assert guarded(fail) is None
-    assert guarded(fail, report) is None
+    assert call_guarded(lambda: 5) == 5
+    assert call_guarded(fail) is None
+    assert call_guarded(fail, report) is None
     assert seen == [(ValueError, "first"), (OSError, "no log for 'first'")]

@@ -33,7 +33,7 @@ def test_graph_is_incomplete_until_writers_of_node_are_discovered(remote):
     assert not remote.is_complete()
     remote.add_endpoint(endpoint(SPEAKER, is_writer=True))
     assert not remote.is_complete()
-    remote.entities_announced(ParticipantEntities(PARTICIPANT, [NodeEntities("/", "talker", writers=(TALKER,))]))
+    remote.on_entities_announced(ParticipantEntities(PARTICIPANT, [NodeEntities("/", "talker", writers=(TALKER,))]))
     assert not remote.is_complete()
     remote.add_endpoint(endpoint(TALKER, is_writer=True, topic="rt/chatter"))
     assert remote.is_complete()

@@ -340,7 +340,7 @@ class XacroFacts:
         return frozenset(name for facts in self._all_facts() for name in facts.used_arguments)
 
     @cached_property
-    def called(self) -> frozenset[str]:
+    def called_macros(self) -> frozenset[str]:
         """The names of all macros that a file or a neighbor calls, without namespaces."""
         return frozenset(name for facts in self._all_facts() for name in facts.called_macros)
 

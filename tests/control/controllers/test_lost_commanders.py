@@ -31,7 +31,7 @@ async def test_lost_publisher_stops_velocity_and_holds_position_and_effort(stand
     driver.send(Array(data=[0.5]))
     await stand.step(controller)
     assert stand.commands[f"hip/{interface}"].value == 0.5
-    driver.be_lost()
+    driver.disappear()
     await stand.step(controller)
     assert stand.commands[f"hip/{interface}"].value == after
     logged = [record.text for record in stand.log if "was lost" in record.text]
@@ -49,7 +49,7 @@ async def test_drive_stops_before_timeout_when_publisher_is_lost(stand):
     driver.send(message)
     await stand.step(controller, count=3)
     assert [command.value for command in stand.commands.values()] == pytest.approx([10.0, 10.0])
-    driver.be_lost()
+    driver.disappear()
     await stand.step(controller)
     assert [command.value for command in stand.commands.values()] == [0.0, 0.0]
     (logged,) = [record.text for record in stand.log if "was lost" in record.text]
@@ -86,6 +86,6 @@ async def test_lost_publisher_of_expired_command_is_not_reported(stand):
     message.twist.linear.x = 1.0
     driver.send(message)
     await stand.step(controller, count=20)
-    driver.be_lost()
+    driver.disappear()
     await stand.step(controller)
     assert not [record.text for record in stand.log if "was lost" in record.text]

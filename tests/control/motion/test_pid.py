@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.control.motion.pid import BACK_CALCULATION, CLAMPED, CONDITIONAL, STRATEGIES, Pid, PidGains
-from linkwright.control.motion.tolerances import StateTolerance, Tolerances, resolved
+from linkwright.control.motion.tolerances import StateTolerance, Tolerances, effective_tolerance
 
 
 def test_command_is_sum_of_p_i_and_d_terms():
@@ -75,9 +75,9 @@ def test_tolerances_bound_errors_unless_zero():
 
 
 def test_goal_tolerances_replace_erase_or_keep_defaults():
-    assert [resolved(0.5, given) for given in (0.2, 0.0, -1.0)] == [0.2, 0.5, 0.0]
+    assert [effective_tolerance(0.5, given) for given in (0.2, 0.0, -1.0)] == [0.2, 0.5, 0.0]
     with pytest.raises(ValueError, match="-2"):
-        resolved(0.5, -2.0)
+        effective_tolerance(0.5, -2.0)
     assert StateTolerance(0.1, 0.2, 0.3).overridden(0.0, -1.0, 1.0) == StateTolerance(0.1, 0.0, 1.0)
     both = Tolerances((StateTolerance(), StateTolerance()), (StateTolerance(), StateTolerance()))
     assert both.with_path(1, StateTolerance(1.0)).path == (StateTolerance(), StateTolerance(1.0))

@@ -249,7 +249,7 @@ async def test_lost_joy_publisher_stops_robot(stage, start, logged):
     pilot.node.destroy_node()
     await stage.clock.advance(1.0)
     assert [twist.linear.x for twist in pilot.velocities] == [0.0]
-    assert logged("WARN") == ["no node publishes '/joy' any more, so the robot is stopped"]
+    assert logged("WARN") == ["'/joy' no longer has a publisher, so the robot is stopped"]
 
 
 async def test_closing_node_stops_robot(stage):

@@ -168,10 +168,10 @@ async def test_lost_publisher_of_last_velocity_stops_robot(traffic):
         message.linear.x = speed
         source.send(message)
     await traffic.stage.graph.settle()
-    tablet.be_lost()
+    tablet.disappear()
     await traffic.stage.graph.settle()
     assert [twist.linear.x for twist in traffic.out] == [0.1, 0.3]
-    joystick.be_lost()
+    joystick.disappear()
     await traffic.stage.graph.settle()
     assert [twist.linear.x for twist in traffic.out] == [0.1, 0.3, 0.0]
     (logged,) = [record.text for record in traffic.stage.log if "was lost" in record.text]

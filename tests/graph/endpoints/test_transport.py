@@ -47,7 +47,7 @@ class FakeTransport:
     open_publisher = open_subscription = open_service = open_client = _open
     close_publisher = close_subscription = close_service = close_client = _close
 
-    def look_around(self):
+    def start_discovery(self):
         self.looked += 1
 
     def remote_nodes(self):

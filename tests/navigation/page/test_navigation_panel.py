@@ -116,7 +116,7 @@ async def test_goal_progress_is_shown_until_next_goal():
         nav2.goal(2)
         nav2.progress(3.456)
         message = await client.until("navigation_state", distance=3.46)
-        assert (message["goal"], message["eta"], message["taken"], message["recoveries"]) == ("active", 75.0, 12.5, 2)
+        assert (message["goal"], message["eta"], message["elapsed"], message["recoveries"]) == ("active", 75.0, 12.5, 2)
         nav2.progress(float("nan"))
         await client.until("navigation_state", distance=None, eta=75.0)
         nav2.goal(4, 2)

@@ -153,7 +153,7 @@ async def test_modeling_messages_edit_entities(tmp_path):
         entities = {entity["name"]: entity for entity in (await client.until("modeling_state"))["entities"]}
         assert (entities["wall"]["size"], entities["wall"]["color"]) == ([1, 2, 3], [0, 0, 1, 1])
         assert (entities["slope"]["shape"], entities["slope"]["static"]) == ("ramp", False)
-        await client.send("ask_models")
+        await client.send("request_models")
         model_choices = (await client.until("model_choices"))["models"]
         assert {"name": "sun", "address": "model://sun"} in model_choices
 

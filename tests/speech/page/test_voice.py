@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from linkwright.graph import DurabilityPolicy, QoSProfile
-from linkwright.page.protocol.voice import MOST_LOST_SAMPLES, unpack_sound
+from linkwright.page.protocol.voice import MAX_LOST_SAMPLES, unpack_sound
 from linkwright.speech.page import floor
 from tests.viewer.scene import Client, World, open_world, page
 from tests.waiting import eventually
@@ -200,7 +200,7 @@ async def test_page_reporting_impossible_loss_is_cut_off():
     async with heard() as (_, client, ears):
         await client.send("watch_voice", watched=True)
         await client.send("talk", mode="held")
-        for lost in (0, MOST_LOST_SAMPLES, MOST_LOST_SAMPLES, MOST_LOST_SAMPLES):
+        for lost in (0, MAX_LOST_SAMPLES, MAX_LOST_SAMPLES, MAX_LOST_SAMPLES):
             await client.socket.send_bytes(frame(BLOCK, lost=lost))
         await client.until("voice_state", talking="nobody", cut=True)
         await eventually(lambda: ears.held == [True, False])
@@ -211,7 +211,7 @@ async def test_page_reporting_impossible_loss_is_cut_off():
 async def test_page_reporting_excessive_loss_is_closed():
     async with heard() as (_, client, ears):
         await client.send("talk", mode="held")
-        await client.socket.send_bytes(frame(BLOCK, lost=MOST_LOST_SAMPLES + 1))
+        await client.socket.send_bytes(frame(BLOCK, lost=MAX_LOST_SAMPLES + 1))
         with pytest.raises(ConnectionError):
             await client.until("nothing of this kind")
         assert client.socket.close_code == 1003

@@ -91,7 +91,7 @@ async def test_words_are_renamed_and_removed_in_order():
 async def test_words_file_is_exported_and_imported():
     async with opened() as (client, _):
         await record(client, "stop", say(WORDS["stop"]))
-        await client.send("ask_words_file")
+        await client.send("request_words_file")
         text = (await client.until("voice_words_file"))["text"]
         words_path().unlink()
         await client.send("import_words", text=text)

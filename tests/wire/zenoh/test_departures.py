@@ -6,7 +6,7 @@ import pytest
 
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
-from linkwright.wire.zenoh.departures import GRACE, ZenohDepartureMonitor
+from linkwright.wire.zenoh.departures import GRACE_S, ZenohDepartureMonitor
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.tokens import Token
 
@@ -44,7 +44,7 @@ class Scene:
 
     def names_lost(self) -> list[str]:
         """Those that are lost once all is judged."""
-        self.time += 2 * GRACE
+        self.time += 2 * GRACE_S
         assert self.departures.report_lost_publishers() is None
         return [endpoint.name for endpoint in self.lost]
 
@@ -58,7 +58,7 @@ def test_publisher_of_ended_session_is_lost_unless_session_left(leaves, knows_no
     if knows_node:
         scene.remote.add(NODE.key, NODE)
     if leaves:
-        scene.departures.session_leaves(SESSION)
+        scene.departures.session_leaving(SESSION)
     scene.departures.session_ended(SESSION)
     scene.went(PUBLISHER)
     scene.went(NODE)

@@ -147,7 +147,7 @@ class CMakeProgram:
     _routines: dict[str, _Routine] = field(default_factory=dict)
     _folder: str = ""
     _unknown_conditions: int = 0
-    _around: dict[str, int] = field(default_factory=dict)  # e.g. `break` -> unknown conditions around it
+    _enclosing_depths: dict[str, int] = field(default_factory=dict)  # e.g. `break` -> unknown conditions around it
     _exit_command: str = ""
     _parent_values: dict[str, str] = field(default_factory=dict)
     _depth: int = 0
@@ -169,12 +169,12 @@ class CMakeProgram:
     @contextmanager
     def _leavable_block(self, *commands: str) -> Iterator[None]:
         """Return a context manager for a block that the given commands, such as ``break``, leave."""
-        outer_depths = self._around
-        self._around = {**outer_depths, **dict.fromkeys(commands, self._unknown_conditions)}
+        outer_depths = self._enclosing_depths
+        self._enclosing_depths = {**outer_depths, **dict.fromkeys(commands, self._unknown_conditions)}
         try:
             yield
         finally:
-            self._around = outer_depths
+            self._enclosing_depths = outer_depths
             if self._exit_command in commands:
                 self._exit_command = ""
 
@@ -304,7 +304,7 @@ class CMakeProgram:
         command = Command(name, tuple(self._arguments(statement)), self._folder, self._unknown_conditions > 0)
         words = command.words
         if name in ("return", "break", "continue"):
-            self._exit_command = name if self._unknown_conditions == self._around.get(name) else ""
+            self._exit_command = name if self._unknown_conditions == self._enclosing_depths.get(name) else ""
         elif name in self._routines:
             yield from self._call(self._routines[name], words)
         elif name in ("add_subdirectory", "include") and words:
@@ -491,13 +491,13 @@ class CMakeProgram:
 
     def _substitute(self, token: Token) -> str:
         """Substitute the values of known variables in an argument, and return the text."""
-        text, room = token.text, _MAX_TEXT_LENGTH
+        text, remaining_length = token.text, _MAX_TEXT_LENGTH
 
         def value(match: re.Match[str]) -> str:
-            nonlocal room
+            nonlocal remaining_length
             value = self.variables.get(match[1], match[0])
-            room -= len(value)
-            if room < 0:
+            remaining_length -= len(value)
+            if remaining_length < 0:
                 raise _LimitExceededError(token.text)
             return value
 

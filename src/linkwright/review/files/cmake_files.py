@@ -91,7 +91,7 @@ def _read_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
     _move_missing_folders(facts, cmake, package)
     facts.project = "" if cmake.project is None else cmake.project.text
     try:
-        facts.files = {file.destination: file.source for file in cmake.installed(package) if file.content is None}
+        facts.files = {file.destination: file.source for file in cmake.installed_files(package) if file.content is None}
     except FileNotFoundError:
         facts.is_complete = False
     spans = {item.text: cmake.span(item) for item in cmake.files}

@@ -27,7 +27,7 @@ def compare_setup_files(pair: FilePair) -> None:
 
 
 def _compare_modules(pair: FilePair) -> None:
-    """Add the executables whose modules only the old version has."""
+    """Report the executables whose module was removed."""
     setup = read_setup(SourceText(str(pair.new_file), pair.new_file.read_text(encoding="utf-8", errors="replace")))
     for program in setup.entry_points:
         path = program.module.replace(".", "/")

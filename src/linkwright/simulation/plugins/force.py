@@ -31,7 +31,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
     """The substitute for ``libgazebo_ros_force.so``."""
 
     PARAMETERS = ForceParameters
-    CARRIED = ("_wrench",)
+    RESUMED_ATTRIBUTES = ("_wrench",)
 
     def start(self) -> None:
         """Find the link, and subscribe to the force.

@@ -73,7 +73,7 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
 
     PARAMETERS = PlanarMoveParameters
     IGNORED = ("update_rate",)
-    CARRIED = ("_command",)
+    RESUMED_ATTRIBUTES = ("_command",)
 
     def start(self) -> None:
         """Subscribe to the commands, and create the odometry topics.
