@@ -24,7 +24,7 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from linkwright.wire.dds.settings import read_settings
-from tests.wire.ros_peer import described, raw, text
+from tests.wire.ros_peer import as_bytes, make_type, text
 
 ROUNDS = 40
 HEADER = b"\0\1\0\0"
@@ -74,15 +74,15 @@ def main() -> None:
     domain = Domain(number, read_settings(domain_id=number).configurations[0])
     participant = DomainParticipant(number)
     header = {"client_guid": types.uint64, "sequence_number": types.int64}
-    string = raw(described("std_msgs.msg.dds_.String_", {"data": str}))
-    request = raw(described("std_srvs.srv.dds_.SetBool_Request_", {**header, "data": bool}))
+    string = as_bytes(make_type("std_msgs.msg.dds_.String_", {"data": str}))
+    request = as_bytes(make_type("std_srvs.srv.dds_.SetBool_Request_", {**header, "data": bool}))
     prefix = "rmw_dds_common.msg.dds_."
-    gid = described(prefix + "Gid_", {"data": types.array[types.uint8, 24]})
+    gid = make_type(prefix + "Gid_", {"data": types.array[types.uint8, 24]})
     names = {"node_namespace": types.bounded_str[256], "node_name": types.bounded_str[256]}
     gids = {"reader_gid_seq": types.sequence[gid], "writer_gid_seq": types.sequence[gid]}
-    node = described(prefix + "NodeEntitiesInfo_", {**names, **gids})
+    node = make_type(prefix + "NodeEntitiesInfo_", {**names, **gids})
     members = {"gid": gid, "node_entities_info_seq": types.sequence[node]}
-    info = raw(described(prefix + "ParticipantEntitiesInfo_", members))
+    info = as_bytes(make_type(prefix + "ParticipantEntitiesInfo_", members))
     lottery = random.Random(7)
     writers = {
         "rt/words": writer(participant, "rt/words", string, RELIABLE),
