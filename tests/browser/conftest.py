@@ -20,7 +20,7 @@ from playwright.sync_api import Browser, Page, Playwright, sync_playwright
 
 from tests import forked
 from tests.browser.live import LOOK_EVERY, LiveViewer, configuration
-from tests.browser.seen import what_was_seen
+from tests.browser.failure_report import what_was_seen
 from tests.forked import ForkServer, start_process
 from tests.waiting import wait_until
 

@@ -12,7 +12,7 @@ from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
 from tests.browser.arm import write_arm
 from tests.browser.conftest import becomes, state, until
-from tests.browser.kept import keep
+from tests.browser.kept_pictures import keep
 from tests.browser.live import configuration
 
 pytestmark = pytest.mark.browser
