@@ -1,4 +1,4 @@
-"""What the pages of a failed test showed: a screenshot of each, its text and its state."""
+"""The content of the pages of a failed test: a screenshot of each, its text and its state."""
 
 from __future__ import annotations
 
@@ -6,22 +6,22 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, Error, Page
 
-_PATIENCE = 10_000
-"""Milliseconds for a page that may be the very thing that hangs."""
+_TIMEOUT_MS = 10_000
+"""The time limit in milliseconds; the page itself may hang."""
 _STATE = "() => JSON.stringify({ready: window.linkwright?.ready, frames: window.linkwright?.framesDrawn})"
 
 
-def what_was_seen(browser: Browser, folder: Path, name: str) -> str:
-    """Describe all open pages, and write their pictures into a folder."""
+def describe_pages(browser: Browser, folder: Path, name: str) -> str:
+    """Describe all open pages, and save their screenshots in a folder."""
     pages = [page for context in browser.contexts for page in context.pages]
-    return "\n".join(_seen(page, folder / f"{name}-{number}.png") for number, page in enumerate(pages))
+    return "\n".join(_describe(page, folder / f"{name}-{number}.png") for number, page in enumerate(pages))
 
 
-def _seen(page: Page, screenshot: Path) -> str:
+def _describe(page: Page, screenshot: Path) -> str:
     try:
         screenshot.parent.mkdir(parents=True, exist_ok=True)
-        page.screenshot(path=screenshot, timeout=_PATIENCE)
-        text = page.locator("body").inner_text(timeout=_PATIENCE)
+        page.screenshot(path=screenshot, timeout=_TIMEOUT_MS)
+        text = page.locator("body").inner_text(timeout=_TIMEOUT_MS)
         return f"{page.url}\n{screenshot}\n{page.evaluate(_STATE)}\n{text}"
     except Error as error:
-        return f"{page.url}\nit cannot be looked at: {error.message}"
+        return f"{page.url}\nthe page cannot be inspected: {error.message}"

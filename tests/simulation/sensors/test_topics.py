@@ -351,7 +351,7 @@ ARM = """
   <link name="bob"><pose>1 0 0 0 0 0</pose><inertial><mass>2</mass></inertial></link>
   <joint name="held" type="fixed"><parent>world</parent><child>post</child></joint>
   <joint name="wrist" type="revolute"><pose>-1 0 0 0 0 0</pose><parent>post</parent><child>bob</child><axis>
-    <xyz>0 0 1</xyz></axis>{inside}</joint>{more}
+    <xyz>0 0 1</xyz></axis>{inside}</joint>{extra}
 </model>"""
 
 
@@ -390,12 +390,12 @@ async def test_classic_camera_publishes_image_and_camera_info():
 
 
 @pytest.mark.parametrize(
-    ("written", "encoding", "step"),
+    ("image_format", "encoding", "step"),
     [("L8", "mono8", 64), ("B8G8R8", "bgr8", 192), ("R16G16B16", "rgb16", 384), ("BAYER_RGGB8", "bayer_rggb8", 64)],
 )
-async def test_image_format_sets_encoding(written: str, encoding: str, step: int):
-    eye = CAMERA.replace("</height>", f"</height><format>{written}</format>")
-    async with running_server(WALL, carrier(sensor("camera", eye + plugin("libgazebo_ros_camera.so")))) as (
+async def test_image_format_sets_encoding(image_format: str, encoding: str, step: int):
+    camera = CAMERA.replace("</height>", f"</height><format>{image_format}</format>")
+    async with running_server(WALL, carrier(sensor("camera", camera + plugin("libgazebo_ros_camera.so")))) as (
         server,
         graph,
         _,
