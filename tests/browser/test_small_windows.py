@@ -66,7 +66,7 @@ def box(page: Page, selector: str, *, part_selector: str | None = None, text: st
 
 def group_box(page: Page, name: str) -> dict[str, float]:
     """Return the box of the group with a panel's tab."""
-    return box(page, ".dv-groupview", part=".panel-tab", text=name)
+    return box(page, ".dv-groupview", part_selector=".panel-tab", text=name)
 
 
 @pytest.mark.parametrize(("width", "height"), [(500, 800), (900, 700)])
@@ -100,7 +100,7 @@ def test_displays_tab_is_in_front_of_images_when_panels_share_space(open_window_
 
 def test_displays_filter_does_not_overlap_tabs(open_window_of_size):
     page = open_window_of_size(800, 600)
-    tabs, filter_ = box(page, ".dv-tab", text="Displays", part=".panel-tab"), box(page, ".displays-panel .search-box")
+    tabs, filter_ = box(page, ".dv-tab", text="Displays", part_selector=".panel-tab"), box(page, ".displays-panel .search-box")
     assert filter_["y"] >= tabs["y"] + tabs["height"]
     assert filter_["y"] < box(page, ".displays-panel .toolbar")["y"] + 30, "it is beside the buttons"
 

@@ -66,9 +66,9 @@ def test_speed_limits_apply_to_velocity_acceleration_and_jerk():
 async def test_car_drives_commanded_circle_with_correct_odometry():
     async with running_server(GROUND, car(steering())) as (server, graph, log):
         odometry, transforms = (Recording(graph, server.node, topic) for topic in ("/odom", "/tf"))
-        await drive(server, graph, 0.5, turning=0.3, seconds=2.0)
+        await drive(server, graph, 0.5, yaw_rate=0.3, seconds=2.0)
         begin = yaw_of(server.simulation.model_pose("car"))
-        await drive(server, graph, 0.5, turning=0.3, seconds=1.0)
+        await drive(server, graph, 0.5, yaw_rate=0.3, seconds=1.0)
         pose = server.simulation.model_pose("car")
         assert yaw_of(pose) - begin == pytest.approx(0.3, rel=0.05)
         message = odometry.last
@@ -86,7 +86,7 @@ async def test_car_drives_commanded_circle_with_correct_odometry():
 async def test_car_respects_steering_limit_backward():
     async with running_server(GROUND, car(steering("<steering_limit>0.3</steering_limit>"))) as (server, graph, log):
         odometry = Recording(graph, server.node, "/odom")
-        await drive(server, graph, -0.5, turning=5.0, seconds=2.0)
+        await drive(server, graph, -0.5, yaw_rate=5.0, seconds=2.0)
         left, right = (server.simulation.joint_state(f"car::{side}_steering_joint")[0] for side in ("left", "right"))
         radius = BASE / 0.29552020666133955
         expected = (atan(BASE / (-radius - TRACK / 2)), atan(BASE / (-radius + TRACK / 2)))

@@ -48,7 +48,7 @@ async def test_planar_move_drives_in_any_direction_with_robot_frame_odometry():
         assert (message.header.frame_id, message.child_frame_id) == ("odom", "base_footprint")
         assert (message.pose.pose.position.x, message.pose.pose.position.y) == pytest.approx((x, y))
         assert (message.twist.twist.linear.x, message.twist.twist.linear.y) == pytest.approx((0.5, 0.25), abs=1e-3)
-        await drive(server, graph, turning=1.0)
+        await drive(server, graph, yaw_rate=1.0)
         assert yaw_of(server.simulation.model_pose("mbot")) == pytest.approx(pi / 2 + 1.0, abs=2e-3)
         assert not log
 

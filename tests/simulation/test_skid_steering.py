@@ -43,9 +43,9 @@ def friction(mu: float, mu2: float) -> str:
 @pytest.mark.parametrize("length", [0.2, 0.4])
 async def test_skid_steering_turn_rate_matches_coulomb_friction(length, surface):
     async with running_server(GROUND, skid(length, surface)) as (server, graph, log):
-        await drive(server, graph, turning=0.5, seconds=1.0)
+        await drive(server, graph, yaw_rate=0.5, seconds=1.0)
         begin = yaw_of(server.simulation.model_pose("robot"))
-        await drive(server, graph, turning=0.5, seconds=1.0)
+        await drive(server, graph, yaw_rate=0.5, seconds=1.0)
         share = (yaw_of(server.simulation.model_pose("robot")) - begin) / 0.5
         expected = WIDTH**2 / (WIDTH**2 + length**2)
         assert 0.8 * expected < share < 1.05 * expected

@@ -169,7 +169,7 @@ async def test_efforts_are_applied_and_measured(file, tmp_path):
 async def test_imu_provides_state_interfaces(file):
     states = "<state_interface name='orientation.w'/><state_interface name='linear_acceleration.z'/>"
     sensor = f"<sensor name='imu'>{states}</sensor>"
-    async with running_server(GROUND, robot_with_plugin(file, inside=IMU)) as (server, graph, _):
+    async with running_server(GROUND, robot_with_plugin(file, elements=IMU)) as (server, graph, _):
         world = ControlledRobot(server, graph)
         states = Recording(graph, server.node, "/dynamic_joint_states")
         await world.describe(description(wheel("left_joint") + sensor))
