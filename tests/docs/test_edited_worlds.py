@@ -1,4 +1,4 @@
-"""docs/worlds.md shows what modeling writes."""
+"""docs/worlds.md: the text that modeling writes."""
 
 from __future__ import annotations
 
@@ -14,5 +14,5 @@ from tests.sdf.editing.texts import inside
 @pytest.mark.parametrize("page", [DOCS / "worlds.md", DOCS / "zh" / "worlds.md"], ids=["en", "zh"])
 def test_ramp_is_written_as_shown(page) -> None:
     world, _ = add_shape(inside(), "ramp", (3, 0, 0.25, 0, 0, 1.5), (2, 1, 0.5))
-    shown = next(block.text for block in blocks(page) if '<model name="ramp">' in block.text)
-    assert textwrap.indent(shown, "    ") in world.text
+    documented = next(block.text for block in blocks(page) if '<model name="ramp">' in block.text)
+    assert textwrap.indent(documented, "    ") in world.text
