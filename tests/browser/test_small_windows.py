@@ -100,7 +100,10 @@ def test_displays_tab_is_in_front_of_images_when_panels_share_space(open_window_
 
 def test_displays_filter_does_not_overlap_tabs(open_window_of_size):
     page = open_window_of_size(800, 600)
-    tabs, filter_ = box(page, ".dv-tab", text="Displays", part_selector=".panel-tab"), box(page, ".displays-panel .search-box")
+    tabs, filter_ = (
+        box(page, ".dv-tab", text="Displays", part_selector=".panel-tab"),
+        box(page, ".displays-panel .search-box"),
+    )
     assert filter_["y"] >= tabs["y"] + tabs["height"]
     assert filter_["y"] < box(page, ".displays-panel .toolbar")["y"] + 30, "it is beside the buttons"
 

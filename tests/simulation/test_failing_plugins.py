@@ -113,7 +113,7 @@ async def test_failing_plugin_stops_without_affecting_others(failing_point):
             client.call_async(get_service(TRIGGER).Request())
         await _advance(server, graph)
         if transport.lose is not None:
-            commander.be_lost()
+            commander.disappear()
         await _advance(server, graph)
         server.reset()
         nodes = [name for name, _ in graph.get_node_names_and_namespaces()]

@@ -55,7 +55,7 @@ async def test_drive_stops_and_reports_lost_commander_once(model: str) -> None:
         driver.send(forward(0.3))
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.3, abs=0.02)
-        driver.be_lost()
+        driver.disappear()
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.0, abs=0.01)
         assert warnings(log) == [f"{LOST}: the motion stops"]
@@ -84,7 +84,7 @@ async def test_drive_keeps_command_of_remaining_commander() -> None:
         lost, other = RemotePublisher(transport, "/cmd_vel", "lost"), RemotePublisher(transport, "/cmd_vel", "other")
         lost.send(forward(0.1))
         other.send(forward(0.3))
-        lost.be_lost()
+        lost.disappear()
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.3, abs=0.02)
         assert not warnings(log)
@@ -94,7 +94,7 @@ async def test_lost_commander_is_reported_after_pending_command() -> None:
     async with running_server(GROUND, robot(classic())) as (server, graph, log):
         driver = RemotePublisher(RemoteTransport(graph), "/cmd_vel")
         driver.send(forward(0.3))
-        driver.be_lost()  # before the command is processed
+        driver.disappear()  # before the command is processed
         await advance(server, graph, 1.0)
         assert speed(server) == pytest.approx(0.0, abs=0.01)
         assert len(warnings(log)) == 1
@@ -106,7 +106,7 @@ async def test_lost_commander_of_stopped_robot_is_not_reported() -> None:
         driver.send(forward(0.3))
         driver.send(forward(0.0))
         await advance(server, graph, 0.5)
-        driver.be_lost()
+        driver.disappear()
         await advance(server, graph, 0.1)
         assert not warnings(log)
 
@@ -123,10 +123,10 @@ async def test_drive_with_two_topic_names_tracks_last_commander() -> None:
         await graph.settle()
         usual_topic.send(forward(0.3))
         await graph.settle()
-        model_topic.be_lost()
+        model_topic.disappear()
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.3, abs=0.02)
-        usual_topic.be_lost()
+        usual_topic.disappear()
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.0, abs=0.01)
         assert len(warnings(log)) == 1

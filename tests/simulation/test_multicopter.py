@@ -135,7 +135,7 @@ async def test_multicopter_hovers_without_pilot_and_falls_when_disabled() -> Non
         pilot = RemotePublisher(RemoteTransport(graph), "/X3/cmd_vel")
         pilot.send(climb(0.5))
         await advance(server, graph, 4.0)
-        pilot.be_lost()
+        pilot.disappear()
         await advance(server, graph, 4.0)
         assert velocity(server) == pytest.approx([0.0, 0.0, 0.0], abs=0.02)
         assert len(warnings(log)) == 1

@@ -53,7 +53,7 @@ class SentGoal:
     async def wait_accepted(self):
         await self.scene.graph.settle()
         self.handle = self.future.result()
-        self.answer = self.handle.get_result_async() if self.handle.wait_accepted else None
+        self.answer = self.handle.get_result_async() if self.handle.accepted else None
         return self
 
     async def wait_ended(self, seconds=0.5):
@@ -239,7 +239,7 @@ async def test_inactive_server_rejects_goals(robot, graph):
     node = PlannerServer(graph, NodeOptions())
     node.node.trigger_configure()
     goal = await to_pose(robot, pose(2.0, 1.0)).wait_accepted()
-    assert not goal.handle.wait_accepted
+    assert not goal.handle.accepted
     node.close()
 
 

@@ -100,7 +100,7 @@ async def test_lost_command_publisher_stops_robot_and_is_reported(harness, stage
     message.linear.x = 0.25
     driver.send(message)
     await stage.clock.advance(0.2)
-    driver.be_lost()
+    driver.disappear()
     await stage.clock.advance(1.0)
     assert smoother.speeds()[3] == 0.25
     assert smoother.speeds()[-1] == 0.0

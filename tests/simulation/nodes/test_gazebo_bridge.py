@@ -303,7 +303,7 @@ async def test_lost_publisher_stops_drive_behind_bridge(stage, ros_type):
     message = get_message(ros_type)()
     getattr(message, "twist", message).linear.x = 0.3
     driver.send(message)
-    driver.be_lost()
+    driver.disappear()
     await stage.graph.settle()
     assert [twist.linear.x for twist in commands] == [0.3, 0.0]
     bridge.close()

@@ -13,7 +13,7 @@ import pytest
 
 from linkwright.control.odometry import yaw_of
 from linkwright.kinematics.planar import PlanarPose
-from tests.control.controllers.driving import stamped
+from tests.control.controllers.driving import stamped_twist
 from tests.simulation.ros2_control.test_plugin import PLUGINS, ControlledRobot
 from tests.simulation.test_ackermann import BASE, RADIUS, TRACK, car
 from tests.simulation.test_gz_drives import LENGTH, WIDTH, mecanum
@@ -132,7 +132,7 @@ class Drive(ControlledRobot):
     async def drive(self, seconds: float, *velocity: float) -> None:
         """Publish a velocity command every 0.1 s."""
         for _ in range(round(seconds / 0.1)):
-            self._publisher.publish(stamped(self.server.simulation.time, *velocity))
+            self._publisher.publish(stamped_twist(self.server.simulation.time, *velocity))
             await self.advance(0.1)
 
     @property
