@@ -11,7 +11,7 @@ from linkwright.messages import serialize
 
 
 class RemoteTransport(Transport):
-    """A transport that sends nothing, and receives what its `RemotePublisher`s send."""
+    """A transport that sends nothing, and delivers the messages of its `RemotePublisher`s."""
 
     def __init__(self, graph: Graph) -> None:
         self.graph = graph

@@ -14,7 +14,7 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import Graph
 from linkwright.graph.parameters.parameter import ParameterRules
 
-JOINT = "<joint name='{name}'>{commands}{states}{more}</joint>"
+JOINT = "<joint name='{name}'>{commands}{states}{extra}</joint>"
 
 
 def joint(

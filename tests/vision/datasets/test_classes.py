@@ -1,4 +1,4 @@
-"""Which objects of a world are of which class."""
+"""The classes of objects in a world."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ def test_box_of_mask_is_computed():
 
 
 def test_full_boxes_of_balls_match_projected_outlines(world):
-    """The outline of a ball is the cone of rays that touch it: its ends are known to the last digit."""
+    """The outline of a ball is the cone of tangent rays: its ends are known exactly."""
     compared = 0
     for arrangement in shots(world, 12):
         labels, _ = labeled(world, arrangement)
@@ -96,7 +96,7 @@ def is_covered(world, arrangement, movable):
 
 
 def outline(across, ahead, radius):
-    """The least and the greatest slope of rays in a plane that touch a circle."""
+    """Return the smallest and the largest slope of rays in a plane that touch a circle."""
     distance = np.hypot(across, ahead)
     middle, half = np.arctan2(across, ahead), np.arcsin(min(radius / distance, 1.0))
     return np.tan(middle - half), np.tan(middle + half)
