@@ -1,4 +1,4 @@
-"""Publishers of other processes, without processes: they send, leave and are lost when a test says so."""
+"""Simulated publishers of other processes: a test sends their messages, closes them, and loses them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.messages import serialize
 
 
 class RemoteTransport(Transport):
-    """A transport that sends nothing, and receives what its `RemotePublisher`s send."""
+    """A transport that sends nothing, and delivers the messages of its `RemotePublisher`s."""
 
     def __init__(self, graph: Graph) -> None:
         self.graph = graph

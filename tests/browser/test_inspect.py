@@ -1,4 +1,4 @@
-"""What is invisible is drawn where it is: masses, inertias, joint axes, frames, collisions."""
+"""Invisible properties, drawn at their positions: masses, inertias, joint axes, frames, collisions."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def switch(page, *names):
         page.locator(f'[data-inspect="{name}"] input').click()
 
 
-def orange(page):
-    """How many of some places on the arm's base are orange, as collisions are in contrast."""
+def count_orange(page):
+    """Return how many of some pixels on the arm's base are orange, the color of collisions."""
     until(page, "lw.settled")  # a fine frame follows the coarse one
     box = page.locator(".canvas-box canvas").bounding_box()
     free = page.locator(".stack").bounding_box()["x"] - box["x"]  # the card of Inspect is open
@@ -77,7 +77,7 @@ def test_inspect_card_names_missing_parts_and_closes_like_menu(start, open_page,
     page.mouse.down()
     page.mouse.move(box["x"] + 260, box["y"] + 400)
     page.mouse.up()
-    assert card.is_visible(), "who turns the scene wants to see what is inspected"
+    assert card.is_visible(), "the card stays visible while the scene is rotated"
     page.mouse.click(box["x"] + 200, box["y"] + 400)
     assert card.is_hidden()
 
@@ -109,8 +109,8 @@ def test_frames_are_drawn_by_depth_and_collisions_in_contrast(page):
     page.locator(".inspect-depth input").fill("2")
     until(page, "String(lw.invisibleProperties.frames) === '1,1,1'")
     switch(page, "frames")
-    becomes(lambda: orange(page), 0)  # the base is RViz's red
+    becomes(lambda: count_orange(page), 0)  # the base is RViz's red
     switch(page, "contrast")
-    becomes(lambda: orange(page) >= 3, True)
+    becomes(lambda: count_orange(page) >= 3, True)
     switch(page, "contrast")
-    becomes(lambda: orange(page), 0)
+    becomes(lambda: count_orange(page), 0)

@@ -26,14 +26,14 @@ _COMPARISON = re.compile(r"([\w.-]+)(?: (==|!=) '([^']*)')?")
 
 @dataclass
 class Run:
-    """What became of an action.
+    """The result of an action.
 
     Attributes:
-        failed: the name of the step that failed, or empty.
-        output: what the steps printed.
+        failed: the name of the failed step, or empty.
+        output: the output of the steps.
         used: the actions that it used, with their inputs.
         outputs: the outputs of the action.
-        uploaded: the folder of the artifact, by name.
+        uploaded: the uploaded files.
     """
 
     failed: str = ""

@@ -134,7 +134,7 @@ def test_graph_discovery_stores_names_of_running_nodes(in_graph: Callable[[Calla
 
 
 def test_completion_imports_no_slow_modules() -> None:
-    """A completion is there in less than a tenth of a second."""
+    """A completion takes less than a tenth of a second."""
     line = "ros2 launch arm a.launch.py "
     program = (
         "import sys\nfrom linkwright.cli.completion.candidates import complete, split_line\n"

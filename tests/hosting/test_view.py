@@ -1,4 +1,4 @@
-"""A model that is shown without a launch file."""
+"""Viewing of a model without a launch file."""
 
 from __future__ import annotations
 

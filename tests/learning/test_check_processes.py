@@ -90,7 +90,7 @@ def test_processes_that_hinder_one_another_are_ended(check_server, tmp_path):
 
 
 def test_call_of_launch_waits_without_load_only(monkeypatch):
-    """The event loop of the launch is blocked longer than the wait, in which the clock stands still."""
+    """The launch's event loop is blocked for longer than the wait, during which the clock stops."""
     check = launched.LaunchCheck("package", "file", {}, None)
     loop = check._loop
     thread = threading.Thread(target=loop.run_forever)

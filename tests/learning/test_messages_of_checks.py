@@ -1,4 +1,4 @@
-"""Checks say where a mistake is and what to do: of files, links, programs, and topics without messages."""
+"""Messages of checks name the place of a mistake and its fix: files, links, programs, and topics without messages."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""A course as pages see it: steps, checks when files change, hints, answers, solutions, and hostile requests."""
+"""A course in pages: steps, checks after changes, hints, answers, solutions, and hostile requests."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ async def classroom(workspace: Path, shown: Shown | None = None) -> AsyncIterato
 
 
 async def results(client: Any, *, step: str = "01-one-link/one-link") -> dict[str, Any]:
-    """The next results of a step."""
+    """Return the next results of a step."""
     message: dict[str, Any] = await client.until("step_checks", address=step, is_running=False)
     return message
 

@@ -1,4 +1,4 @@
-"""What a review says of CMakeLists.txt and setup.py."""
+"""Changes of CMakeLists.txt and setup.py in a review."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a review says of literal names in the sources of nodes."""
+"""Changes of literal names in the sources of nodes in a review."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ def echoes(descriptor: int) -> bool:
 
 @pytest.fixture
 def terminal() -> Iterator[tuple[int, int]]:
-    """The side that types, and the side of the program."""
+    """Return both ends of a pseudo-terminal: the typing side, and the program's side."""
     sides = os.openpty()
     yield sides
     for side in sides:
@@ -40,22 +40,22 @@ def terminal() -> Iterator[tuple[int, int]]:
 
 
 class Driver:
-    """Who types."""
+    """A typing user, with the published velocities and the printed text."""
 
-    def __init__(self, stage, typing, own, kind=TWIST, **parameters):
-        self.stage, self.typing, self.own = stage, typing, own
-        self.heard, self.printed = [], []
+    def __init__(self, stage, typing_end, program_end, kind=TWIST, **parameters):
+        self.stage, self.typing_end, self.program_end = stage, typing_end, program_end
+        self.messages, self.printed = [], []
         self.closed = False
         if kind:
-            stage.node.create_subscription(kind, "/cmd_vel", self.heard.append, 10)
-        options = NodeOptions(parameters=parameters, output=self.printed.append, terminal=own)
+            stage.node.create_subscription(kind, "/cmd_vel", self.messages.append, 10)
+        options = NodeOptions(parameters=parameters, output=self.printed.append, terminal=program_end)
         self.node = TeleopTwistKeyboard(stage.graph, options)
 
     async def type(self, text, messages):
-        """Press keys and wait until as many messages have come; gives the last as x, y, z, turn."""
-        os.write(self.typing, text.encode())
-        await eventually(lambda: len(self.heard) >= messages, what=lambda: self.heard)
-        assert len(self.heard) == messages
+        """Press keys, wait for a number of messages, and return the last as x, y, z, yaw rate."""
+        os.write(self.typing_end, text.encode())
+        await eventually(lambda: len(self.messages) >= messages, what=lambda: self.messages)
+        assert len(self.messages) == messages
         return self.last()
 
     def close(self):
@@ -63,7 +63,7 @@ class Driver:
         self.node.close()
 
     def last(self):
-        twist = getattr(self.heard[-1], "twist", self.heard[-1])
+        twist = getattr(self.messages[-1], "twist", self.messages[-1])
         return twist.linear.x, twist.linear.y, twist.linear.z, twist.angular.z
 
 
@@ -86,9 +86,9 @@ async def test_keys_match_teleop_twist_keyboard(start):
     forwards = {"i": (0.5, 0, 0, 0), "o": (0.5, 0, 0, -1), "u": (0.5, 0, 0, 1), "j": (0, 0, 0, 1), "l": (0, 0, 0, -1)}
     backwards = {",": (-0.5, 0, 0, 0), ".": (-0.5, 0, 0, 1), "m": (-0.5, 0, 0, -1), "k": (0, 0, 0, 0)}
     sideways = {"I": (0.5, 0, 0, 0), "O": (0.5, -0.5, 0, 0), "U": (0.5, 0.5, 0, 0), "J": (0, 0.5, 0, 0)}
-    more = {"L": (0, -0.5, 0, 0), "<": (-0.5, 0, 0, 0), ">": (-0.5, -0.5, 0, 0), "M": (-0.5, 0.5, 0, 0)}
+    shifted_keys = {"L": (0, -0.5, 0, 0), "<": (-0.5, 0, 0, 0), ">": (-0.5, -0.5, 0, 0), "M": (-0.5, 0.5, 0, 0)}
     heights = {"t": (0, 0, 0.5, 0), "b": (0, 0, -0.5, 0), "K": (0, 0, 0, 0)}
-    expected = forwards | backwards | sideways | more | heights
+    expected = forwards | backwards | sideways | shifted_keys | heights
     for count, (key, velocity) in enumerate(expected.items(), 1):
         assert await driver.type(key, count) == velocity, key
 
@@ -192,41 +192,41 @@ async def test_closing_node_stops_robot(start):
 
 
 async def test_missing_terminal_is_reported(stage):
-    with pytest.raises(LinkwrightError) as raised:
+    with pytest.raises(LinkwrightError) as error:
         TeleopTwistKeyboard(stage.graph, NodeOptions())
-    assert [diagnostic.code for diagnostic in raised.value.diagnostics] == ["NODE901"]
+    assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["NODE901"]
     assert stage.graph.topics().get("/cmd_vel") is None
 
 
 async def test_negative_speed_is_rejected(stage):
-    with pytest.raises(LinkwrightError) as raised:
+    with pytest.raises(LinkwrightError) as error:
         TeleopTwistKeyboard(stage.graph, NodeOptions(parameters={"speed": -1.0}))
-    assert [diagnostic.code for diagnostic in raised.value.diagnostics] == ["NODE902"]
+    assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["NODE902"]
 
 
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, None], ids=str)
 def test_process_restores_terminal(terminal, tmp_path, end):
-    typing, own = terminal
+    typing_end, program_end = terminal
     process = subprocess.Popen(
         [sys.executable, "-m", "linkwright.node_program", "teleop_twist_keyboard", "teleop_twist_keyboard"],
         env={**os.environ, "LINKWRIGHT_DDS": "0", "ROS_LOG_DIR": str(tmp_path)},
-        stdin=own,
-        stdout=own,
+        stdin=program_end,
+        stdout=program_end,
         stderr=subprocess.PIPE,
     )
     try:
-        printed = b""
-        while b"currently:" not in printed or not printed.endswith(b"\n"):
-            printed += os.read(typing, 4096)
-        assert not echoes(own)
+        output = b""
+        while b"currently:" not in output or not output.endswith(b"\n"):
+            output += os.read(typing_end, 4096)
+        assert not echoes(program_end)
         if end is None:
-            os.close(typing)
+            os.close(typing_end)
         else:
             process.send_signal(end)
         assert process.stderr is not None
         assert process.stderr.read() == b""
         assert process.wait(SECONDS) == 0
-        assert end is None or echoes(own)
+        assert end is None or echoes(program_end)
     finally:
         if process.poll() is None:
             process.kill()

@@ -1,4 +1,4 @@
-"""What the graph asks of a transport, and what it does with what that brings."""
+"""The graph's requests to a transport, and the handling of its results."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""An index of tiny packages, of which packs are made without a network."""
+"""An index of tiny packages, from which packs are created without a network."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SCRIPTS = "[console_scripts]\nlinkwright = linkwright.program:main\n"
 
 @dataclass
 class FakeIndex:
-    """A folder of packages, and what Linkwright needs of them."""
+    """A folder of packages, with the settings for Linkwright."""
 
     folder: Path
     own: list[Path]

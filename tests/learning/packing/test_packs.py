@@ -240,7 +240,7 @@ def test_documentation_is_copied_into_pack(index: FakeIndex, tmp_path: Path) -> 
 
 @pytest.fixture
 def installable(index: FakeIndex, tmp_path: Path) -> Path:
-    """A pack for this system with the pip of this Python."""
+    """Create a pack for this system with the pip of this Python."""
     bundled = sorted((Path(ensurepip.__file__).parent / "_bundled").glob("pip-*.whl"))
     if not bundled or sys.platform != "linux" or sys.version_info >= (3, 15):
         pytest.skip("this Python has no pip of its own")

@@ -1,4 +1,4 @@
-"""PointCloud2, LaserScan, DepthCloud and the displays of single numbers, from the topic to what pages are sent."""
+"""PointCloud2, LaserScan, DepthCloud and the displays of single numbers, from topics to pages."""
 
 from __future__ import annotations
 

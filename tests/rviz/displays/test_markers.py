@@ -49,7 +49,7 @@ def marker(number: int = 0, *, ns: str = "a", kind: int = Marker.CUBE, frame: st
 
 
 class Watcher:
-    """A page that has seen what the store had when it looked last."""
+    """A simulated page with the store's content at its last update."""
 
     def __init__(self, store: MarkerStore) -> None:
         self.store = store

@@ -1,4 +1,4 @@
-"""What is written in keys, tokens and attachments, with the texts that rmw_zenoh_cpp writes."""
+"""The texts in keys, tokens and attachments, compared with those of rmw_zenoh_cpp."""
 
 from __future__ import annotations
 
