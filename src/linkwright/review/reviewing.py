@@ -24,7 +24,6 @@ from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.maps import is_map, map_of_image
 from linkwright.review.files.mesh_groups import grouped_meshes
-from linkwright.review.files.node_sources import source_subjects
 from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
@@ -47,6 +46,7 @@ from linkwright.review.references import lost_references
 from linkwright.review.renamed_packages import with_moved_files, without_consequences
 from linkwright.review.robots.lone_robots import read_lone_robot, robot_text
 from linkwright.review.robots.semantics import semantic_files
+from linkwright.review.sources.comparing import source_subjects
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
