@@ -35,7 +35,20 @@ class FactKind(Enum):
         phrase("installed libraries"),
         phrase("packages and programs that link to them or load them do not build or start"),
     )
+    BUILT_EXECUTABLE = (
+        phrase("built executables"),
+        phrase("launch files and users that start them do not find them"),
+    )
+    BUILT_LIBRARY = (
+        phrase("built libraries"),
+        phrase("packages and programs that link to them or load them do not build or start"),
+    )
+    BUILT_TARGET = (phrase("built targets"), None)
     EXPORTED_TARGET = (phrase("exported targets"), phrase("packages that link to them do not build"))
+    EXPORTED_FOLDER = (
+        phrase("exported include folders"),
+        phrase("packages that include their headers do not build"),
+    )
     COMPONENT = (
         phrase("components"),
         phrase("launch files that load them into a container do not find them"),
@@ -45,10 +58,19 @@ class FactKind(Enum):
         phrase("programs that load their classes do not find them"),
     )
     INTERFACE = (phrase("built interfaces"), phrase("programs that use the types do not build or start"))
+    INTERFACE_DEPENDENCY = (phrase("dependencies of interfaces"), None)
+    DYNAMIC = (
+        phrase("descriptions for dynamic_reconfigure"),
+        phrase("programs that change the parameters do not build or start"),
+    )
     MODULE = (phrase("installed Python modules"), phrase("programs that import them do not find them"))
     ENTRY_POINT = (phrase("entry points"), phrase("programs that load them do not find them"))
     PACKAGE = (phrase("calls of find_package"), None)
-    EXPORTED_DEPENDENCY = (phrase("exported dependencies"), None)
+    EXPORTED_DEPENDENCY = (
+        phrase("exported dependencies"),
+        phrase("packages that have them only through this package do not build"),
+    )
+    STOP = (phrase("errors that stop the build"), None)
     TEST = (phrase("tests"), None)
     SETTING = (phrase("settings"), None)
     FOLDER = (phrase("installed folders that the repository does not have"), None)
@@ -56,6 +78,14 @@ class FactKind(Enum):
     def __init__(self, title: Phrase, reason: Phrase | None) -> None:
         self.title = title
         self.reason = reason
+
+
+_INSTALLED = (FactKind.EXECUTABLE, FactKind.LIBRARY)
+_BUILT = (FactKind.BUILT_EXECUTABLE, FactKind.BUILT_LIBRARY, FactKind.BUILT_TARGET)
+_CONDITIONAL = (*_INSTALLED, *_BUILT, FactKind.COMPONENT, FactKind.STOP, FactKind.PACKAGE)
+"""The kinds whose conditions are shown when they are added or removed."""
+ANY_VERSION = "any version"
+"""The value of a package that is found in any version."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +98,7 @@ class Fact:
         value: a property that may change, such as the function of an executable; empty if there is none.
         span: the location.
         is_value_used: whether other packages use the value, so that another value is breaking.
+        condition: the condition under which the fact holds, as it is written; empty for always.
     """
 
     kind: FactKind
@@ -75,6 +106,7 @@ class Fact:
     value: str = ""
     span: Span | None = None
     is_value_used: bool = False
+    condition: str = ""
 
 
 _KNOWN_VARIABLES = frozenset(
@@ -109,26 +141,46 @@ class EnvironmentVariables:
 
 
 @dataclass
+class TargetParts:
+    """What a target of CMake is made of.
+
+    Attributes:
+        libraries: the names of packages and libraries that are linked to it, with their locations.
+        sources: its sources relative to the package, with their locations.
+    """
+
+    libraries: dict[str, Span] = field(default_factory=dict)
+    sources: dict[str, Span] = field(default_factory=dict)
+
+
+@dataclass
 class BuildFacts:
     """The facts of a build file.
 
     Attributes:
         facts: the facts that are known.
         files: the sources of the installed files relative to the package, by destination relative to the prefix.
-        is_complete: whether `files` has all files.
+        unknown: the reasons why more files may be installed than `files` has.
         rest: the other commands or settings, each with its name and its text.
         package: the path of the folder of the package relative to the root.
         project: the name of the package; empty if it is not known.
         environment: the environment variables that the file reads.
+        targets: what targets are made of, by target.
     """
 
     facts: list[Fact] = field(default_factory=list)
     files: dict[str, str] = field(default_factory=dict)
-    is_complete: bool = True
+    unknown: frozenset[str] = frozenset()
     rest: list[tuple[str, str]] = field(default_factory=list)
     package: str = ""
     project: str = ""
     environment: EnvironmentVariables = field(default_factory=lambda: EnvironmentVariables(()))
+    targets: dict[str, TargetParts] = field(default_factory=dict)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether `files` has all installed files."""
+        return not self.unknown
 
     def place(self, path: str) -> str:
         """Return an installed path without the name of the package, whose change the manifest reports."""
@@ -137,18 +189,25 @@ class BuildFacts:
         return PurePosixPath(parts[0], *parts[2:]).as_posix() if is_own else path
 
 
-def compare_build_files(pair: FilePair, read: Callable[[Version, str], BuildFacts]) -> None:
+def compare_build_files(
+    pair: FilePair,
+    read: Callable[[Version, str], BuildFacts],
+    compare_more: Callable[[FilePair, BuildFacts, BuildFacts], None] | None = None,
+) -> None:
     """Compare two versions of a build file.
 
     Args:
         pair: the versions.
         read: the function that returns the facts of a version, from its path in the repository.
+        compare_more: a function that compares what only files of this kind have.
     """
     sides = ((pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path))
     versions = {version.file(path): (version, path) for version, path in sides}
     facts = pair.read(lambda file: read(*versions[file]))
     if facts is not None:
         _compare_facts(pair, *facts)
+        if compare_more is not None:
+            compare_more(pair, *facts)
 
 
 def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
@@ -168,11 +227,18 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
                 )
                 reason = kind.reason if fact.is_value_used else None
                 pair.add(text, pair.location(fact.span), reason)
+        _compare_conditions(pair, kind, old_facts, new_facts)
         added = [fact for name, fact in new_facts.items() if name not in old_facts]
         removed = [fact for name, fact in old_facts.items() if name not in new_facts]
+        if kind in _BUILT:
+            installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in _INSTALLED}
+            added, removed = ([fact for fact in each if fact.name not in installed] for each in (added, removed))
         _add_renamed(pair, kind, removed, added)
         if added:
-            pair.add(_sentence(kind, added, is_added=True), pair.location(added[0].span))
+            reason = None
+            if kind is FactKind.STOP:
+                reason = phrase("the build fails under a condition under which it did not fail before")
+            pair.add(_sentence(kind, added, is_added=True), pair.location(added[0].span), reason)
         if removed:
             location = pair.location(removed[0].span, is_old=True)
             pair.add(_sentence(kind, removed, is_added=False), location, kind.reason)
@@ -195,8 +261,40 @@ def _add_renamed(pair: FilePair, kind: FactKind, removed: list[Fact], added: lis
 
 
 def _sentence(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:
-    texts = [f"{fact.name} {fact.value}" if kind is FactKind.SETTING else fact.name for fact in facts]
+    texts = [_fact_text(fact) for fact in facts]
     return _list_sentence(kind.title, texts, is_added=is_added)
+
+
+def _fact_text(fact: Fact) -> str:
+    """Return the name of a fact, with its value or condition if a reader needs it."""
+    if fact.kind is FactKind.SETTING or (fact.kind is FactKind.PACKAGE and fact.value not in ("", ANY_VERSION)):
+        return f"{fact.name} {fact.value}"
+    is_plain = not fact.condition or fact.kind not in _CONDITIONAL
+    return fact.name if is_plain else f"{fact.name} (if {fact.condition})"
+
+
+def _compare_conditions(
+    pair: FilePair, kind: FactKind, old_facts: Mapping[str, Fact], new_facts: Mapping[str, Fact]
+) -> None:
+    """Add the facts that hold under another condition now; those with the same conditions in one line."""
+    changed: dict[tuple[str, str], list[Fact]] = {}
+    for name, fact in new_facts.items():
+        before = old_facts.get(name)
+        if before is not None and before.condition != fact.condition:
+            changed.setdefault((before.condition, fact.condition), []).append(fact)
+    for (old_condition, new_condition), facts in changed.items():
+        text = phrase(
+            "{kind} {names}: {old} -> {new}",
+            kind=kind.title,
+            names=listed([fact.name for fact in facts]),
+            old=_condition_text(old_condition),
+            new=_condition_text(new_condition),
+        )
+        pair.add(text, pair.location(facts[0].span))
+
+
+def _condition_text(condition: str) -> Phrase:
+    return phrase("if {condition}", condition=condition) if condition else phrase("always")
 
 
 def _list_sentence(title: Phrase, names: Sequence[str], *, is_added: bool) -> Phrase:
@@ -227,8 +325,6 @@ def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:
 
 def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Add the files that only one version installs although both have them, and those with another destination."""
-    if not old.is_complete or not new.is_complete:
-        return
     old_sources, new_sources = ({source: target for target, source in facts.files.items()} for facts in (old, new))
     kept = {source: _new_source(pair, old, new, source) for source in old_sources}
     moved: dict[tuple[str, str], list[str]] = {}
@@ -239,16 +335,23 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         if new_source is None or target in new.files:
             continue
         if new_target is None:
-            removed.append(target)
+            if new.unknown <= old.unknown:
+                removed.append(target)
         elif new_source == source and old.place(target) != new.place(new_target):
-            moved.setdefault((_folder(target), _folder(new_target)), []).append(_name(target))
+            folders = _folder(target), _folder(new_target)
+            is_renamed = folders[0] == folders[1]
+            moved.setdefault(folders, []).append(
+                f"{_name(target)} -> {_name(new_target)}" if is_renamed else _name(target)
+            )
     added = [target for source, target in new_sources.items() if target not in old.files and source not in old_sources]
     for (old_folder, new_folder), names in moved.items():
         text = phrase(
             "installed in {new} instead of {old}: {names}", old=old_folder, new=new_folder, names=listed(names)
         )
+        if old_folder == new_folder:
+            text = phrase("installed under another name in {folder}: {names}", folder=old_folder, names=listed(names))
         pair.add(text, None, phrase("programs that look for the files do not find them"))
-    if added:
+    if added and old.unknown <= new.unknown:
         known = [target for target in added if _is_in_old_version(pair, old, new.files[target])]
         folders = [name for name in _files_and_folders(added, old.files) if name.endswith("/")]
         names = list(dict.fromkeys([*folders, *_files_and_folders(known, old.files)]))

@@ -55,7 +55,7 @@ def read_setup_facts(version: Version, path: str) -> BuildFacts:
         raise UnreadableFileError(foreign(setup.error.message))
     parent = PurePosixPath(path).parent.as_posix()
     facts = BuildFacts(package="" if parent == "." else parent)
-    facts.is_complete = setup.has_call
+    facts.unknown = frozenset() if setup.has_call else frozenset({"setup"})
     facts.project = "" if setup.name is None else setup.name[0]
     for installed in setup.installed_files(file.parent):
         facts.files[installed.destination] = installed.source

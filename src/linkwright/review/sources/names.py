@@ -1,4 +1,4 @@
-"""What a source of a node offers to other programs or takes from them: topics, parameters, frames, options."""
+"""The names in a source of a node that other programs use or give it: topics, parameters, frames, options."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class SourceNames:
     """The names in a source.
 
     Attributes:
-        names: the literal names. A name that occurs several times is there once.
+        names: the literal names, each once.
         expressions: the names that are expressions, whose values are not known.
         rates: the texts of rates and periods, each with its location.
         is_program: whether the source is a program that is started, and not a library that is imported.
@@ -95,7 +95,7 @@ class SourceNames:
     is_program: bool = False
 
     def add(self, name: SourceName) -> None:
-        """Add a literal name, or complete the one that is there."""
+        """Add a literal name, or complete the same one."""
         for index, other in enumerate(self.names):
             if (other.kind, other.name) == (name.kind, name.name):
                 if name.type and not other.type:

@@ -106,7 +106,7 @@ def _argument(call: ast.Call, index: int, keyword: str) -> ast.expr | None:
 
 
 def _shown(python: PythonFile, node: ast.expr | None) -> str:
-    """Return the text of a literal or of a name that stands for one, or else of the expression."""
+    """Return the text of a literal, also of one that a name has, or else of the expression."""
     if node is None:
         return ""
     value = python.resolved(node)
