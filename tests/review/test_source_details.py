@@ -79,7 +79,7 @@ gen.add("rate", int_t, 0, "The rate", 10, 1, 100)
 gen.add("mode", str_t, 0, "The mode", "fast")
 exit(gen.generate(PACKAGE, "arm", "Arm"))
 """
-HEADER = "#include <string>\nnamespace arm {\nclass Driver : public Node {\n};\nstruct Later;\n}\n"
+HEADER = "namespace arm {\nclass Driver : public Node {\n};\nstruct Later;\n}\n"
 MODULE = "class Tool:\n    pass\n\n\ndef grip():\n    pass\n\n\ndef _own():\n    pass\n"
 
 
@@ -140,8 +140,6 @@ MODULE = "class Tool:\n    pass\n\n\ndef grip():\n    pass\n\n\ndef _own():\n   
         ("cfg/Arm.cfg", CFG, 'gen.add("mode", str_t, 0, "The mode", "fast")\n', "",
          ["parameters removed: 'mode' ('fast')"], True),
         ("cfg/tool.cfg", "[rate]\n", "rate", "speed", [], False),
-        ("include/arm/driver.hpp", HEADER, "class Driver", "class ArmDriver",
-         ["class 'Driver' renamed to 'ArmDriver'"], True),
         ("src/driver.hpp", HEADER, "class Driver", "class Tool", [], False),
         ("arm/tools.py", MODULE, "def grip", "def release",
          ["functions added: 'release'", "functions removed: 'grip'"], True),

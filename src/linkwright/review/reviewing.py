@@ -25,6 +25,7 @@ from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.maps import is_map, map_of_image
 from linkwright.review.files.mesh_groups import grouped_meshes
 from linkwright.review.files.plugin_files import plugin_subjects
+from linkwright.review.files.rosbuild_manifests import rosbuild_subjects
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
 from linkwright.review.installed_paths import keeps_installed_path
@@ -39,6 +40,7 @@ from linkwright.review.kinds import (
 )
 from linkwright.review.launches.formats import is_launch_yaml, with_other_formats
 from linkwright.review.launches.helpers import makes_actions
+from linkwright.review.lost_files import lost_files
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
 from linkwright.review.other_files import file_states
 from linkwright.review.parts import compare_parts
@@ -152,9 +154,11 @@ class _Reviewer:
         for path, change in lost_references(self._versions, self._changed_files):
             lost.setdefault(path, []).append(change)
         result = [replace(subject, changes=[*subject.changes, *lost.pop(subject.path, ())]) for subject in subjects]
+        result = _with_changes(result, lost_files(self._versions, self._changed_files))
         for path, changes in lost.items():
             result.append(Subject(SubjectKind.LAUNCH_FILE, path, self._old_path(path), path, changes))
         result += plugin_subjects(self._versions, self._changed_files)
+        result += rosbuild_subjects(self._versions, self._changed_files)
         paths = {subject.path for subject in result}
         result += (found for found in source_subjects(self._versions, self._changed_files) if found.path not in paths)
         return sorted(result, key=lambda subject: subject.path)
@@ -366,6 +370,15 @@ def _is_only_moved(subject: Subject) -> bool:
     """Return whether a file is the same at another path, and installed where it was."""
     templates = [change.sentence.template for change in subject.changes]
     return templates == [_MOVED] and not subject.figures and not subject.problems
+
+
+def _with_changes(subjects: Sequence[Subject], changes: Iterator[tuple[str, Change]]) -> list[Subject]:
+    """Return subjects with more changes of build files, which need not have changed themselves."""
+    result = {subject.path: subject for subject in subjects}
+    for path, change in changes:
+        subject = result.get(path, Subject(SubjectKind.BUILD, path, path, path))
+        result[path] = replace(subject, changes=[*subject.changes, change])
+    return list(result.values())
 
 
 def _reported_paths(subjects: Sequence[Subject]) -> set[str]:

@@ -353,12 +353,12 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         pair.add(text, None, phrase("programs that look for the files do not find them"))
     if added and old.unknown <= new.unknown:
         known = [target for target in added if _is_in_old_version(pair, old, new.files[target])]
-        folders = [name for name in _files_and_folders(added, old.files) if name.endswith("/")]
-        names = list(dict.fromkeys([*folders, *_files_and_folders(known, old.files)]))
+        folders = [name for name in files_and_folders(added, old.files) if name.endswith("/")]
+        names = list(dict.fromkeys([*folders, *files_and_folders(known, old.files)]))
         if names:
             pair.add(phrase("installed now: {names}", names=listed(names)), None)
     if removed:
-        names = _files_and_folders(removed, new.files)
+        names = files_and_folders(removed, new.files)
         text = phrase("not installed any more: {names}", names=listed(names))
         pair.add(text, None, phrase("programs that look for the files do not find them"))
 
@@ -377,7 +377,7 @@ def _is_in_old_version(pair: FilePair, old: BuildFacts, source: str) -> bool:
     return pair.versions.old.file((PurePosixPath(old.package) / source).as_posix()).is_file()
 
 
-def _files_and_folders(targets: Sequence[str], others: Mapping[str, str]) -> list[str]:
+def files_and_folders(targets: Sequence[str], others: Mapping[str, str]) -> list[str]:
     """Return installed files, or their folders if the other version installs nothing in these folders."""
     other_folders = {parent.as_posix() for target in others for parent in PurePosixPath(target).parents}
     names: dict[str, None] = {}

@@ -13,6 +13,7 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
+from linkwright.review.installed_paths import is_exported_header
 from linkwright.review.sources.details import detail_changes
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
@@ -171,6 +172,8 @@ class _Pair:
         removed = [item for name, item in before.items() if name not in after and self.new.lacks(item, path)]
         old_path = self.file.old_path or path
         added = [item for name, item in after.items() if name not in before and self.old.lacks(item, old_path)]
+        if kind is NameKind.CLASS and not self._is_interface(old_path):
+            return
         for old_item, new_item in _renamed(removed, added):
             text = phrase("{kind} {old} renamed to {new}", kind=kind.title, old=_name(old_item), new=_name(new_item))
             yield self._change(text, new_item.span, self.new, self._reason([old_item], old_names))
@@ -178,6 +181,13 @@ class _Pair:
             added.remove(new_item)
         yield from self._expression_changes(kind, removed, added)
         yield from self._lone_changes(kind, removed, added, old_names)
+
+    def _is_interface(self, path: str) -> bool:
+        """Return whether other packages can use the classes in a file: in Python, and in headers for others."""
+        if path.endswith(PYTHON_SUFFIX):
+            return True
+        package = self.old.package(path)
+        return package is not None and is_exported_header(self.old.version, package, path)
 
     def _lone_changes(
         self, kind: NameKind, removed: Sequence[SourceName], added: Sequence[SourceName], old_names: SourceNames
