@@ -96,7 +96,7 @@ OTHERS = {
         (CATKIN, "add_executable(driver src/driver.cpp)\n", "", ["built executables removed: 'driver'"], True),
         (CATKIN, "core ${catkin_LIBRARIES}", "${catkin_LIBRARIES}", ["'driver' not linked any more to 'core'"], False),
         (ROSBUILD, "executable(driver", "executable(drive",
-         ["built executables added: 'drive'", "built executables removed: 'driver'"], True),
+         ["built executables: 'driver' renamed to 'drive'"], True),
         (ROSBUILD, "rosbuild_genmsg()", "", ["built interfaces removed: 'msg/Load.msg', 'msg/State.msg'"], True),
     ],
 )  # fmt: skip
@@ -126,3 +126,21 @@ def test_package_that_moves_from_rosbuild_to_catkin_keeps_its_programs(repositor
     repository.write({"a/CMakeLists.txt": CATKIN})
     found = breaking(compare(repository))
     assert [sentence for sentence in found if "executables" in sentence or "interfaces" in sentence] == []
+
+
+def test_target_of_renamed_sources_is_renamed(repository, compare):
+    repository.commit({**MANIFEST, "a/CMakeLists.txt": AMENT, "a/src/driver.cpp": "int main() { return 0; }\n"})
+    text = AMENT.replace("driver", "arm_driver")
+    repository.commit(
+        {"a/CMakeLists.txt": text, "a/src/driver.cpp": None, "a/src/arm_driver.cpp": "int main() { return 0; }\n"}
+    )
+    assert breaking(compare(repository, "HEAD~1..HEAD")) == ["installed executables: 'driver' renamed to 'arm_driver'"]
+
+
+def test_subdirectory_of_a_package_of_rosbuild_is_compared_with_it(repository, compare):
+    text = ROSBUILD.replace("rosbuild_add_library(core src/core.cpp)", "rosbuild_add_subdirectory(src)")
+    lib = "rosbuild_add_library(core core.cpp)\n"
+    manifest = "<package><license>BSD</license></package>"
+    repository.commit({"a/manifest.xml": manifest, "a/CMakeLists.txt": text, "a/src/CMakeLists.txt": lib})
+    repository.write({"a/src/CMakeLists.txt": lib.replace("(core", "(arm_core").replace("core.cpp", "arm.cpp")})
+    assert breaking(compare(repository)) == ["built libraries removed: 'core'"]

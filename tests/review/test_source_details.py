@@ -79,6 +79,11 @@ gen.add("rate", int_t, 0, "The rate", 10, 1, 100)
 gen.add("mode", str_t, 0, "The mode", "fast")
 exit(gen.generate(PACKAGE, "arm", "Arm"))
 """
+LOOP = """import rospy
+defaults = {'host': '192.168.0.1', 'port': 80}
+for name, value in defaults.iteritems():
+    rospy.get_param('~' + name, value)
+"""
 HEADER = "namespace arm {\nclass Driver : public Node {\n};\nstruct Later;\n}\n"
 MODULE = "class Tool:\n    pass\n\n\ndef grip():\n    pass\n\n\ndef _own():\n    pass\n"
 
@@ -133,6 +138,7 @@ MODULE = "class Tool:\n    pass\n\n\ndef grip():\n    pass\n\n\ndef _own():\n   
          ["rate or period: create_wall_timer(100ms) -> create_wall_timer(50ms)"], False),
         ("d.cpp", CPP2, "(arm::Driver)", "(arm::ArmDriver)",
          ["exported class 'arm::Driver' renamed to 'arm::ArmDriver'"], True),
+        ("e.py", LOOP, "'port': 80", "'port': 8080", ["parameter '~port': default 80 -> 8080"], False),
         ("cfg/Arm.cfg", CFG, "10, 1, 100", "10, 0, 50",
          ["parameter 'rate': minimum 1 -> 0", "parameter 'rate': maximum 100 -> 50"], False),
         ("cfg/Arm.cfg", CFG, '10, 1', "20, 1", ["parameter 'rate': default 10 -> 20"], False),

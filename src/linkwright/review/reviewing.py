@@ -25,7 +25,7 @@ from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.maps import is_map, map_of_image
 from linkwright.review.files.mesh_groups import grouped_meshes
 from linkwright.review.files.plugin_files import plugin_subjects
-from linkwright.review.files.rosbuild_manifests import rosbuild_subjects
+from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST, rosbuild_subjects
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
 from linkwright.review.installed_paths import keeps_installed_path
@@ -213,7 +213,7 @@ class _Reviewer:
     def _package_build_file(self, file: ChangedFile) -> tuple[str, str] | None:
         """Return the paths of the ``CMakeLists.txt`` of the package that runs another one, or None."""
         path = PurePosixPath(file.path)
-        folder = _package_folder(self._versions.new, file.path)
+        folder = _package_folder(self._versions.new, file.path, (MANIFEST, ROSBUILD_MANIFEST))
         if path.name != CMAKE_FILE or folder is None:
             return None
         new_path = self._versions.new.relative(folder / CMAKE_FILE)
@@ -422,12 +422,10 @@ def _targets(version: Version) -> set[str]:
     return {path for path in files if path is not None} | semantic_files(version)
 
 
-def _package_folder(version: Version, path: str) -> Path | None:
+def _package_folder(version: Version, path: str, manifests: Sequence[str] = (MANIFEST,)) -> Path | None:
     """Return the folder of the package that contains a file, or None if there is none."""
-    folders = version.file(path).parents
-    return next(
-        (folder for folder in folders if folder.is_relative_to(version.root) and (folder / MANIFEST).is_file()), None
-    )
+    folders = (folder for folder in version.file(path).parents if folder.is_relative_to(version.root))
+    return next((folder for folder in folders if any((folder / name).is_file() for name in manifests)), None)
 
 
 def _package_folders(versions: Versions, packages: Sequence[str]) -> list[str]:

@@ -319,8 +319,8 @@ class CMakeProgram:
             self._exit_command = name if self._unknown_conditions == self._around.get(name) else ""
         elif name in self._routines:
             yield from self._call(self._routines[name], words)
-        elif name in ("add_subdirectory", "include") and words:
-            yield from self._run_other_file(name, words[0])
+        elif name in ("add_subdirectory", "rosbuild_add_subdirectory", "include") and words:
+            yield from self._run_other_file(name.removeprefix("rosbuild_"), words[0])
         else:
             self._apply_assignment(name, words)
             yield command

@@ -233,7 +233,7 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         if kind in _BUILT:
             installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in _INSTALLED}
             added, removed = ([fact for fact in each if fact.name not in installed] for each in (added, removed))
-        _add_renamed(pair, kind, removed, added)
+        _add_renamed(pair, kind, removed, added, _renamed_targets(pair, old, new))
         if added:
             reason = None
             if kind is FactKind.STOP:
@@ -247,17 +247,61 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     old.environment.compare(pair, new.environment)
 
 
-def _add_renamed(pair: FilePair, kind: FactKind, removed: list[Fact], added: list[Fact]) -> None:
-    """Add the facts whose names follow from that of a renamed package, and take them from both lists."""
+def _add_renamed(
+    pair: FilePair, kind: FactKind, removed: list[Fact], added: list[Fact], targets: Mapping[str, str]
+) -> None:
+    """Add the facts with new names, and take them from both lists.
+
+    Args:
+        pair: the versions.
+        kind: the kind of the facts.
+        removed: the facts of the old version.
+        added: the facts of the new version.
+        targets: the new names of targets that have the same sources, by the old ones.
+    """
     names = PackageNames(renamed_packages(pair.versions))
     for old in list(removed):
         new = next((fact for fact in added if fact.name == names.derived(old.name)), None)
         new = new or next((fact for fact in added if names.has_same_edit(old.name, fact.name)), None)
+        new = new or next((fact for fact in added if fact.name == targets.get(old.name)), None)
         if new is not None:
             removed.remove(old)
             added.remove(new)
             text = phrase("{kind}: '{old}' renamed to '{new}'", kind=kind.title, old=old.name, new=new.name)
             pair.add(text, pair.location(new.span), kind.reason)
+
+
+def _renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[str, str]:
+    """Return the new names of targets that only one version has and that have the same first source."""
+    sources = {
+        next(iter(parts.sources)): name
+        for name, parts in new.targets.items()
+        if parts.sources and not old.targets.get(name, TargetParts()).sources
+    }
+    renamed = {}
+    for name, parts in old.targets.items():
+        source = next((new_source(pair, old, new, item) for item in parts.sources), None)
+        if source in sources and not new.targets.get(name, TargetParts()).sources:
+            renamed[name] = sources[source]
+    return renamed
+
+
+def new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str:
+    """Return the path of a source in the new version.
+
+    Args:
+        pair: the versions.
+        old: the old facts.
+        new: the new facts.
+        source: the path in the old version.
+
+    Returns:
+        The path relative to the package; the old one if the file was not renamed.
+    """
+    path = (PurePosixPath(old.package) / source).as_posix()
+    new_path = next((file.new_path for file in pair.versions.changed_files if file.old_path == path), None)
+    is_inside = new_path is not None and PurePosixPath(new_path).is_relative_to(new.package)
+    return PurePosixPath(new_path).relative_to(new.package).as_posix() if new_path and is_inside else source
 
 
 def _sentence(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.cmake_language import Argument, Command, within_package
 from linkwright.packages.readers.cmake_syntax import is_open
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.build_facts import BuildFacts, TargetParts, listed
+from linkwright.review.files.build_facts import BuildFacts, TargetParts, listed, new_source
 
 _SOURCE_COMMANDS = frozenset(
     {
@@ -61,7 +60,7 @@ def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         before = old.targets.get(name)
         if before is None:
             continue
-        sources = {_new_source(pair, old, new, item): span for item, span in before.sources.items()}
+        sources = {new_source(pair, old, new, item): span for item, span in before.sources.items()}
         for kind, old_items, new_items in (
             ("libraries", before.libraries, parts.libraries),
             ("sources", sources, parts.sources if sources else {}),
@@ -75,14 +74,6 @@ def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     for (kind, is_added, *items), targets in changes.items():
         text = _text(kind, [name for name, _ in targets], items, is_added=is_added == "True")
         pair.add(text, pair.location(targets[0][1]))
-
-
-def _new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str:
-    """Return the path of a source in the new version, relative to the package."""
-    path = (PurePosixPath(old.package) / source).as_posix()
-    new_path = next((file.new_path for file in pair.versions.changed_files if file.old_path == path), None)
-    is_inside = new_path is not None and PurePosixPath(new_path).is_relative_to(new.package)
-    return PurePosixPath(new_path).relative_to(new.package).as_posix() if new_path and is_inside else source
 
 
 def _lone(items: Mapping[str, Span], others: Mapping[str, Span]) -> list[str]:

@@ -14,7 +14,8 @@ from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element
 
-ROSBUILD_FILES = ("manifest.xml", "stack.xml")
+ROSBUILD_MANIFEST = "manifest.xml"
+_FILES = (ROSBUILD_MANIFEST, "stack.xml")
 _ROOTS = ("package", "stack")
 _TEXTS = ("version", "license", "author", "url")
 _MAX_NAMES = 12
@@ -25,7 +26,7 @@ _Items = dict[tuple[str, str], Element]
 def rosbuild_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
     """Yield the changed manifests of rosbuild, each with the changes."""
     for file in changed_files:
-        if PurePosixPath(file.path).name not in ROSBUILD_FILES or file.is_submodule:
+        if PurePosixPath(file.path).name not in _FILES or file.is_submodule:
             continue
         old, new = _read(versions.old, file.old_path), _read(versions.new, file.new_path)
         changes = list(_changes(versions, file, old, new))

@@ -13,6 +13,7 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
+from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.installed_paths import is_exported_header
 from linkwright.review.sources.details import detail_changes
 from linkwright.review.sources.names import (
@@ -28,8 +29,6 @@ from linkwright.review.sources.reading import is_program_text, read_source_names
 from linkwright.review.sources.reasons import is_used_by_others, removal_reason
 from linkwright.review.versions import Version, Versions
 
-ROSBUILD_MANIFEST = "manifest.xml"
-"""The name of the manifest of a package of rosbuild, the build system before catkin."""
 _TEST_FOLDERS = frozenset({"test", "tests"})
 _SKIPPED = frozenset({"setup.py", "conf.py"})
 _MAX_NAMES = 12

@@ -42,6 +42,8 @@ _LOOKUPS = {
     **dict.fromkeys(("waitForTransform", "lookup_transform_async", "lookupTransformFull"), (0, 1)),
 }
 _PARAMETER_CALLS = ("declare_parameter", "get_param", "get_param_cached", "get_parameter_or", "add_parameter")
+_LOOKED_UP = (*_PARAMETER_CALLS, "search_param", "has_param")
+_ITEMS = ("items", "iteritems", "keys", "iterkeys")
 _FRAME_FIELDS = ("frame_id", "child_frame_id")
 _QOS = re.compile(r"\d+|[\w.]*(QoS|qos_profile|QOS)\w*(\(.*\))?", re.DOTALL)
 
@@ -171,10 +173,12 @@ class _Reader:
     def read(self) -> None:
         """Add the names."""
         tree = self._python.tree
-        nodes = [node for node in ast.walk(tree) if isinstance(node, (ast.Call, ast.Assign))]
+        nodes = [node for node in ast.walk(tree) if isinstance(node, (ast.Call, ast.Assign, ast.For))]
         for node in sorted(nodes, key=lambda node: (node.lineno, node.col_offset)):
             if isinstance(node, ast.Assign):
                 self._read_assignment(node)
+            elif isinstance(node, ast.For):
+                self._read_loop(node)
             else:
                 function = called_name(node).rpartition(".")[2]
                 if isinstance(node.func, ast.Attribute) and function == "":
@@ -191,6 +195,24 @@ class _Reader:
         for target in node.targets:
             if isinstance(target, ast.Attribute) and target.attr in _FRAME_FIELDS:
                 self._add_frame(NameKind.FRAME, node.value)
+
+    def _read_loop(self, loop: ast.For) -> None:
+        """Add the parameters that a loop over a dictionary of defaults reads."""
+        source = loop.iter
+        if isinstance(source, ast.Call) and isinstance(source.func, ast.Attribute) and source.func.attr in _ITEMS:
+            source = source.func.value
+        defaults = self._python.resolved(source)
+        variable = loop.target.elts[0] if isinstance(loop.target, ast.Tuple) else loop.target
+        if not isinstance(defaults, ast.Dict) or not isinstance(variable, ast.Name):
+            return
+        calls = (node for node in ast.walk(loop) if isinstance(node, ast.Call) and node.args)
+        names = [call.args[0] for call in calls if called_name(call).rpartition(".")[2] in _LOOKED_UP]
+        used = [name for name in names if variable.id in (n.id for n in ast.walk(name) if isinstance(n, ast.Name))]
+        if not used:
+            return
+        prefix = "~" if isinstance(used[0], ast.BinOp) and self._python.text(used[0].left) == "~" else ""
+        for key, value in zip(defaults.keys, defaults.values, strict=True):
+            self._add(NameKind.PARAMETER, key, value, prefix=prefix)
 
     def _read_call(self, call: ast.Call, function: str) -> None:
         for keyword in call.keywords:
