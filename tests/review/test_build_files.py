@@ -101,10 +101,9 @@ def test_build_file_of_a_subdirectory_is_compared_with_its_package(repository, c
     result = compare(repository)
     found = subject(result, "a/CMakeLists.txt")
     assert sentences(found) == [
-        "installed executables added: 'view'",
-        "installed executables removed: 'show'",
+        "installed executables: 'show' renamed to 'view'",
     ]
-    assert found.changes[1].location.file == "a/tools/CMakeLists.txt"
+    assert found.changes[0].location.file == "a/tools/CMakeLists.txt"
     assert result.other_files == []
 
 

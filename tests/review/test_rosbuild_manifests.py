@@ -88,3 +88,10 @@ def test_removed_dependency_that_others_have_through_the_package_is_breaking(
     repository.commit({"a/package.xml": text})
     repository.write({"a/package.xml": text.replace(line, "")})
     assert breaking(compare(repository)) == ([f"{tag} removed: gears"] if is_breaking else [])
+
+
+def test_message_of_a_package_of_rosbuild_is_read_as_ros_1_does(repository, compare):
+    repository.commit({"arm/manifest.xml": MANIFEST})
+    repository.commit({"arm/msg/State.msg": "Header header\nduration delay\n"})
+    found = subject(compare(repository, "HEAD~1..HEAD"), "arm/msg/State.msg")
+    assert sentences(found) == ["interface added: std_msgs/Header header, builtin_interfaces/Duration delay"]

@@ -123,6 +123,8 @@ MODULE = "class Tool:\n    pass\n\n\ndef grip():\n    pass\n\n\ndef _own():\n   
         ("c.cpp", CPP, '  private_nh.getParam("port", port);\n', "", ["parameters removed: 'port'"], True),
         ("c.cpp", CPP, '"base", "base_link"', '"base", "base"',
          ["parameter 'base': default \"base_link\" -> \"base\""], False),
+        ("c.cpp", CPP, 'param<std::string>("base"', 'param<Name>("base"',
+         ["parameter 'base': read as string -> Name"], False),
         ("c.cpp", CPP, "STATE, 5, true", "STATE, 5", ["publisher 'state': latched yes -> no"], True),
         ("c.cpp", CPP, '"reach"', '"reach_for"',
          ["action 'reach' (ReachAction) renamed to 'reach_for' (ReachAction)"], True),

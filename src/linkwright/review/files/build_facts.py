@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
+from linkwright.diagnostics import Phrase, Span, joined, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
 from linkwright.review.list_changes import change_text, shortened
 from linkwright.review.renamed_packages import PackageNames, renamed_packages
@@ -212,6 +212,7 @@ def compare_build_files(
 
 def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Add the differences between the facts of two versions of a build file."""
+    conditions: dict[tuple[str, str], list[Fact]] = {}
     for kind in FactKind:
         old_facts, new_facts = (
             {fact.name: fact for fact in facts.facts if fact.kind is kind and _is_reported(pair, facts, fact)}
@@ -227,7 +228,9 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
                 )
                 reason = kind.reason if fact.is_value_used else None
                 pair.add(text, pair.location(fact.span), reason)
-        _compare_conditions(pair, kind, old_facts, new_facts)
+        for name, fact in new_facts.items():
+            if name in old_facts and old_facts[name].condition != fact.condition:
+                conditions.setdefault((old_facts[name].condition, fact.condition), []).append(fact)
         added = [fact for name, fact in new_facts.items() if name not in old_facts]
         removed = [fact for name, fact in old_facts.items() if name not in new_facts]
         if kind in _BUILT:
@@ -242,6 +245,7 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         if removed:
             location = pair.location(removed[0].span, is_old=True)
             pair.add(_sentence(kind, removed, is_added=False), location, kind.reason)
+    _add_conditions(pair, conditions)
     _compare_files(pair, old, new)
     _compare_rest(pair, old, new)
     old.environment.compare(pair, new.environment)
@@ -317,20 +321,17 @@ def _fact_text(fact: Fact) -> str:
     return fact.name if is_plain else f"{fact.name} (if {fact.condition})"
 
 
-def _compare_conditions(
-    pair: FilePair, kind: FactKind, old_facts: Mapping[str, Fact], new_facts: Mapping[str, Fact]
-) -> None:
+def _add_conditions(pair: FilePair, conditions: Mapping[tuple[str, str], Sequence[Fact]]) -> None:
     """Add the facts that hold under another condition now; those with the same conditions in one line."""
-    changed: dict[tuple[str, str], list[Fact]] = {}
-    for name, fact in new_facts.items():
-        before = old_facts.get(name)
-        if before is not None and before.condition != fact.condition:
-            changed.setdefault((before.condition, fact.condition), []).append(fact)
-    for (old_condition, new_condition), facts in changed.items():
+    for (old_condition, new_condition), facts in conditions.items():
+        kinds = dict.fromkeys(fact.kind for fact in facts)
+        groups = (
+            phrase("{kind} {names}", kind=kind.title, names=listed([fact.name for fact in facts if fact.kind is kind]))
+            for kind in kinds
+        )
         text = phrase(
-            "{kind} {names}: {old} -> {new}",
-            kind=kind.title,
-            names=listed([fact.name for fact in facts]),
+            "{subjects}: {old} -> {new}",
+            subjects=joined(groups, "; "),
             old=_condition_text(old_condition),
             new=_condition_text(new_condition),
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from functools import cached_property
@@ -171,8 +171,12 @@ class _Pair:
         removed = [item for name, item in before.items() if name not in after and self.new.lacks(item, path)]
         old_path = self.file.old_path or path
         added = [item for name, item in after.items() if name not in before and self.old.lacks(item, old_path)]
-        if kind is NameKind.CLASS and not self._is_interface(old_path):
+        if kind in (NameKind.CLASS, NameKind.FUNCTION) and not self._is_interface(old_path):
             return
+        if kind is NameKind.FUNCTION and not path.endswith(PYTHON_SUFFIX):
+            classes = [{item.name for item in names.of(NameKind.CLASS)} for names in (old_names, new_names)]
+            removed = [item for item in removed if _has_class(item, classes[0] & classes[1])]
+            added = [item for item in added if _has_class(item, classes[0] & classes[1])]
         for old_item, new_item in _renamed(removed, added):
             text = phrase("{kind} {old} renamed to {new}", kind=kind.title, old=_name(old_item), new=_name(new_item))
             yield self._change(text, new_item.span, self.new, self._reason([old_item], old_names))
@@ -195,9 +199,7 @@ class _Pair:
             return
         if added and (kind is not NameKind.FUNCTION or self.file.old_path is not None):
             text = phrase("{kind} added: {names}", kind=kind.plural, names=_names(added))
-            reason = None
-            if kind is NameKind.OPTION and self.file.old_path is not None:
-                reason = _required_reason(added)
+            reason = _required_reason(added) if self.file.old_path is not None else None
             yield self._change(text, added[0].span, self.new, reason)
         if removed:
             text = phrase("{kind} removed: {names}", kind=kind.plural, names=_names(removed))
@@ -277,11 +279,19 @@ def _names(items: Sequence[SourceName]) -> Phrase:
 
 
 def _required_reason(items: Sequence[SourceName]) -> Phrase | None:
-    """Return why added options break callers, or None if none of them is required."""
+    """Return why added names break others, or None if none of them is required."""
     names = [item.name for item in items if (Detail.REQUIRED, YES) in item.details]
     if not names:
         return None
+    if items[0].kind is NameKind.FUNCTION:
+        return phrase("classes that derive from the class and do not define it do not build")
     return phrase("callers that do not pass '{name}' get an error", name=joined_first(names, _MAX_NAMES))
+
+
+def _has_class(function: SourceName, classes: Collection[str]) -> bool:
+    """Return whether a function of C++ is in one of the classes, or in none."""
+    names = function.name.split("::")[:-1]
+    return not names or names[-1] in classes
 
 
 def _renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list[tuple[SourceName, SourceName]]:
@@ -313,4 +323,5 @@ def _fits(old: SourceName, new: SourceName) -> bool:
 
 
 def _similarity(old: SourceName, new: SourceName) -> float:
-    return SequenceMatcher(None, old.name.casefold(), new.name.casefold(), autojunk=False).ratio()
+    names = (item.name.rpartition("::")[2].casefold() for item in (old, new))
+    return SequenceMatcher(None, *names, autojunk=False).ratio()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from pathlib import PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
-from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
+from linkwright.review.sources.cpp_functions import DeclaredFunction, declared_functions
+from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
 
 _COMMENT_OR_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])'""", re.DOTALL)
 _KINDS = {
@@ -77,7 +79,7 @@ _CONSTANT = re.compile(
     r'\s*(?P<made>(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"(?(made)\s*\))(?(open)\s*[)}])\s*;)'
     r'|#\s*define\s+(?P<macro>\w+)[ \t]+\(?"(?P<value>[^"\\]*)"'
 )
-_LITERAL = re.compile(r'\s*(-?[\d.]+(?:e-?\d+)?f?|true|false|"[^"\\]*"|(?:std::)?string\("[^"\\]*"\))\s*')
+_LITERAL = re.compile(r'\s*(-?[\d.]+(?:e-?\d+)?f?|true|false|"[^"\\]*"|(?:std::)?string\((?P<text>"[^"\\]*")\))\s*')
 _WRAPPED = re.compile(r"\s*(?:rclcpp::)?ParameterValue\s*\((?P<value>.*)\)\s*", re.DOTALL)
 _QOS = re.compile(r"\d+|[\w:]*QoS\w*\s*[({].*|rmw_qos_profile_\w+|(?:rclcpp::)?(?:\w+::)?\w*QoS\w*", re.DOTALL)
 _BRACKETS = {"(": ")", "<": ">", "[": "]", "{": "}"}
@@ -128,7 +130,21 @@ class _Reader:
                 self._add(NameKind.PLUGIN, "".join(text[begin:end].split()), begin, end)
         for match in _CLASS.finditer(text):
             self._add(NameKind.CLASS, match["name"], match.start("name"), match.end("name"))
+        self._read_functions()
         self._names.is_program = re.search(r"\bint\s+main\s*\(", text) is not None
+
+    def _read_functions(self) -> None:
+        """Add the functions of a header; the type of each is the list of its parameters, for each overload."""
+        if PurePosixPath(self._source.name).suffix not in HEADER_SUFFIXES:
+            return
+        overloads: dict[str, list[DeclaredFunction]] = {}
+        for function in declared_functions(self._text):
+            overloads.setdefault(function.name, []).append(function)
+        for name, functions in overloads.items():
+            types = "; ".join(sorted(", ".join(function.parameters) for function in functions))
+            details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
+            start = self._text.find(name.rpartition("::")[2], functions[0].start)
+            self._add(NameKind.FUNCTION, name, start, start + len(name.rpartition("::")[2]), types, details)
 
     def _read_call(self, match: re.Match[str]) -> None:
         text, function = self._text, match["name"]
@@ -166,8 +182,8 @@ class _Reader:
         details: list[tuple[Detail, str]] = []
         others = [self._text[begin:end].strip() for begin, end in arguments[1:]]
         if kind is NameKind.PARAMETER:
-            if function in _ROS2_PARAMETERS and type_name:
-                details.append((Detail.VALUE_TYPE, type_name))
+            if type_name:
+                details.append((Detail.VALUE_TYPE if function in _ROS2_PARAMETERS else Detail.READ_AS, type_name))
             type_name = "" if function in _OUTPUTS else self._default(function, arguments)
         elif kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION) and others and _QOS.fullmatch(others[0]):
             details.append((Detail.QUEUE if function in _ROS1 else Detail.QOS, " ".join(others[0].split())))
@@ -186,7 +202,7 @@ class _Reader:
         wrapped = _WRAPPED.fullmatch(text)
         value = _LITERAL.fullmatch(wrapped["value"] if wrapped else text)
         if value is not None:
-            return value[1]
+            return value["text"] or value[1]
         variable = _VARIABLE.fullmatch(text)
         constant = self._constants.get(variable["name"]) if variable else None
         return "" if constant is None else f'"{constant}"'

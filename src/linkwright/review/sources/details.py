@@ -11,6 +11,8 @@ from linkwright.review.sources.names import NO, Detail, NameKind, SourceName
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
 _BEST_EFFORT = re.compile(r"best_?effort|sensor_?data", re.IGNORECASE)
 _TRANSIENT = re.compile(r"transient_?local|latching", re.IGNORECASE)
+_DEFAULT = " = ..."
+"""The end of a parameter of a function that has a default."""
 
 
 def detail_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
@@ -35,7 +37,12 @@ def detail_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, P
 
 
 def _type_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
-    if new.kind in (NameKind.PARAMETER, NameKind.OPTION):
+    if new.kind is NameKind.FUNCTION:
+        old_text, new_text = (" | ".join(f"({each})" for each in item.type.split("; ")) for item in (old, new))
+        text = phrase("function '{name}': {old} -> {new}", name=new.name, old=old_text, new=new_text)
+        reason = phrase("code that calls '{name}' with the old arguments does not build", name=new.name)
+        yield text, None if _accepts_all(old.type, new.type) else reason
+    elif new.kind in (NameKind.PARAMETER, NameKind.OPTION):
         text = phrase(
             "{kind} '{name}': default {old} -> {new}",
             kind=new.kind.title,
@@ -53,6 +60,23 @@ def _type_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Ph
         yield text, reason
 
 
+def _accepts_all(old: str, new: str) -> bool:
+    """Return whether new overloads of a function accept the arguments of all old ones."""
+    overloads = [_parameters(text) for text in new.split("; ")]
+    return all(any(_accepts(_parameters(text), overload) for overload in overloads) for text in old.split("; "))
+
+
+def _parameters(text: str) -> list[str]:
+    return re.split(r", (?![^<]*>)", text) if text else []
+
+
+def _accepts(old: list[str], new: list[str]) -> bool:
+    required = [parameter for parameter in old if not parameter.endswith(_DEFAULT)]
+    types = [parameter.removesuffix(_DEFAULT) for parameter in old]
+    is_same = [parameter.removesuffix(_DEFAULT) for parameter in new[: len(types)]] == types
+    return is_same and all(parameter.endswith(_DEFAULT) for parameter in new[len(required) :])
+
+
 def _reason(name: SourceName, detail: Detail, before: str | None, after: str | None) -> Phrase | None:
     """Return why another property is breaking, or None if it is not."""
     old, new = before or "", after or ""
@@ -60,6 +84,8 @@ def _reason(name: SourceName, detail: Detail, before: str | None, after: str | N
         return _qos_reason(name, old, new)
     if detail is Detail.VALUE_TYPE and name.kind is NameKind.PARAMETER and before and after:
         return phrase("values of the old type are rejected")
+    if detail is Detail.REQUIRED and name.kind is NameKind.FUNCTION:
+        return phrase("classes that derive from the class and do not define it do not build") if after else None
     if detail is Detail.REQUIRED and after:
         return phrase("callers that do not pass '{name}' get an error", name=name.name)
     if detail is Detail.LATCH and before:

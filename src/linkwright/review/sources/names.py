@@ -8,7 +8,8 @@ from enum import Enum
 
 from linkwright.diagnostics import Phrase, Span, phrase
 
-CPP_SUFFIXES = (".cpp", ".cc", ".cxx", ".hpp", ".hh", ".hxx", ".h")
+HEADER_SUFFIXES = (".hpp", ".hh", ".hxx", ".h")
+CPP_SUFFIXES = (".cpp", ".cc", ".cxx", *HEADER_SUFFIXES)
 PYTHON_SUFFIX = ".py"
 DYNAMIC_SUFFIX = ".cfg"
 """The suffix of descriptions of dynamic_reconfigure, which are written in Python."""
@@ -47,6 +48,7 @@ class Detail(Enum):
     QUEUE = phrase("queue")
     LATCH = phrase("latched")
     VALUE_TYPE = phrase("type")
+    READ_AS = phrase("read as")
     MINIMUM = phrase("minimum")
     MAXIMUM = phrase("maximum")
     CHOICES = phrase("choices")
