@@ -22,6 +22,9 @@ public:
   int rate() const { return rate_; }
   enum class Mode { FAST, SLOW };
 
+protected:
+  void reset(int x);
+
 private:
   void own(int x);
   int rate_{10};
@@ -39,7 +42,7 @@ FILES = {
 
 def test_functions_of_a_header_are_read_with_their_types():
     text = HEADER.replace("// namespace arm", "")
-    assert [(each.name, each.parameters, each.is_pure) for each in declared_functions(text)] == [
+    assert [each[:3] for each in declared_functions(text)] == [
         ("Driver::Driver", ("const std::string&", "int = ..."), False),
         ("Driver::move", ("double", "std::map<int,double>"), True),
         ("Driver::stop", (), False),
@@ -63,6 +66,8 @@ def test_functions_of_a_header_are_read_with_their_types():
         ("double angle,", "float angle,",
          ["function 'Driver::move': (double, std::map<int,double>) -> (float, std::map<int,double>)"], True),
         ("void own(int x)", "void own(int x, int y)", [], False),
+        ("void reset(int x)", "void reset(int x, int y)", [], False),
+        ("int rate() const", "int rate() const override", [], False),
         ("(double angle,", "(double value,", [], False),
         ("class ARM_PUBLIC Driver", "class ARM_PUBLIC ArmDriver", ["class 'Driver' renamed to 'ArmDriver'"], True),
     ],
@@ -74,3 +79,22 @@ def test_changed_functions_of_an_installed_header_are_reported(repository, compa
     result = compare(repository)
     assert [sentence for found in result.subjects for sentence in sentences(found)] == expected
     assert bool(breaking(result)) is is_breaking
+
+
+def test_function_that_moves_to_a_base_class_is_not_removed(repository, compare):
+    repository.commit(FILES)
+    base = "class Motor {\npublic:\n  void stop();\n};\n"
+    text = HEADER.replace("  void stop();\n", "").replace("public Base", "public Motor, public Base")
+    repository.commit({"a/include/arm/driver.hpp": text, "a/include/arm/motor.hpp": base})
+    assert breaking(compare(repository, "HEAD~1..HEAD")) == []
+
+
+def test_many_functions_with_other_arguments_are_one_line(repository, compare):
+    names = ["open", "close", "move", "hold"]
+    lines = "".join(f"  void {name}(int x);\n" for name in names)
+    text = f"class Gripper {{\npublic:\n{lines}}};\n"
+    repository.commit({**FILES, "a/include/arm/driver.hpp": text})
+    repository.write({"a/include/arm/driver.hpp": text.replace("int", "double")})
+    assert breaking(compare(repository)) == [
+        "functions with other arguments: Gripper::open, Gripper::close, Gripper::move, Gripper::hold"
+    ]

@@ -138,6 +138,8 @@ MODULE = "class Tool:\n    pass\n\n\ndef grip():\n    pass\n\n\ndef _own():\n   
          ["publisher 'map': QoS rclcpp::QoS(1).transient_local() -> rclcpp::QoS(1)"], True),
         ("d.cpp", CPP2, "100ms", "50ms",
          ["rate or period: create_wall_timer(100ms) -> create_wall_timer(50ms)"], False),
+        ("d.cpp", CPP2, "100ms", "period_", ["rate or period: create_wall_timer(100ms) -> create_wall_timer(period_)"],
+         False),
         ("d.cpp", CPP2, "(arm::Driver)", "(arm::ArmDriver)",
          ["exported class 'arm::Driver' renamed to 'arm::ArmDriver'"], True),
         ("e.py", LOOP, "'port': 80", "'port': 8080", ["parameter '~port': default 80 -> 8080"], False),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
@@ -32,6 +33,11 @@ from linkwright.review.versions import Version, Versions
 _TEST_FOLDERS = frozenset({"test", "tests"})
 _SKIPPED = frozenset({"setup.py", "conf.py"})
 _MAX_NAMES = 12
+_MAX_FUNCTIONS = 3
+"""The number of functions of a file with other arguments up to which each has a line."""
+_UNITS = re.compile(
+    r"\b(?:ros|rclcpp|std|chrono|(?:nano|micro|milli)?seconds|Duration|[num]?s|Hz|from_seconds|float|int)\b"
+)
 _SIMILAR = 0.6
 """The ratio of equal characters from which two names of the same kind are similar."""
 _LOCAL = (NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION)
@@ -86,6 +92,12 @@ class _Side:
         return frozenset((item.kind, item.name) for names in self._names.values() for item in names.names)
 
     @cached_property
+    def _functions(self) -> frozenset[str]:
+        overrides = {name for names in self._names.values() for name in names.overrides}
+        declared = {name.rpartition("::")[2] for kind, name in self._known if kind is NameKind.FUNCTION}
+        return frozenset(overrides | declared)
+
+    @cached_property
     def _expressions(self) -> list[tuple[NameKind, str]]:
         return [(item.kind, item.type) for names in self._names.values() for item in names.expressions]
 
@@ -102,6 +114,8 @@ class _Side:
         """
         if (item.kind, item.name) in self._known:
             return False
+        if item.kind is NameKind.FUNCTION and item.name.rpartition("::")[2] in self._functions:
+            return False  # in a base class, for example
         if item.kind in _LOCAL:
             return True
         package = self.package(path)
@@ -163,10 +177,15 @@ class _Pair:
     def _changes_of(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         before = {item.name: item for item in old_names.of(kind)}
         after = {item.name: item for item in new_names.of(kind)}
-        for name, item in after.items():
-            if name in before:
-                for text, reason in detail_changes(before[name], item):
-                    yield self._change(text, item.span, self.new, reason)
+        changed = [(item, *each) for name, item in after.items() if name in before
+                   for each in detail_changes(before[name], item)]  # fmt: skip
+        if kind is NameKind.FUNCTION and not self._is_interface(self.file.old_path or self.file.path):
+            changed = []
+        if kind is NameKind.FUNCTION and len(changed) > _MAX_FUNCTIONS:
+            yield self._merged_functions(changed)
+            changed = []
+        for item, text, reason in changed:
+            yield self._change(text, item.span, self.new, reason)
         path = self.file.path
         removed = [item for name, item in before.items() if name not in after and self.new.lacks(item, path)]
         old_path = self.file.old_path or path
@@ -184,6 +203,15 @@ class _Pair:
             added.remove(new_item)
         yield from self._expression_changes(kind, removed, added)
         yield from self._lone_changes(kind, removed, added, old_names)
+
+    def _merged_functions(self, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]]) -> Change:
+        """Return one change for many functions with other arguments."""
+        names = joined_first(dict.fromkeys(item.name for item, _, _ in changed), _MAX_NAMES)
+        text = phrase("functions with other arguments: {names}", names=names)
+        reason = next((reason for _, _, reason in changed if reason is not None), None)
+        if reason is not None:
+            reason = phrase("code that calls them with the old arguments does not build")
+        return self._change(text, changed[0][0].span, self.new, reason)
 
     def _is_interface(self, path: str) -> bool:
         """Return whether other packages can use the classes in a file: in Python, and in headers for others."""
@@ -258,7 +286,8 @@ class _Pair:
         if len(old_rates) != len(new_rates):
             return
         for (old_text, _), (new_text, span) in zip(old_rates, new_rates, strict=True):
-            if old_text.partition("(")[0] == new_text.partition("(")[0] and old_text != new_text:
+            is_same_call = old_text.partition("(")[0] == new_text.partition("(")[0]
+            if is_same_call and old_text != new_text and (_is_number(old_text) or _is_number(new_text)):
                 text = phrase("rate or period: {old} -> {new}", old=old_text, new=new_text)
                 yield self._change(text, span, self.new, None)
 
@@ -267,6 +296,12 @@ class _Pair:
         path = side.version.relative(span.file)
         location = None if path is None else Location(path, span.line, span.column, side.version.is_old)
         return Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
+
+
+def _is_number(rate: str) -> bool:
+    """Return whether the argument of a rate has no names besides those of units."""
+    argument = rate.partition("(")[2]
+    return re.search(r"[A-Za-z_]{2,}", _UNITS.sub("", re.sub(r"(\d)[a-z]+", r"\1", argument))) is None
 
 
 def _name(item: SourceName) -> str:

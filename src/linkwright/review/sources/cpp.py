@@ -139,7 +139,10 @@ class _Reader:
             return
         overloads: dict[str, list[DeclaredFunction]] = {}
         for function in declared_functions(self._text):
-            overloads.setdefault(function.name, []).append(function)
+            if function.is_override:
+                self._names.overrides.add(function.name.rpartition("::")[2])
+            else:
+                overloads.setdefault(function.name, []).append(function)
         for name, functions in overloads.items():
             types = "; ".join(sorted(", ".join(function.parameters) for function in functions))
             details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()

@@ -1,4 +1,4 @@
-"""The functions that a header in C++ declares for other packages, with the types of their arguments."""
+"""The public functions that a header in C++ declares, with the types of their arguments."""
 
 from __future__ import annotations
 
@@ -29,12 +29,14 @@ class DeclaredFunction(NamedTuple):
         name: the name with that of its class.
         parameters: the types of the parameters; one with a default ends with ``= ...``.
         is_pure: whether derived classes must define it.
+        is_override: whether it overrides a function of a base class, which decides who can call it.
         start: the offset of the declaration.
     """
 
     name: str
     parameters: tuple[str, ...]
     is_pure: bool
+    is_override: bool
     start: int
 
 
@@ -45,7 +47,7 @@ class _Scope(NamedTuple):
 
 
 def declared_functions(text: str) -> Iterator[DeclaredFunction]:
-    """Yield the functions that a header declares and that are not private.
+    """Yield the public functions that a header declares.
 
     Args:
         text: the text of the header without comments.
@@ -65,7 +67,7 @@ def declared_functions(text: str) -> Iterator[DeclaredFunction]:
                 scopes[-1] = scopes[-1]._replace(access=access["access"])
                 start = index + 1
             continue
-        is_visible = all(scope.is_open and scope.access != "private" for scope in scopes)
+        is_visible = all(scope.is_open and scope.access == "public" for scope in scopes)
         if character != "}" and is_visible and "(" in chunk and not chunk.startswith(("using", "typedef", "friend")):
             yield from _function(chunk, [scope.name for scope in scopes if scope.name], start)
         if character == "{":
@@ -97,7 +99,8 @@ def _function(chunk: str, classes: list[str], start: int) -> Iterator[DeclaredFu
             continue
         parameters = tuple(_parameter(text) for text in _split(declaration[match.end() : end]))
         name = "::".join([*classes, "".join(match["name"].split())])
-        yield DeclaredFunction(name, parameters, re.search(r"=\s*0\s*$", rest) is not None, start)
+        is_override = re.search(r"\b(?:override|final)\b", rest) is not None
+        yield DeclaredFunction(name, parameters, re.search(r"=\s*0\s*$", rest) is not None, is_override, start)
         return
 
 

@@ -88,12 +88,14 @@ class SourceNames:
         names: the literal names, each once.
         expressions: the names that are expressions, whose values are not known.
         rates: the texts of rates and periods, each with its location.
+        overrides: the names of functions that override those of a base class.
         is_program: whether the source is a program that is started, and not a library that is imported.
     """
 
     names: list[SourceName] = field(default_factory=list)
     expressions: list[SourceName] = field(default_factory=list)
     rates: list[tuple[str, Span]] = field(default_factory=list)
+    overrides: set[str] = field(default_factory=set)
     is_program: bool = False
 
     def add(self, name: SourceName) -> None:
