@@ -32,6 +32,7 @@ class Driver:
         loop = rospy.Rate(20)
         msg.header.frame_id = "arm_link"
         listener.lookupTransform("map", "arm_link", now)
+        broadcaster.sendTransform(place, turn, now, "probe", "arm_link")
 """
 PYTHON = """import argparse
 from rclpy.qos import qos_profile_sensor_data
@@ -59,6 +60,7 @@ int main(int argc, char ** argv) {
   ros::Subscriber s = nh.subscribe(ENABLE, 1, &f);
   actionlib::SimpleActionServer<arm::ReachAction> server(nh, "reach", &g, false);
   msg.header.frame_id = "arm_link";
+  transform.child_frame_id = "probe";
   ros::Rate loop(20);
 }
 """
@@ -101,7 +103,10 @@ MODULE = "class Tool:\n    pass\n\n\ndef grip():\n    pass\n\n\ndef _own():\n   
         ("a.py", OLD_PYTHON, ", latch=True", "", ["publisher 'state': latched yes -> no"], True),
         ("a.py", OLD_PYTHON, "Rate(20)", "Rate(50)", ["rate or period: Rate(20) -> Rate(50)"], False),
         ("a.py", OLD_PYTHON, 'frame_id = "arm_link"', 'frame_id = "tool"',
-         ["frame 'arm_link' renamed to 'tool'"], True),
+         ["frame of messages 'arm_link' renamed to 'tool'"], False),
+        ("a.py", OLD_PYTHON, '"probe"', '"tip"', ["frame 'probe' renamed to 'tip'"], True),
+        ("a.py", OLD_PYTHON, '"probe"', '"/probe"', ["frame 'probe' renamed to '/probe'"], False),
+        ("c.cpp", CPP, '"probe"', '"tip"', ["frame 'probe' renamed to 'tip'"], True),
         ("a.py", OLD_PYTHON, '"map", ', '"odom", ',
          ["frame that is looked up 'map' renamed to 'odom'"], False),
         ("b.py", PYTHON, '"--rate"', '"--speed"',
@@ -128,7 +133,8 @@ MODULE = "class Tool:\n    pass\n\n\ndef grip():\n    pass\n\n\ndef _own():\n   
         ("c.cpp", CPP, "STATE, 5, true", "STATE, 5", ["publisher 'state': latched yes -> no"], True),
         ("c.cpp", CPP, '"reach"', '"reach_for"',
          ["action 'reach' (ReachAction) renamed to 'reach_for' (ReachAction)"], True),
-        ("c.cpp", CPP, '"arm_link"', '"arm_base_link"', ["frame 'arm_link' renamed to 'arm_base_link'"], True),
+        ("c.cpp", CPP, '"arm_link"', '"arm_base_link"',
+         ["frame of messages 'arm_link' renamed to 'arm_base_link'"], False),
         ("c.cpp", CPP, 'argv, "driver"', 'argv, "arm_driver"', ["node 'driver' renamed to 'arm_driver'"], True),
         ("c.cpp", CPP, "loop(20)", "loop(50)", ["rate or period: ros::Rate(20) -> ros::Rate(50)"], False),
         ("d.cpp", CPP2, '<int>("gain", 1)', '<double>("gain", 1.0)',

@@ -383,9 +383,9 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             if new.unknown <= old.unknown:
                 removed.append(target)
         elif new_source == source and old.place(target) != new.place(new_target):
-            folders = _folder(target), _folder(new_target)
-            is_renamed = folders[0] == folders[1]
-            moved.setdefault(folders, []).append(
+            places = _folder(target), _folder(new_target)
+            is_renamed = places[0] == places[1]
+            moved.setdefault(places, []).append(
                 f"{_name(target)} -> {_name(new_target)}" if is_renamed else _name(target)
             )
     added = [target for source, target in new_sources.items() if target not in old.files and source not in old_sources]

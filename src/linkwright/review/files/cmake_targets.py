@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.cmake_language import Argument, Command, within_package
@@ -55,7 +56,7 @@ def _span(argument: Argument) -> Span:
 
 def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Add the libraries and sources of targets in both versions that differ; equal changes of targets are one line."""
-    changes: dict[tuple[str, ...], list[tuple[str, Span]]] = {}
+    changes: dict[_Key, list[tuple[str, Span]]] = {}
     for name, parts in new.targets.items():
         before = old.targets.get(name)
         if before is None:
@@ -70,10 +71,19 @@ def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             span = next(iter({**new_items, **old_items}.values()), None)
             for is_added, items in ((True, _lone(new_items, old_items)), (False, _lone(old_items, new_items))):
                 if items and span is not None:
-                    changes.setdefault((kind, str(is_added), *items), []).append((name, new_items.get(items[0], span)))
-    for (kind, is_added, *items), targets in changes.items():
-        text = _text(kind, [name for name, _ in targets], items, is_added=is_added == "True")
+                    key = _Key(kind, is_added, tuple(items))
+                    changes.setdefault(key, []).append((name, new_items.get(items[0], span)))
+    for key, targets in changes.items():
+        text = _text(key.kind, [name for name, _ in targets], key.items, is_added=key.is_added)
         pair.add(text, pair.location(targets[0][1]))
+
+
+class _Key(NamedTuple):
+    """A change of targets: what differs, and the names that only one version has."""
+
+    kind: str
+    is_added: bool
+    items: tuple[str, ...]
 
 
 def _lone(items: Mapping[str, Span], others: Mapping[str, Span]) -> list[str]:

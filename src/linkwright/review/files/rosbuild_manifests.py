@@ -146,6 +146,8 @@ def _description(root: Element) -> str:
     return " ".join([element.attributes.get("brief", ""), *texts])
 
 
-def _location(file: ChangedFile, element: Element, *, is_old: bool) -> Location:
+def _location(file: ChangedFile, element: Element, *, is_old: bool) -> Location | None:
     span = element.span()
+    if span is None:
+        return None
     return Location((file.old_path if is_old else file.new_path) or file.path, span.line, span.column, is_old)

@@ -198,7 +198,9 @@ class _Pair:
             added = [item for item in added if _has_class(item, classes[0] & classes[1])]
         for old_item, new_item in _renamed(removed, added):
             text = phrase("{kind} {old} renamed to {new}", kind=kind.title, old=_name(old_item), new=_name(new_item))
-            yield self._change(text, new_item.span, self.new, self._reason([old_item], old_names))
+            is_same = kind is NameKind.FRAME and old_item.name.strip("/") == new_item.name.strip("/")
+            reason = None if is_same else self._reason([old_item], old_names)  # tf takes both names for the same
+            yield self._change(text, new_item.span, self.new, reason)
             removed.remove(old_item)
             added.remove(new_item)
         yield from self._expression_changes(kind, removed, added)
@@ -358,5 +360,5 @@ def _fits(old: SourceName, new: SourceName) -> bool:
 
 
 def _similarity(old: SourceName, new: SourceName) -> float:
-    names = (item.name.rpartition("::")[2].casefold() for item in (old, new))
-    return SequenceMatcher(None, *names, autojunk=False).ratio()
+    old_name, new_name = (item.name.rpartition("::")[2].casefold() for item in (old, new))
+    return SequenceMatcher(None, old_name, new_name, autojunk=False).ratio()

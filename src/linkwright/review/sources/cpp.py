@@ -59,7 +59,7 @@ _MEMBER = re.compile(
     r"\b(?P<class>(?:actionlib::)?Simple(?P<action>ActionServer|ActionClient)|message_filters::Subscriber)\s*"
     r"<(?P<type>[^<>;(){}]*)>\s*(?P<variable>\w+)\b"
 )
-_FRAME = re.compile(r"\b(?:child_)?frame_id_?\s*=(?!=)\s*(?P<value>[^;\n]+);")
+_FRAME = re.compile(r"\b(?P<child>child_)?frame_id_?\s*=(?!=)\s*(?P<value>[^;\n]+);")
 _STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
 _RATE = re.compile(
     r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
@@ -114,7 +114,8 @@ class _Reader:
             for match in pattern.finditer(text):
                 self._add_argument(kind, match.end() - 1, index)
         for match in _FRAME.finditer(text):
-            self._add_literal(NameKind.FRAME, match.start("value"), match.end("value"))
+            kind = NameKind.FRAME if match["child"] else NameKind.MESSAGE_FRAME
+            self._add_literal(kind, match.start("value"), match.end("value"))
         for match in _STAMPED.finditer(text):
             for index in (2, 3):
                 self._add_argument(NameKind.FRAME, match.end() - 1, index)

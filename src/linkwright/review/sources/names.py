@@ -30,6 +30,7 @@ class NameKind(Enum):
     PARAMETER = (phrase("parameter"), phrase("parameters"))
     NODE = (phrase("node"), phrase("nodes"))
     FRAME = (phrase("frame"), phrase("frames"))
+    MESSAGE_FRAME = (phrase("frame of messages"), phrase("frames of messages"))
     FRAME_LOOKUP = (phrase("frame that is looked up"), phrase("frames that are looked up"))
     OPTION = (phrase("command-line option"), phrase("command-line options"))
     PLUGIN = (phrase("exported class"), phrase("exported classes"))

@@ -44,7 +44,7 @@ _LOOKUPS = {
 _PARAMETER_CALLS = ("declare_parameter", "get_param", "get_param_cached", "get_parameter_or", "add_parameter")
 _LOOKED_UP = (*_PARAMETER_CALLS, "search_param", "has_param")
 _ITEMS = ("items", "iteritems", "keys", "iterkeys")
-_FRAME_FIELDS = ("frame_id", "child_frame_id")
+_FRAME_FIELDS = {"frame_id": NameKind.MESSAGE_FRAME, "child_frame_id": NameKind.FRAME}
 _QOS = re.compile(r"\d+|[\w.]*(QoS|qos_profile|QOS)\w*(\(.*\))?", re.DOTALL)
 
 
@@ -194,7 +194,7 @@ class _Reader:
     def _read_assignment(self, node: ast.Assign) -> None:
         for target in node.targets:
             if isinstance(target, ast.Attribute) and target.attr in _FRAME_FIELDS:
-                self._add_frame(NameKind.FRAME, node.value)
+                self._add_frame(_FRAME_FIELDS[target.attr], node.value)
 
     def _read_loop(self, loop: ast.For) -> None:
         """Add the parameters that a loop over a dictionary of defaults reads."""
@@ -217,7 +217,7 @@ class _Reader:
     def _read_call(self, call: ast.Call, function: str) -> None:
         for keyword in call.keywords:
             if keyword.arg in _FRAME_FIELDS and function not in _PARAMETER_CALLS:
-                self._add_frame(NameKind.FRAME, keyword.value)
+                self._add_frame(_FRAME_FIELDS[keyword.arg], keyword.value)
         if function in _RCLPY:
             kind, type_keyword, name_keyword, qos_index = _RCLPY[function]
             qos = self._qos(_argument(call, qos_index, "qos_profile"))

@@ -9,7 +9,7 @@ from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.breaking import frame_reason, name_reason
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
 
-_CLIENTS = (NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.FRAME_LOOKUP)
+_CLIENTS = (NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME)
 _MAX_NAMES = 8
 _HEADERS = "include"
 
