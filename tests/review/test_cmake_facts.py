@@ -97,6 +97,7 @@ OTHERS = {
         (CATKIN, "core ${catkin_LIBRARIES}", "${catkin_LIBRARIES}", ["'driver' not linked any more to 'core'"], False),
         (ROSBUILD, "executable(driver", "executable(drive",
          ["built executables: 'driver' renamed to 'drive'"], True),
+        (ROSBUILD, "rosbuild_init()", "rosbuild_init()\ncheck()\ncheck()", ["check added"], False),
         (ROSBUILD, "rosbuild_genmsg()", "", ["built interfaces removed: 'msg/Load.msg', 'msg/State.msg'"], True),
     ],
 )  # fmt: skip

@@ -10,7 +10,7 @@ from linkwright.review.sources.python2 import as_python3
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences
 
-MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/arm/__init__.py": ""}
 
 OLD_PYTHON = """#!/usr/bin/env python
 import rospy
@@ -159,6 +159,7 @@ MODULE = "class Tool:\n    pass\n\n\ndef grip():\n    pass\n\n\ndef _own():\n   
         ("src/driver.hpp", HEADER, "class Driver", "class Tool", [], False),
         ("arm/tools.py", MODULE, "def grip", "def release",
          ["functions added: 'release'", "functions removed: 'grip'"], True),
+        ("scripts/tools.py", MODULE, "def grip", "def release", [], False),
         ("arm/tools.py", MODULE, "def _own", "def _mine", [], False),
     ],
 )  # fmt: skip

@@ -142,7 +142,7 @@ class EnvironmentVariables:
 
 @dataclass
 class TargetParts:
-    """What a target of CMake is made of.
+    """The parts of a target of CMake.
 
     Attributes:
         libraries: the names of packages and libraries that are linked to it, with their locations.
@@ -165,7 +165,7 @@ class BuildFacts:
         package: the path of the folder of the package relative to the root.
         project: the name of the package; empty if it is not known.
         environment: the environment variables that the file reads.
-        targets: what targets are made of, by target.
+        targets: the parts of targets, by target.
     """
 
     facts: list[Fact] = field(default_factory=list)
@@ -454,7 +454,7 @@ def _compare_rest(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         return
     for name in names:
         old_texts, new_texts = ([text for other, text in items if other == name] for items in (gone, come))
-        old_text, new_text = "; ".join(old_texts), "; ".join(new_texts)
+        old_text, new_text = ("; ".join(filter(None, texts)) for texts in (old_texts, new_texts))
         if old_texts and new_texts:
             pair.add(_words_text(name, old_text, new_text), None)
         elif new_texts:

@@ -1,4 +1,4 @@
-"""What the targets of a ``CMakeLists.txt`` are made of: the libraries that are linked to them, and their sources."""
+"""The libraries that are linked to the targets of a ``CMakeLists.txt``, and the sources of the targets."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _VARIABLE = re.compile(r"\$\{(\w+?)_(LIBRARIES|LIBRARY|TARGETS|LIBS)\}", re.IGNO
 
 
 def read_targets(commands: Iterable[Command]) -> dict[str, TargetParts]:
-    """Return what targets are made of, by target. Packages and their targets count as the same library."""
+    """Return the parts of targets, by target. Packages and their targets count as the same library."""
     targets: dict[str, TargetParts] = {}
     for command in commands:
         if (command.name not in _SOURCE_COMMANDS and command.name not in _LINK_COMMANDS) or not command.arguments:

@@ -216,10 +216,10 @@ class _Pair:
         return self._change(text, changed[0][0].span, self.new, reason)
 
     def _is_interface(self, path: str) -> bool:
-        """Return whether other packages can use the classes in a file: in Python, and in headers for others."""
-        if path.endswith(PYTHON_SUFFIX):
-            return True
+        """Return whether other packages can use what a file defines: it is a module, or an installed header."""
         package = self.old.package(path)
+        if path.endswith(PYTHON_SUFFIX):
+            return package is not None and (self.old.version.file(path).parent / "__init__.py").is_file()
         return package is not None and is_exported_header(self.old.version, package, path)
 
     def _lone_changes(
