@@ -145,3 +145,10 @@ def test_subdirectory_of_a_package_of_rosbuild_is_compared_with_it(repository, c
     repository.commit({"a/manifest.xml": manifest, "a/CMakeLists.txt": text, "a/src/CMakeLists.txt": lib})
     repository.write({"a/src/CMakeLists.txt": lib.replace("(core", "(arm_core").replace("core.cpp", "arm.cpp")})
     assert breaking(compare(repository)) == ["built libraries removed: 'core'"]
+
+
+def test_contents_of_a_removed_build_file_have_what_was_built(repository, compare):
+    repository.commit({"a/manifest.xml": "<package/>", "a/CMakeLists.txt": ROSBUILD})
+    repository.commit({"a/CMakeLists.txt": None})
+    (found,) = compare(repository, "HEAD~1..HEAD").subjects
+    assert sentences(found) == ["build file removed: built executables 'driver'; built libraries 'core'"]

@@ -124,12 +124,12 @@ MODULE = "class Tool:\n    pass\n\n\ndef grip():\n    pass\n\n\ndef _own():\n   
         ("c.cpp", CPP, '"state"', '"arm_state"',
          ["publisher 'state' (String) renamed to 'arm_state' (String)"], True),
         ("c.cpp", CPP, '"enable"', '"enabled"', ["subscription 'enable' renamed to 'enabled'"], True),
-        ("c.cpp", CPP, "rate, 10.0", "rate, 20.0", ["parameter 'rate': default 10.0 -> 20.0"], False),
-        ("c.cpp", CPP, '  private_nh.getParam("port", port);\n', "", ["parameters removed: 'port'"], True),
+        ("c.cpp", CPP, "rate, 10.0", "rate, 20.0", ["parameter '~rate': default 10.0 -> 20.0"], False),
+        ("c.cpp", CPP, '  private_nh.getParam("port", port);\n', "", ["parameters removed: '~port'"], True),
         ("c.cpp", CPP, '"base", "base_link"', '"base", "base"',
-         ["parameter 'base': default \"base_link\" -> \"base\""], False),
+         ["parameter '~base': default \"base_link\" -> \"base\""], False),
         ("c.cpp", CPP, 'param<std::string>("base"', 'param<Name>("base"',
-         ["parameter 'base': read as string -> Name"], False),
+         ["parameter '~base': read as string -> Name"], False),
         ("c.cpp", CPP, "STATE, 5, true", "STATE, 5", ["publisher 'state': latched yes -> no"], True),
         ("c.cpp", CPP, '"reach"', '"reach_for"',
          ["action 'reach' (ReachAction) renamed to 'reach_for' (ReachAction)"], True),
@@ -170,6 +170,31 @@ def test_changes_of_sources_are_reported(repository, compare, name, text, old, n
     result = compare(repository)
     assert [sentence for found in result.subjects for sentence in sentences(found)] == expected
     assert bool(breaking(result)) is is_breaking
+
+
+HANDLES = """int main(int argc, char ** argv) {
+  ros::NodeHandle nh, imu_nh("imu"), private_nh("~");
+  ros::param::param<int>("~rate", rate, 10);
+  imu = nh.advertise<sensor_msgs::Imu>("imu/data", 1);
+  state = private_nh.advertise<std_msgs::String>("state", 1);
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('ros::param::param<int>("~rate"', 'private_nh.param<int>("rate"', []),
+        ('nh.advertise<sensor_msgs::Imu>("imu/data"', 'imu_nh.advertise<sensor_msgs::Imu>("data"', []),
+        ('private_nh.advertise<std_msgs::String>("state"', 'nh.advertise<std_msgs::String>("state"',
+         ["publisher '~state' (String) renamed to 'state' (String)"]),
+    ],
+)  # fmt: skip
+def test_names_are_compared_with_the_namespaces_of_node_handles(repository, compare, old, new, expected):
+    assert HANDLES.count(old) == 1
+    repository.commit({**MANIFEST, "arm/a.cpp": HANDLES})
+    repository.write({"arm/a.cpp": HANDLES.replace(old, new)})
+    assert breaking(compare(repository)) == expected
 
 
 def test_script_without_a_suffix_is_read_if_its_first_line_names_python(repository, compare):

@@ -80,9 +80,11 @@ class FactKind(Enum):
         self.reason = reason
 
 
-_INSTALLED = (FactKind.EXECUTABLE, FactKind.LIBRARY)
-_BUILT = (FactKind.BUILT_EXECUTABLE, FactKind.BUILT_LIBRARY, FactKind.BUILT_TARGET)
-_CONDITIONAL = (*_INSTALLED, *_BUILT, FactKind.COMPONENT, FactKind.STOP, FactKind.PACKAGE)
+INSTALLED_KINDS = (FactKind.EXECUTABLE, FactKind.LIBRARY)
+"""The kinds of targets that are installed."""
+BUILT_KINDS = (FactKind.BUILT_EXECUTABLE, FactKind.BUILT_LIBRARY, FactKind.BUILT_TARGET)
+"""The kinds of targets that are built, and that matter by themselves if they are not installed."""
+_CONDITIONAL = (*INSTALLED_KINDS, *BUILT_KINDS, FactKind.COMPONENT, FactKind.STOP, FactKind.PACKAGE)
 """The kinds whose conditions are shown when they are added or removed."""
 ANY_VERSION = "any version"
 """The value of a package that is found in any version."""
@@ -233,8 +235,8 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
                 conditions.setdefault((old_facts[name].condition, fact.condition), []).append(fact)
         added = [fact for name, fact in new_facts.items() if name not in old_facts]
         removed = [fact for name, fact in old_facts.items() if name not in new_facts]
-        if kind in _BUILT:
-            installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in _INSTALLED}
+        if kind in BUILT_KINDS:
+            installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in INSTALLED_KINDS}
             added, removed = ([fact for fact in each if fact.name not in installed] for each in (added, removed))
         _add_renamed(pair, kind, removed, added, _renamed_targets(pair, old, new))
         if added:

@@ -89,7 +89,7 @@ class _Side:
 
     @cached_property
     def _known(self) -> frozenset[tuple[NameKind, str]]:
-        return frozenset((item.kind, item.name) for names in self._names.values() for item in names.names)
+        return frozenset((item.kind, _key(item)) for names in self._names.values() for item in names.names)
 
     @cached_property
     def _functions(self) -> frozenset[str]:
@@ -112,7 +112,7 @@ class _Side:
             item: the name.
             path: the path of a source of the package.
         """
-        if (item.kind, item.name) in self._known:
+        if (item.kind, _key(item)) in self._known:
             return False
         if item.kind is NameKind.FUNCTION and item.name.rpartition("::")[2] in self._functions:
             return False  # in a base class, for example
@@ -175,8 +175,8 @@ class _Pair:
         yield from self._rate_changes(old_names, new_names)
 
     def _changes_of(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        before = {item.name: item for item in old_names.of(kind)}
-        after = {item.name: item for item in new_names.of(kind)}
+        before = {_key(item): item for item in old_names.of(kind)}
+        after = {_key(item): item for item in new_names.of(kind)}
         changed = [(item, *each) for name, item in after.items() if name in before
                    for each in detail_changes(before[name], item)]  # fmt: skip
         if kind is NameKind.FUNCTION and not self._is_interface(self.file.old_path or self.file.path):
@@ -298,6 +298,11 @@ class _Pair:
         path = side.version.relative(span.file)
         location = None if path is None else Location(path, span.line, span.column, side.version.is_old)
         return Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
+
+
+def _key(item: SourceName) -> str:
+    """Return the name by which versions are compared. A handle of ROS 1 may be private without saying so."""
+    return item.name.lstrip("~/") if item.kind is NameKind.PARAMETER else item.name
 
 
 def _is_number(rate: str) -> bool:

@@ -64,9 +64,10 @@ _STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
 _RATE = re.compile(
     r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
 )
-_PLUGIN = re.compile(
-    r"\b(?P<macro>PLUGINLIB_EXPORT_CLASS|PLUGINLIB_DECLARE_CLASS|RCLCPP_COMPONENTS_REGISTER_NODE)\s*\("
-)
+_COMPONENT = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(")
+_HANDLES = re.compile(r"\bNodeHandle\b(?P<names>[^;{}<>]*)[;{]")
+_HANDLE = re.compile(r'\b(?P<name>\w+)\s*\(\s*(?:\w+\s*,\s*)?"(?P<namespace>[^"]+)"\s*\)')
+_RECEIVER = re.compile(r"\b(?P<name>\w+)\s*(?:\.|->)\s*$")
 _CLASS = re.compile(
     r"^[ \t]*(?:class|struct|enum(?:\s+class)?)\s+(?:[A-Z]\w*_(?:PUBLIC|EXPORT|API|DECL)(?:_TYPE)?\s+)?"
     r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)[^;{]*)?\{",
@@ -104,6 +105,7 @@ class _Reader:
         self._names = names
         self._text = _COMMENT_OR_TEXT.sub(_without_comment, source.text)
         self._constants = _constants(self._text)
+        self._namespaces = _namespaces(self._text)
 
     def read(self) -> None:
         """Add the names."""
@@ -123,11 +125,8 @@ class _Reader:
             self._read_member(match)
         for match in _RATE.finditer(text):
             self._read_rate(match)
-        for match in _PLUGIN.finditer(text):
-            arguments = list(_arguments(text, match.end() - 1))
-            index = 2 if match["macro"] == "PLUGINLIB_DECLARE_CLASS" else 0
-            if len(arguments) > index:
-                begin, end = arguments[index]
+        for match in _COMPONENT.finditer(text):
+            for begin, end in list(_arguments(text, match.end() - 1))[:1]:
                 self._add(NameKind.PLUGIN, "".join(text[begin:end].split()), begin, end)
         for match in _CLASS.finditer(text):
             self._add(NameKind.CLASS, match["name"], match.start("name"), match.end("name"))
@@ -174,14 +173,22 @@ class _Reader:
         candidates = arguments if is_action else named
         found = next(((begin, end) for begin, end in candidates if self._value(begin, end) is not None), None)
         if found is not None:
-            self._add_called(kind, function, type_name, arguments, found)
+            receiver = _RECEIVER.search(text, max(0, match.start("name") - 80), match.start("name"))
+            namespace = self._namespaces.get(receiver["name"], "") if receiver and function in _ROS1 else ""
+            self._add_called(kind, function, type_name, arguments, found, namespace)
         elif candidates and (function not in _ROS1 or (type_name and kind is not NameKind.PARAMETER)):
             begin, end = candidates[0] if not is_action else candidates[min(1, len(candidates) - 1)]
             expression = SourceName(kind, " ".join(text[begin:end].split()), type_name, self._span(begin, end))
             self._names.expressions.append(expression)
 
     def _add_called(
-        self, kind: NameKind, function: str, type_name: str, arguments: list[tuple[int, int]], found: tuple[int, int]
+        self,
+        kind: NameKind,
+        function: str,
+        type_name: str,
+        arguments: list[tuple[int, int]],
+        found: tuple[int, int],
+        namespace: str,
     ) -> None:
         details: list[tuple[Detail, str]] = []
         others = [self._text[begin:end].strip() for begin, end in arguments[1:]]
@@ -193,8 +200,10 @@ class _Reader:
             details.append((Detail.QUEUE if function in _ROS1 else Detail.QOS, " ".join(others[0].split())))
         if kind is NameKind.PUBLISHER and function in _ROS1 and others[-1:] == ["true"]:
             details.append((Detail.LATCH, YES))
-        name = self._value(*found)
-        self._add(kind, name or "", *found, type_name, tuple(details))
+        name = self._value(*found) or ""
+        if namespace and name and not name.startswith(("/", "~")):
+            name = f"{namespace}{'' if namespace == '~' else '/'}{name}"
+        self._add(kind, name, *found, type_name, tuple(details))
 
     def _default(self, function: str, arguments: list[tuple[int, int]]) -> str:
         """Return the literal default of a parameter; that of a function that returns the value is the second."""
@@ -284,6 +293,20 @@ def _constants(text: str) -> Mapping[str, str]:
         if assigned <= 1 and not is_output and name not in constants:
             constants[name] = match["text"] if match["macro"] is None else match["value"]
     return constants
+
+
+def _namespaces(text: str) -> Mapping[str, str]:
+    """Return the namespaces of node handles of ROS 1, by variable."""
+    members = set(re.findall(r"\bNodeHandle\s+(\w+)\s*;", text))
+    namespaces = {
+        match["name"]: match["namespace"].rstrip("/")
+        for handles in _HANDLES.finditer(text)
+        for match in _HANDLE.finditer(handles["names"])
+    }
+    for match in _HANDLE.finditer(text):
+        if match["name"] in members:
+            namespaces[match["name"]] = match["namespace"].rstrip("/")
+    return namespaces
 
 
 def _without_comment(match: re.Match[str]) -> str:
