@@ -177,6 +177,7 @@ HANDLES = """int main(int argc, char ** argv) {
   ros::param::param<int>("~rate", rate, 10);
   imu = nh.advertise<sensor_msgs::Imu>("imu/data", 1);
   state = private_nh.advertise<std_msgs::String>("state", 1);
+  reset = nh.advertiseService<arm::Reset::Request, arm::Reset::Response>("reset", &f);
 }
 """
 
@@ -186,6 +187,8 @@ HANDLES = """int main(int argc, char ** argv) {
     [
         ('ros::param::param<int>("~rate"', 'private_nh.param<int>("rate"', []),
         ('nh.advertise<sensor_msgs::Imu>("imu/data"', 'imu_nh.advertise<sensor_msgs::Imu>("data"', []),
+        ('nh.advertiseService<arm', 'imu_nh.advertiseService<arm',
+         ["service 'reset' (Reset) renamed to 'imu/reset' (Reset)"]),
         ('private_nh.advertise<std_msgs::String>("state"', 'nh.advertise<std_msgs::String>("state"',
          ["publisher '~state' (String) renamed to 'state' (String)"]),
     ],

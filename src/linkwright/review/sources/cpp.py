@@ -158,7 +158,10 @@ class _Reader:
         start, type_name = match.end(), ""
         if text[start] == "<":
             end = _end_of(text, start)
-            type_name = " ".join(text[start + 1 : end].split()).rpartition("::")[2]
+            type_name = " ".join(text[start + 1 : end].split())
+            if function == "advertiseService":
+                type_name = type_name.partition(",")[0].removesuffix("::Request")
+            type_name = type_name.rpartition("::")[2]
             start = text.find("(", end, end + 20)
         if start < 0 or text[start : start + 1] != "(":
             return
