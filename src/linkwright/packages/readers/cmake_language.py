@@ -59,6 +59,18 @@ _PLATFORM_VARIABLES = {
     "APPLE": "1" if sys.platform == "darwin" else "0",
 }
 _FOUND_VARIABLES = {"catkin_FOUND": "0", **dict.fromkeys(("ament_cmake_FOUND", "ament_cmake_auto_FOUND"), "1")}
+_CATKIN_FOLDERS = {
+    "PACKAGE_SHARE": "share/{}",
+    "PACKAGE_BIN": "lib/{}",
+    "PACKAGE_LIB": "lib",
+    "PACKAGE_INCLUDE": "include/{}",
+    "PACKAGE_ETC": "etc/{}",
+    "GLOBAL_SHARE": "share",
+    "GLOBAL_BIN": "bin",
+    "GLOBAL_LIB": "lib",
+    "GLOBAL_INCLUDE": "include",
+}
+"""The folders of catkin's variables, such as ``CATKIN_PACKAGE_BIN_DESTINATION``, with a place for the project."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -307,8 +319,8 @@ class CMakeProgram:
             self._exit_command = name if self._unknown_conditions == self._enclosing_depths.get(name) else ""
         elif name in self._routines:
             yield from self._call(self._routines[name], words)
-        elif name in ("add_subdirectory", "include") and words:
-            yield from self._run_other_file(name, words[0])
+        elif name in ("add_subdirectory", "rosbuild_add_subdirectory", "include") and words:
+            yield from self._run_other_file(name.removeprefix("rosbuild_"), words[0])
         else:
             self._apply_assignment(name, words)
             yield command
@@ -384,8 +396,9 @@ class CMakeProgram:
             self.variables["PROJECT_NAME"] = self.variables["CMAKE_PROJECT_NAME"] = words[0]
             self.variables |= {f"{words[0]}_SOURCE_DIR": SOURCE, f"{words[0]}_BINARY_DIR": BUILD}
             self.variables |= version_variables(words)
-            for variable in ("CATKIN_PACKAGE_SHARE_DESTINATION", "CATKIN_PACKAGE_BIN_DESTINATION"):
-                self.variables[variable] = f"{'share' if 'SHARE' in variable else 'lib'}/{words[0]}"
+            self.variables |= {
+                f"CATKIN_{name}_DESTINATION": folder.format(words[0]) for name, folder in _CATKIN_FOLDERS.items()
+            }
         elif name == "set" and words:
             self._set_values(words)
         elif name == "option" and words:
