@@ -201,11 +201,12 @@ def generate_launch_description():
 @pytest.mark.parametrize(
     ("old", "new", "expected", "is_breaking"),
     [
-        ("        hand,\n", "", ["node 'arm/hand' removed"], True),
+        ("        hand,\n", "", ["node 'arm/hand' removed: name hand, arguments [a/b, c/d/e]"], True),
         ('"a" + "/b", os.path.join("c", "d") + "/e"', '"a/b", "c/d/e"', [], False),
         (', name="hand"', "", ["node 'arm/hand': name hand removed"], False),
         ("target_action=driver", "target_action=hand",
-         ["event handler OnProcessExit of arm/hand added", "event handler OnProcessExit of arm/driver removed"], False),
+         ["event handler OnProcessExit of arm/hand added: on_exit [EmitEvent]",
+          "event handler OnProcessExit of arm/driver removed: on_exit [EmitEvent]"], False),
         ("on_exit=[EmitEvent()]", "on_exit=[hand]",
          ["event handler OnProcessExit of arm/driver: on_exit [EmitEvent] -> [arm/hand]"], False),
         ('{"speed": speed}', '{"speed": 1}',

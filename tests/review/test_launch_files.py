@@ -87,9 +87,9 @@ YAML = """launch:
          "node 'arm/teleop': remapping cmd_vel $(var cmd_vel_out) added", False),
         ('("joy", "arm/joy")', '', "node 'arm/teleop': remapping joy arm/joy removed", True),
         ('        Node(package="ros_gz_sim", executable="create", name="create"),\n', "",
-         "node 'ros_gz_sim/create' removed", False),
+         "node 'ros_gz_sim/create' removed: name create", False),
         ('        Node(package="controller_manager", executable="spawner", arguments=["arm_controller", "-v"]),\n',
-         "", "node 'controller_manager/spawner' of 'arm_controller' removed", True),
+         "", "node 'controller_manager/spawner' of 'arm_controller' removed: arguments [arm_controller, -v]", True),
         ('"--child-frame-id", "lidar"', '"--child-frame-id", "laser"',
          ("node 'tf2_ros/static_transform_publisher' of 'laser': "
           "arguments [--frame-id, base, --child-frame-id, lidar] -> [--frame-id, base, --child-frame-id, laser]"),
@@ -158,7 +158,7 @@ def test_launch_file_with_name_of_a_test_is_compared(changes_of):
          "remapping of 'scan' for the nodes that follow: to front/scan -> back/scan", True),
         ('  <rosparam command="load" file="drive.yaml"/>\n', "", "parameters of 'drive.yaml' removed", False),
         ('"use_sim_time" value="true"', '"use_sim_time" value="false"',
-         "parameter 'use_sim_time' of the nodes that follow: value true -> false", False),
+         "parameter 'use_sim_time': value true -> false", False),
         ('"ROBOT" value="arm"', '"ROBOT" value="leg"', "environment variable 'ROBOT': value arm -> leg", False),
         ('<arg name="ur" default="$(arg ur)"/>', '<arg name="ur" default="ur10"/>',
          "include of 'other.launch': ur $(arg ur) -> ur10", False),
@@ -230,7 +230,7 @@ PACKAGE = {
 @pytest.mark.parametrize(
     ("old", "new", "expected", "is_breaking"),
     [
-        ("    ld.add_action(Mixin.arg_frame())\n", "", "argument 'frame' removed", True),
+        ("    ld.add_action(Mixin.arg_frame())\n", "", "argument 'frame' removed: default base", True),
         ("rate=10", "rate=20", "node 'arm/driver': parameter rate 10 -> 20", False),
         ('IfCondition("a")', 'IfCondition("b")', "node 'arm/driver': condition if a -> if b", False),
         ('"left"', '"right"', "action 'node_camera': arguments [left] -> [right]", False),
@@ -275,9 +275,9 @@ def generate_launch_description():
     ("old", "new", "expected"),
     [
         ('"tty0"', '"tty1"', "argument 'port': default tty0 -> tty1"),
-        (', {"name": "port", "default": "tty0"}', "", "argument 'port' removed"),
+        (', {"name": "port", "default": "tty0"}', "", "argument 'port' removed: default tty0"),
         ('["left", "right"]', '["left", "rear"]', "node 'arm/driver': namespace right -> rear"),
-        ('["left", "right"]', '["left"]', "node 'arm/driver' removed"),
+        ('["left", "right"]', '["left"]', "node 'arm/driver' removed: namespace right"),
     ],
 )
 def test_actions_of_loops_over_lists_are_compared(changes_of, old, new, expected):
@@ -322,7 +322,10 @@ def test_controllers_of_a_spawner_come_after_its_options(changes_of):
     start = text.index('        Node(package="controller_manager"')
     line = text[start : text.index("\n", start) + 1]
     assert changes_of("arm.launch.py", text, line, "")[0] == [
-        "node 'controller_manager/spawner' of 'arm_controller' removed"
+        (
+            "node 'controller_manager/spawner' of 'arm_controller' removed: arguments "
+            "[--controller-manager-timeout, 60, --inactive, arm_controller, --controller-ros-args, -r a:=b]"
+        )
     ]
 
 
@@ -341,7 +344,10 @@ def test_action_under_a_new_name_is_replaced(changes_of, old, new, expected):
 
 def test_program_of_the_same_package_is_not_a_replacement(changes_of):
     changes, found_breaking = changes_of("arm.launch.py", PYTHON, 'executable="teleop"', 'executable="keyboard"')
-    assert changes == ["node 'arm/keyboard' added: remapping joy arm/joy", "node 'arm/teleop' removed"]
+    assert changes == [
+        "node 'arm/keyboard' added: remapping joy -> arm/joy",
+        "node 'arm/teleop' removed: remapping joy -> arm/joy",
+    ]
     assert found_breaking == changes[1:]
 
 

@@ -24,10 +24,13 @@ GROUP, SECOND, INCLUDE, SCRIPT = (line + "\n" for line in JOY.splitlines()[2:6])
     [
         ({GROUP: '<node pkg="joy" type="joy_node" name="joy"/>\n', SECOND: ""}, []),
         ({GROUP: "", SECOND: '<node pkg="joy" type="joy_node" name="joy"/>\n'}, []),
-        ({GROUP: "", SECOND: ""}, ["node 'joy/joy_node' removed"]),
+        ({GROUP: "", SECOND: ""}, ["node 'joy/joy_node' removed: unless $(arg local), name joy, machine robot"]),
         (
             {GROUP: '<node pkg="joy" type="joy_node" name="stick"/>\n', SECOND: ""},
-            ["node 'joy/joy_node': name joy -> stick", "node 'joy/joy_node' removed"],
+            [
+                "node 'joy/joy_node': name joy -> stick",
+                "node 'joy/joy_node' removed: unless $(arg local), name joy, machine robot",
+            ],
         ),
         ({INCLUDE: ""}, []),
         ({SCRIPT: ""}, []),
@@ -88,7 +91,7 @@ def test_added_launch_file_is_shown_with_the_settings_of_its_actions(repository,
     repository.write({"arm/launch/arm.launch": ADDED})
     (text,) = sentences(subject(compare(repository), "arm/launch/arm.launch"))
     assert text == (
-        "launch file added: node 'arm/camera' (name camera, remapping image /image, parameter fps 30), "
+        "launch file added: node 'arm/camera' (name camera, remapping image -> /image, parameter fps 30), "
         "include of '$(find elsewhere)/launch/demo.launch' (pipeline chomp), "
         "parameters of '$(find arm)/config/a.yaml' (if $(arg rate)), "
         "argument 'robot' (required), argument 'rate' (default 10), argument 'name' (default '')"

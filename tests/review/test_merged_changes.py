@@ -102,13 +102,16 @@ def test_joint_without_limits_has_no_limits_of_zero(package, compare):
     text = MACRO.replace('type="revolute"', 'type="continuous"').replace('lower="-1.5" upper="1.5" ', "")
     package.write({SEGMENT: text})
     lines = [line for line in sentences(subject(compare(package), ROBOT)) if "limit" in line]
-    assert lines == ["joint 'upper_joint': limit lower removed", "joint 'upper_joint': limit upper removed"]
+    assert lines == [
+        "joint 'upper_joint': limit lower removed: -1.5 rad",
+        "joint 'upper_joint': limit upper removed: 1.5 rad",
+    ]
 
 
 def test_added_sensors_have_their_topics(package, compare):
     package.commit({ROBOT: with_ranges("")})
     package.write({ROBOT: with_ranges(SENSOR)})
-    expected = "extension 'gazebo fl_range' added: sensor 'fl_range' with the topics '/range/fl'"
+    expected = "extension 'gazebo fl_range' added: sensor 'fl_range' (type=gpu_lidar, topic /range/fl)"
     assert sentences(subject(compare(package), ROBOT)) == [expected]
 
 
@@ -154,7 +157,7 @@ def test_parameters_that_hardware_gains_are_one_line(repository, compare):
     added = '<param name="ip">1.2.3.4</param><param name="port">80</param>'
     repository.write({"a/urdf/r.urdf": robot.format(hardware.format(added))})
     (found,) = subject(compare(repository), "a/urdf/r.urdf").changes
-    expected = "extension 'ros2_control arm': hardware param ip added: name=ip 1.2.3.4; also 'param port'"
+    expected = "extension 'ros2_control arm': hardware param ip added: 1.2.3.4; also 'param port 80'"
     assert str(sentence_of(found)) == expected
 
 

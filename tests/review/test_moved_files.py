@@ -36,7 +36,12 @@ def test_files_that_are_installed_at_the_same_place_are_one_line(repository, com
 
 
 def test_files_that_are_installed_at_another_place_are_breaking(repository, compare):
-    assert len(breaking(moved(repository, compare, "examples", "launch"))) == len(NAMES)
+    assert breaking(moved(repository, compare, "examples", "launch")) == [
+        (
+            "folder renamed from arm/examples/ with 4 compared files: "
+            "launch/all.launch.xml, launch/arm.launch.xml, launch/gripper.launch.xml, launch/tool.launch.xml"
+        )
+    ]
 
 
 PLUGINS = """<library path="arm">

@@ -130,14 +130,15 @@ def test_renamed_frame_of_an_uncalled_macro_is_breaking(library, compare):
 def test_topic_that_another_tag_keeps_is_not_lost(library, compare, new, reason):
     library.write({TOOL: GRIPPER.replace("<topicName>image</topicName>", new)})
     changes = {str(change.sentence): change.reason for change in subject(compare(library), TOOL).changes}
-    sensor_change = changes["macro 'gripper': gazebo ${name} sensor camera plugin driver topicName removed"]
+    sensor_change = changes["macro 'gripper': gazebo ${name} sensor camera plugin driver topicName image removed"]
     assert (None if sensor_change is None else str(sensor_change)) == reason
 
 
 def test_removed_plugin_of_an_uncalled_macro_is_breaking_if_it_names_topics(library, compare):
     start, end = GRIPPER.index("    <gazebo"), GRIPPER.index("  </xacro:macro>")
     library.write({TOOL: GRIPPER[:start] + GRIPPER[end:]})
-    assert breaking(compare(library)) == ["macro 'gripper': gazebo ${name} removed"]
+    values = "sensor camera plugin driver filename=driver.so, sensor camera plugin driver topicName image"
+    assert breaking(compare(library)) == [f"macro 'gripper': gazebo ${{name}} removed: {values}"]
 
 
 def test_other_condition_is_a_change(library, compare):
@@ -222,7 +223,7 @@ def test_variants_behind_conditions_are_not_taken_for_one_that_changed(library, 
     library.write({TOOL: GRIPPER.replace(old, plugin.format(variants))})
     assert sentences(subject(compare(library), TOOL)) == [
         "macro 'gripper': ros2_control hand hardware plugin a/Hand [if ${a}] added",
-        "macro 'gripper': ros2_control hand hardware plugin removed",
+        "macro 'gripper': ros2_control hand hardware plugin mock/Hand removed",
     ]
 
 
@@ -231,7 +232,7 @@ def test_world_with_xacro_is_compared_as_it_is_written(library, compare):
     text = '<sdf xmlns:xacro="http://www.ros.org/wiki/xacro"><world name="hall">{}</world></sdf>'
     library.commit({path: text.format("")})
     library.write({path: text.format("<wind><linear_velocity>1 0 0</linear_velocity></wind>")})
-    assert sentences(subject(compare(library), path)) == ["world hall wind added"]
+    assert sentences(subject(compare(library), path)) == ["world hall wind added: linear_velocity 1 0 0"]
 
 
 def test_handed_on_parameter_is_reported_once(library, compare):

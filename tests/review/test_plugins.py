@@ -25,11 +25,17 @@ def robot(*extensions: str) -> str:
 @pytest.mark.parametrize(
     ("old", "new", "expected", "is_breaking"),
     [
-        ([LIGHT], [LIGHT, DOCK], "extension 'gazebo' added: plugin 'dock' with the topics 'dock'", False),
-        ([LIGHT, DRIVE], [LIGHT], "extension 'gazebo' removed: plugin 'drive' with the topics 'cmd_vel', 'odom'", True),
-        ([DRIVE], [DOCK], "extension 'gazebo': plugin drive removed: topics 'cmd_vel', 'odom'", True),
-        ([LIGHT, DOCK], [LIGHT], "extension 'gazebo' removed: plugin 'dock' with the topics 'dock'", True),
-        (["<gazebo/>", LIGHT], ["<gazebo/>"], "extension 'gazebo base' removed", False),
+        ([LIGHT], [LIGHT, DOCK],
+         "extension 'gazebo' added: plugin 'dock' (filename=libdock.so, ros remapping ~/out:=dock)", False),
+        ([LIGHT, DRIVE], [LIGHT],
+         ("extension 'gazebo' removed: plugin 'drive' (filename=libgazebo_ros_diff_drive.so, odom_frame odom, "
+          "topics 'cmd_vel', 'odom')"), True),
+        ([DRIVE], [DOCK],
+         ("extension 'gazebo': plugin drive removed: filename=libgazebo_ros_diff_drive.so, odom_frame odom, "
+          "topics 'cmd_vel', 'odom'"), True),
+        ([LIGHT, DOCK], [LIGHT],
+         "extension 'gazebo' removed: plugin 'dock' (filename=libdock.so, ros remapping ~/out:=dock)", True),
+        (["<gazebo/>", LIGHT], ["<gazebo/>"], "extension 'gazebo base' removed: turnGravityOff true", False),
         ([HARDWARE.format(joint=JOINT.format(name="a"))], [HARDWARE.format(joint=JOINT.format(name="b"))],
          "extension 'ros2_control arm': joint a renamed to 'b'", True),
     ],

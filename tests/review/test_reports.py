@@ -69,7 +69,7 @@ def test_equal_changes_of_several_files_are_listed_once(package, compare):
     paths = ", ".join(names[1:5])
     assert f"  = the same in 5 more files: {paths} and 1 more" in lines
     assert [line for line in lines if line in names] == [names[0], names[6]]
-    breaking = [change for _, change in result.breaking_changes if "cmd_vel" in str(change.sentence)]
+    breaking = [change for _, change in result.breaking_changes if "cmd_vel_nav" in str(change.sentence)]
     assert len(breaking) == 12
     for report in (as_markdown(result), as_html(result)):
         assert re.search(r"the same in 5 more files: .* and 1 more", report)

@@ -140,9 +140,10 @@ DYNAMICS = "<xyz>0 0 1</xyz><dynamics><damping>{}</damping><friction>3.48</frict
          ["model cart model hand added: links palm, thumb"]),
         ("</model>", "<include><name>box</name><uri>model://box</uri><pose>1 0 0 0 0 0</pose></include></model>",
          ["model cart include box added: uri model://box, pose 1 0 0 0 0 0"]),
-        ("</model>", "<plugin name='p' filename='f'>" + "".join(f"<v{n}>{n}</v{n}>" for n in range(10))
+        ("</model>", "<plugin name='p' filename='f'>" + "".join(f"<v{n}>{n}</v{n}>" for n in range(14))
          + "</plugin></model>",
-         ["model cart plugin p filename=f added: v0 0, v1 1, v2 2, v3 3, v4 4, v5 5, v6 6, v7 7 and 2 more"]),
+         [("model cart plugin p filename=f added: v0 0, v1 1, v2 2, v3 3, v4 4, v5 5, v6 6, v7 7, v8 8, v9 9, v10 10, "
+           "v11 11 and 2 more")]),
     ],
 )  # fmt: skip
 def test_added_elements_are_shown_with_their_values(repository, compare, old, new, expected):

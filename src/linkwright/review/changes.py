@@ -12,6 +12,8 @@ from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.review.paths import PathComparison
 
 _QUOTED = re.compile("'[^']*'")
+REMOVED_VALUE = "value"
+"""The argument of a sentence that is the value of a removed property."""
 
 
 class Effect(Enum):
@@ -27,6 +29,7 @@ class SubjectKind(Enum):
 
     DESCRIPTION = "description"
     WORLD = "world"
+    TEMPLATE = "template of a model or world"
     LAUNCH_FILE = "launch file"
     PARAMETERS = "parameter file"
     MAP = "map"
@@ -109,8 +112,9 @@ class Change:
     @property
     def values(self) -> tuple[str, str, str, str]:
         """The form of the sentence, the kind of the changed object, and both values."""
-        subject, old, new = (str(self.core.arguments.get(name)) for name in ("subject", "old", "new"))
-        return self.core.template, subject, old, new
+        arguments = self.core.arguments
+        subject, old, new = (str(arguments.get(name)) for name in ("subject", "old", "new"))
+        return self.core.template, subject, old, str(arguments.get(REMOVED_VALUE, new))
 
     @property
     def core(self) -> Phrase:

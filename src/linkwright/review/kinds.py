@@ -31,6 +31,7 @@ from linkwright.review.files.python_settings import (
 from linkwright.review.files.rviz_files import compare_rviz_files, rviz_contents
 from linkwright.review.files.semantics import compare_semantics, semantic_contents
 from linkwright.review.files.setup_files import SETUP_FILE, compare_setup_files, read_setup_facts
+from linkwright.review.files.templates import TEMPLATE_SUFFIXES
 from linkwright.review.files.worlds import compare_worlds, world_contents
 from linkwright.review.launches.contents import launch_contents
 from linkwright.review.launches.files import compare_launch_files
@@ -83,6 +84,7 @@ PARAMETERS = KindRule(
     phrase("parameter file removed"),
     phrase("launch files and users that name the file do not find it"),
     contents=parameter_contents,
+    shows_removed=True,
 )
 SEMANTIC_XACRO = KindRule(
     SubjectKind.SEMANTICS,
@@ -110,6 +112,16 @@ _RULES = (
         phrase("world removed"),
         phrase("launch files and users that name the file do not find it"),
         contents=world_contents,
+    ),
+    KindRule(
+        SubjectKind.TEMPLATE,
+        compare_worlds,
+        TEMPLATE_SUFFIXES,
+        phrase("template of a model or world added"),
+        phrase("template of a model or world removed"),
+        phrase("build files and programs that name the file do not find it"),
+        contents=world_contents,
+        shows_removed=True,
     ),
     KindRule(
         SubjectKind.LAUNCH_FILE,

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from linkwright.diagnostics import Phrase, phrase
 
+EMPTY = "''"
+"""An empty value as users write it."""
 _LONG_LIST = 4
 """The number of items up to which both versions of a list are shown."""
 _LONG_VALUE = 200

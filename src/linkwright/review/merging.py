@@ -7,7 +7,7 @@ from collections.abc import Callable, Hashable, Iterable
 from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.changes import Change, Location
+from linkwright.review.changes import REMOVED_VALUE, Change, Location
 
 _PART = re.compile(r"(?P<part>(?:joint|gpio|sensor) \S+) (?P<rest>.+)")
 """A property of hardware of ros2_control below one of its joints, GPIOs or sensors."""
@@ -49,6 +49,8 @@ def _content(change: Change) -> Hashable:
     """Return a key that is equal for the same change of other links, joints or extensions."""
     own_name = change.name.rpartition(" ")[2]
     effect, property_name, (template, subject, old, new) = change.content
+    if REMOVED_VALUE in change.core.arguments:
+        new = ""  # properties that are removed together had different values
     old_name = _old_name(change)
     if old_name is not None:
         return effect, template, subject, name_edit(old_name, change.name)
@@ -94,14 +96,14 @@ def _names(change: Change) -> tuple[str, ...]:
 
 def _content_of_part(change: Change) -> Hashable | None:
     """Return a key that is equal for the same change of other joints of the same hardware; None for other changes."""
-    if change.other_names:
-        return None
     new_name = _new_part_name(change)
     if new_name is not None:
+        if change.other_names:
+            return None
         tag, _, old_name = change.property_name.rpartition(" ")
         return change.effect, change.name, tag, name_edit(old_name, new_name)
     part = _PART.fullmatch(change.property_name)
-    return None if part is None else (change.effect, change.name, part["rest"], change.values)
+    return None if part is None else (change.effect, change.name, part["rest"], change.values, change.other_names)
 
 
 def _new_part_name(change: Change) -> str | None:
@@ -129,12 +131,17 @@ def _parent_of_parameter(change: Change) -> Hashable | None:
 
 def _parameter_names(change: Change) -> tuple[str, ...]:
     parameter = _PARAMETER.fullmatch(change.property_name)
-    return (change.name,) if parameter is None else (parameter["parameter"],)
+    if parameter is None:
+        return (change.name,)
+    arguments = change.core.arguments
+    return (f"{parameter['parameter']} {arguments.get('new', arguments.get(REMOVED_VALUE, ''))}".strip(),)
 
 
 def _as_one(changes: list[Change], names_of: Callable[[Change], tuple[str, ...]]) -> Change:
     first = changes[0]
     names = dict.fromkeys(name for change in changes for name in names_of(change))
+    if names_of is _part_names:
+        names |= dict.fromkeys(first.other_names)
     for name in names_of(first)[:1]:
         del names[name]
     locations: dict[Location, None] = {}
@@ -142,4 +149,9 @@ def _as_one(changes: list[Change], names_of: Callable[[Change], tuple[str, ...]]
         if change.location is not None and change.location != first.location:
             locations[change.location] = None
     reason = common_reason(change.reason for change in changes)
-    return replace(first, reason=reason, other_names=tuple(names), other_locations=tuple(locations))
+    sentence = first.sentence
+    is_parameter = names_of is _parameter_names
+    if not is_parameter and len({str(change.core.arguments.get(REMOVED_VALUE)) for change in changes}) > 1:
+        arguments = {name: value for name, value in first.core.arguments.items() if name != REMOVED_VALUE}
+        sentence = phrase("{subject} '{name}': {property} removed", **arguments)
+    return replace(first, sentence=sentence, reason=reason, other_names=tuple(names), other_locations=tuple(locations))

@@ -8,6 +8,8 @@ from pathlib import PurePosixPath
 
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, joined, phrase, quoted_names
+from linkwright.diagnostics.phrase import as_phrase
+from linkwright.review.element_values import values_text
 from linkwright.review.names_in_plugins import NAME_TAGS, used_name
 from linkwright.xmltree import Element
 
@@ -22,6 +24,9 @@ _DEFAULT_TOPICS = {
 }
 """By plugin: the default topics, and a pattern for the parameters and remappings that give others."""
 _TOPIC_TAGS = re.compile(r"topic", re.IGNORECASE)
+_PARTS = ("plugin", "sensor")
+_MAX_VALUES = 12
+"""The number of values of a plugin, sensor or another element that a line shows."""
 _FILE = re.compile(r"(lib)?(?P<name>.+?)(\.so)?")
 
 
@@ -42,6 +47,12 @@ def plugin_topics(plugin: Element) -> list[str]:
     """Return the topics that a plugin names, and the default topics of a known one."""
     parameters = list(_parameters(plugin))
     topics = [used_name(value) for tag, value in parameters if _TOPIC_TAGS.search(tag) or tag == "remapping"]
+    return list(dict.fromkeys([*topics, *_default_topics(plugin)]))
+
+
+def _default_topics(plugin: Element) -> list[str]:
+    """Return the default topics of a known plugin that it does not replace."""
+    parameters, topics = list(_parameters(plugin)), []
     match = _FILE.fullmatch(PurePosixPath(plugin.attributes.get("filename", "")).name)
     for topic, pattern in _DEFAULT_TOPICS.get(match["name"] if match else "", {}).items():
         is_replaced = re.compile(pattern, re.IGNORECASE)
@@ -51,7 +62,7 @@ def plugin_topics(plugin: Element) -> list[str]:
             if _TOPIC_TAGS.search(tag) or tag == "remapping"
         ):
             topics.append(topic)
-    return list(dict.fromkeys(topics))
+    return topics
 
 
 def sensor_topics(element: Element) -> list[str]:
@@ -68,32 +79,43 @@ def _parameters(plugin: Element) -> Iterator[tuple[str, str]]:
         yield from _parameters(child)
 
 
-def _sensors_with_topics(element: Element) -> Iterator[Phrase]:
-    """Yield the sensors in an element that name topics."""
-    own = [child.text().strip() for child in element.elements("topic")] if element.tag == "sensor" else []
-    topics = list(filter(None, own))
-    if topics:
-        name = element.attributes.get("name") or element.attributes.get("type", "")
-        yield phrase("sensor '{name}' with the topics {topics}", name=name, topics=quoted_names(topics))
-    for child in element.elements():
-        yield from _sensors_with_topics(child)
-
-
 def contents_text(element: Element) -> Phrase | None:
-    """Return the topics of a plugin, or the plugins and sensors in another element with theirs, or None."""
-    if element.tag == "plugin":
-        topics = plugin_topics(element)
-        return phrase("topics {topics}", topics=quoted_names(topics)) if topics else None
+    """Return the values of a plugin or sensor, or the plugins and sensors in another element with theirs, or None.
+
+    A plugin has the default topics of a known one, too.
+    """
+    if element.tag in _PARTS or not any(child.tag in _PARTS and child.attributes for child in element.walk()):
+        texts = [values_text(element, _MAX_VALUES), _default_topics_text(element)]
+        return joined(list(filter(None, texts))) if any(texts) else None
+    texts = [*plugin_parts(element, _MAX_VALUES), values_text(element, _MAX_VALUES, _PARTS)]
+    return joined(list(filter(None, texts)))
+
+
+def plugin_parts(element: Element, limit: int) -> list[Phrase]:
+    """Return the plugins and sensors in an element with their values.
+
+    Args:
+        element: the element.
+        limit: the number of values of each of them that are shown.
+    """
     parts: list[Phrase] = []
-    for plugin in plugins_of(element):
-        topics = plugin_topics(plugin)
-        part = phrase("plugin '{name}'", name=plugin_name(plugin))
-        if topics:
-            names = quoted_names(topics)
-            part = phrase("plugin '{name}' with the topics {topics}", name=plugin_name(plugin), topics=names)
-        parts.append(part)
-    parts += _sensors_with_topics(element)
-    return joined(parts) if parts else None
+    for child in element.elements():
+        if child.tag in _PARTS and child.attributes:
+            attributes = {name: value for name, value in child.attributes.items() if name != "name"}
+            texts: list[Phrase | None] = [as_phrase(f"{name}={value}") for name, value in attributes.items()]
+            texts += [values_text(child, limit, _PARTS), _default_topics_text(child)]
+            title = phrase("plugin '{name}'", name=plugin_name(child))
+            if child.tag == "sensor":
+                title = phrase("sensor '{name}'", name=child.attributes.get("name", ""))
+            items = list(filter(None, texts))
+            parts.append(phrase("{entry} ({items})", entry=title, items=joined(items)) if items else title)
+        parts += plugin_parts(child, limit)
+    return parts
+
+
+def _default_topics_text(element: Element) -> Phrase | None:
+    topics = _default_topics(element) if element.tag == "plugin" else []
+    return phrase("topics {topics}", topics=quoted_names(topics)) if topics else None
 
 
 def topics_of(element: Element) -> list[str]:
@@ -113,21 +135,50 @@ def is_removed(difference: Difference) -> bool:
 
 
 def added_topics(differences: Iterable[Difference]) -> frozenset[str]:
-    """Return the topics of the plugins and sensors that a new version adds."""
-    elements = (each.element for each in differences if each.kind == "added" or each.new is not None)
-    return frozenset(topic for element in elements if element is not None for topic in topics_of(element))
+    """Return the topics of the plugins and sensors that a new version adds, and those in changed values of plugins."""
+    topics: set[str] = set()
+    for difference in differences:
+        if is_removed(difference):
+            continue
+        if difference.element is not None:
+            topics |= {*topics_of(difference.element), *_names_in(difference.element)}
+        elif difference.new is not None and NAME_TAGS.search(difference.property.rpartition(" ")[2]):
+            topics.add(used_name(difference.new))
+    return frozenset(topics)
+
+
+def _names_in(element: Element) -> Iterator[str]:
+    """Yield the names in the parameters of a plugin that an element is, or contains."""
+    text = " ".join(element.text().split())
+    own = [(element.tag, text)] if text and NAME_TAGS.search(element.tag) else []
+    yield from (used_name(value) for _, value in (*own, *_parameters(element)))
+
+
+def is_still_offered(difference: Difference, added: frozenset[str]) -> bool:
+    """Return whether another value of the new version has the name that a value of a plugin had.
+
+    Args:
+        difference: the difference.
+        added: the names that the new version adds; see `added_topics`.
+    """
+    if difference.subject != "extension" or difference.kind != "changed" or not difference.old:
+        return False
+    is_name = NAME_TAGS.search(difference.property.rpartition(" ")[2]) is not None
+    name = used_name(difference.old if difference.element is None else difference.element.text())
+    return is_name and name in added
 
 
 def missing_topics_reason(difference: Difference, added: frozenset[str]) -> Phrase | None:
-    """Return why it is breaking that an element is removed: topics that others use are missing.
+    """Return why it is breaking that an element is removed or replaced: topics that others use are missing.
 
     Args:
         difference: the difference.
         added: the topics that other elements of the new version offer.
     """
-    if not is_removed(difference) or difference.element is None:
+    element = difference.element if is_removed(difference) else getattr(difference, "old_plugin", None)
+    if element is None:
         return None
-    topics = [topic for topic in topics_of(difference.element) if topic not in added]
+    topics = [topic for topic in topics_of(element) if topic not in added]
     if not topics:
         return None
     return phrase("programs that use {topics} do not find the names", topics=quoted_names(topics))

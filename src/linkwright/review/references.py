@@ -33,7 +33,7 @@ def lost_references(versions: Versions, changed_files: Sequence[ChangedFile]) ->
         if not any(name in text for name in names):
             continue
         for package, subpath, span in _shared_paths(SourceText(str(file), text), path):
-            if _is_lost(versions, package, subpath, lost):
+            if _is_lost(versions, path, package, subpath, lost):
                 yield path, _change(path, package, subpath, span)
 
 
@@ -56,9 +56,11 @@ def _shared_paths(source: SourceText, path: str) -> Iterator[tuple[str, str, Spa
         yield match[1], match[2], source.span(match.start(), match.end())
 
 
-def _is_lost(versions: Versions, package: str, subpath: str, lost: Collection[str]) -> bool:
+def _is_lost(versions: Versions, path: str, package: str, subpath: str, lost: Collection[str]) -> bool:
     """Return whether only the old version has a file of a package, and a change removed or renamed it."""
-    old_share, new_share = versions.old.shares.get(package), versions.new.shares.get(package)
+    old_share, new_share = (
+        version.share_of(package, version.file(path).parent) for version in (versions.old, versions.new)
+    )
     if old_share is None or not (old_share / subpath).is_file():
         return False
     if new_share is not None and (new_share / subpath).exists():

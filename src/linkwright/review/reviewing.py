@@ -45,6 +45,7 @@ from linkwright.review.notes import is_unreadable_as_before, missing_notes, unre
 from linkwright.review.other_files import file_states
 from linkwright.review.parts import compare_parts
 from linkwright.review.references import lost_references
+from linkwright.review.renamed_folders import with_renamed_folders
 from linkwright.review.renamed_packages import with_moved_files, without_consequences
 from linkwright.review.robots.lone_robots import read_lone_robot, robot_text
 from linkwright.review.robots.semantics import semantic_files
@@ -132,6 +133,7 @@ class _Reviewer:
         reported = _reported_paths(all_subjects)
         all_subjects, notes = without_consequences(self._versions, all_subjects)
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
+        all_subjects = with_renamed_folders(all_subjects)
         untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
         reported |= {path for rule, *paths in pairs if rule.kind not in _LISTED for path in paths if path}
         reported |= self._maps.keys()

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import takewhile
 from pathlib import Path
 
 from linkwright.descriptions.pairs import Model
@@ -15,8 +16,9 @@ from linkwright.descriptions.revisions import CommitFiles, leads_outside
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, display_path, phrase
 from linkwright.files.git_repository import SHALLOW_HINT, ChangedFile, GitRepository
 from linkwright.lint.checking import Checker
+from linkwright.lint.targets import find_targets
 from linkwright.packages import PackageFinder
-from linkwright.packages.manifest import SourceScan
+from linkwright.packages.manifest import SourceScan, package_name
 from linkwright.packages.share_layout import share_of_sources
 
 _DEFAULT_BRANCHES = ("origin/HEAD", "origin/main", "origin/master", "main", "master")
@@ -49,9 +51,23 @@ class Version:
 
     def finder(self, folder: Path) -> PackageFinder:
         """Return the finder of packages for a file's folder."""
+        if self._copies:
+            shares = {**(self.shares if self.commit is not None else {}), **self._nearest(folder)}
+            return PackageFinder(start=[folder, self.root, Path.cwd()], extra=shares, sources_first=True)
         if self.commit is not None:
             return self.commit.finder(folder)
         return self._finder.starting_at([folder, self.root, Path.cwd()])
+
+    def share_of(self, package: str, folder: Path) -> Path | None:
+        """Return the share folder of a package of the version, or None if it has none with this name.
+
+        If there are several copies of the package, it is that of the copy that is nearest to a folder.
+
+        Args:
+            package: the name of the package.
+            folder: the folder of the file that names the package.
+        """
+        return self._nearest(folder).get(package) or self.shares.get(package)
 
     def checker(self) -> Checker:
         """Return a checker that finds the packages of this version, also where the working tree has them, too."""
@@ -68,6 +84,23 @@ class Version:
         if self.commit is not None:
             return self.commit.packages
         return {name: share_of_sources(name, folder) for name, folder in SourceScan(self.root).packages().items()}
+
+    def _nearest(self, folder: Path) -> dict[str, Path]:
+        """Return the share folders of the packages with several copies that are nearest to a folder."""
+        return {
+            name: share_of_sources(name, max(copies, key=lambda copy: _common_parts(copy, folder)))
+            for name, copies in self._copies.items()
+        }
+
+    @cached_property
+    def _copies(self) -> Mapping[str, list[Path]]:
+        """The folders of the packages with several copies in the version, by the name of the package."""
+        folders: dict[str, list[Path]] = {}
+        for folder in find_targets([self.root]).packages:
+            name = package_name(folder)
+            if name is not None:
+                folders.setdefault(name, []).append(folder)
+        return {name: found for name, found in folders.items() if len(found) > 1}
 
     def unlabeled(self, file: str) -> str:
         """Return a file's path relative to the root, for its path or a name that `Model.display_name` returned."""
@@ -87,6 +120,12 @@ class Version:
     @cached_property
     def _finder(self) -> PackageFinder:
         return PackageFinder(start=[self.root, Path.cwd()], sources_first=True)
+
+
+def _common_parts(package: Path, folder: Path) -> int:
+    """Return the number of folders that the paths of a package and of a file's folder begin with."""
+    pairs = zip(package.parts, folder.parts, strict=False)
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +18,12 @@ from linkwright.picture import OUTLINE_COLOR, VIEWS, Scene, SurfaceLibrary, came
 from linkwright.picture.link_frames import exact_placement
 from linkwright.review.changes import ViewImages
 from linkwright.review.frames import SharedFrames
-from linkwright.urdf import Mesh, Robot
+from linkwright.urdf import Mesh, Robot, Visual
 
 Array = NDArray[np.float64]
 
 _SIZE = (480, 360)
+_VIEWS_OF_COLLISIONS = ("iso", "front")
 _PLACES = ("origin xyz", "origin rpy")
 """The ends of the names of properties with a place, which is compared as seen in the image."""
 _MOVED = 1e-5
@@ -60,6 +62,58 @@ def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison, fr
         camera = camera_for(view, _SIZE, *scenes)
         images.append(ViewImages(name, *(png(render(scene, camera=camera)) for scene in scenes)))
     return images
+
+
+def collision_images(
+    models: Pair, old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames
+) -> list[ViewImages]:
+    """Return images of the collision shapes from two sides, or none if these are the same.
+
+    The links whose shapes differ are outlined. Links without collision shapes are not drawn.
+    """
+    old_names = {new_name: old_name for old_name, new_name in comparison.links.items()}
+    changed = {
+        difference.name
+        for difference in comparison.differences
+        if difference.subject == "link" and difference.property.startswith("collision") and difference.name in old_names
+    }
+    if not changed:
+        return []
+    library = SurfaceLibrary()
+    scenes = [
+        robot_scene(
+            _with_collisions(robot),
+            model.finder,
+            folder=model.path.parent,
+            outlined=dict.fromkeys(links, OUTLINE_COLOR),
+            library=library,
+            root=root,
+        )
+        for robot, model, links, root in (
+            (old, models.old, [old_names[name] for name in changed], None),
+            (new, models.new, changed, frames.new_root),
+        )
+    ]
+    if not any(len(scene.mesh.faces) for scene in scenes):
+        return []
+    images = []
+    for name in _VIEWS_OF_COLLISIONS:
+        camera = camera_for(VIEWS[name], _SIZE, *scenes)
+        label = f"{name}, collision"
+        images.append(ViewImages(label, *(png(render(scene, camera=camera)) for scene in scenes)))
+    return images
+
+
+def _with_collisions(robot: Robot) -> Robot:
+    """Return a robot that shows its collision shapes instead of its visuals."""
+    links = {
+        name: replace(
+            link,
+            visuals=tuple(Visual(shape.geometry, shape.origin, element=shape.element) for shape in link.collisions),
+        )
+        for name, link in robot.links.items()
+    }
+    return replace(robot, links=links)
 
 
 def lone_images(model: Model, robot: Robot, *, is_old: bool) -> list[ViewImages]:

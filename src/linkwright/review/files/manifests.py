@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Iterator
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase
@@ -10,15 +11,18 @@ from linkwright.packages.manifest import package_name
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.dependencies import compare_dependencies
+from linkwright.review.list_changes import excerpts
 from linkwright.review.renamed_packages import PackageNames, renamed_packages
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
-from linkwright.xmltree import Element
+from linkwright.xmltree import Element, Text
 
 _TEXTS = ("name", "version", "license", "maintainer", "author", "url", "member_of_group", "group_depend")
 _MAX_NAMES = 8
 _PLUGIN = "plugin"
 """The attribute of an export that names a plugin description."""
+_BLOCKS = frozenset({"p", "br", "li", "ul", "ol", "div", "tr", "h1", "h2", "h3"})
+"""The tags of XHTML after which a new line begins."""
 
 
 def compare_manifests(pair: FilePair) -> None:
@@ -75,14 +79,39 @@ def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:
         if old_addresses != new_addresses and _texts(old, tag) == _texts(new, tag):
             text = phrase("email of {tag}: {old} -> {new}", tag=tag, old=old_addresses or "-", new=new_addresses or "-")
             pair.add(text, pair.location((new.root.first(tag) or new.root).span()))
-    if _description(old) != _description(new):
-        pair.add(phrase("description changed"), pair.location((new.root.first("description") or new.root).span()))
+    _compare_descriptions(pair, old, new)
 
 
-def _description(manifest: Manifest) -> str:
-    """Return the description with the texts of the elements in it."""
-    element = manifest.root.first("description")
-    return "" if element is None else " ".join(" ".join(part.text() for part in element.walk()).split())
+def _compare_descriptions(pair: FilePair, old: Manifest, new: Manifest) -> None:
+    """Add the changed description as text, or that only its markup differs."""
+    elements = [manifest.root.first("description") for manifest in (old, new)]
+    old_text, new_text = ("" if element is None else _plain_text(element) for element in elements)
+    location = pair.location((elements[1] or new.root).span())
+    if old_text != new_text:
+        before, after = excerpts(old_text, new_text)
+        pair.add(phrase("description: {old} -> {new}", old=before or "-", new=after or "-"), location)
+    elif _markup(elements[0]) != _markup(elements[1]):
+        pair.add(phrase("markup of the description changed"), location)
+
+
+def _plain_text(element: Element) -> str:
+    """Return the texts of an element and of those in it, in their order, without markup."""
+    return " ".join("".join(_texts_in(element)).split())
+
+
+def _texts_in(element: Element) -> Iterator[str]:
+    for child in element.children:
+        if isinstance(child, Element):
+            yield from _texts_in(child)
+            yield " " if child.tag in _BLOCKS else ""
+        elif isinstance(child, Text):
+            yield child.data
+
+
+def _markup(element: Element | None) -> list[Hashable]:
+    """Return the tags and attributes of the elements in a description."""
+    parts = () if element is None else element.walk()
+    return [(part.tag, tuple(sorted(part.attributes.items()))) for part in parts if part is not element]
 
 
 def _read(file: Path) -> Manifest:

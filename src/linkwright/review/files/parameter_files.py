@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import yaml
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.review.changes import Location
+from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.files.bridges import compare_bridges, read_bridges
 from linkwright.review.files.parameter_names import (
@@ -19,16 +19,22 @@ from linkwright.review.files.parameter_names import (
     node_of_parameter,
     part_names,
     renamed_node_reason,
-    renamed_parts,
 )
+from linkwright.review.files.renamed_parts import edit_of, parent_of, renamed_parts, with_new_parts
 from linkwright.review.files.value_changes import ValueChange, merged_values
 from linkwright.review.files.yaml_lists import item_labels
 from linkwright.review.files.yaml_values import YamlType, YamlValue, composed, yaml_values
+from linkwright.review.list_changes import EMPTY, shortened
 from linkwright.review.versions import Version
 
 _MAX_BYTES = 4 << 20
 _MAX_NAMES = 8
 """The number of nodes, topics or keys that the line about an added file names."""
+_MAX_VALUES = 32
+"""The number of values that the line about an added file shows, divided among the nodes or keys."""
+_MIN_VALUES = 3
+_MAX_VALUE = 60
+_NAMES_OF_ITEMS = ("name", "id")
 
 
 def compare_parameter_files(pair: FilePair) -> None:
@@ -48,7 +54,7 @@ def compare_parameter_files(pair: FilePair) -> None:
 
 
 def parameter_contents(version: Version, path: str) -> Phrase | None:
-    """Return the nodes with the numbers of their parameters, or the top-level keys of other files; None for others."""
+    """Return the parameters of nodes, or the top-level keys of other files, with their values; None for others."""
     text = _read(version.file(path))
     bridges = read_bridges(text)
     if bridges:
@@ -57,12 +63,29 @@ def parameter_contents(version: Version, path: str) -> Phrase | None:
     if not isinstance(root, yaml.MappingNode):
         return None
     values = yaml_values(root, {})
-    counts = Counter(node for node in map(node_of_parameter, values) if node is not None)
-    if counts:
-        names = [f"{node} ({count})" for node, count in counts.items()]
-        return phrase("parameters of {names}", names=joined_first(names, _MAX_NAMES))
-    keys = [str(key.value) for key, _ in root.value]
-    return joined_first(keys, _MAX_NAMES) if keys else None
+    nodes: dict[str, dict[str, YamlValue]] = {}
+    for name, value in values.items():
+        node = node_of_parameter(name)
+        if node is not None:
+            nodes.setdefault(node, {})[name] = value
+    if nodes:
+        return phrase("parameters of {names}", names=_with_values(nodes))
+    names = [str(key.value) for key, _ in root.value]
+    keys = {key: {name: value for name, value in values.items() if _is_below(name, key)} for key in names}
+    return _with_values(keys) if keys else None
+
+
+def _with_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
+    """Return the names of nodes or keys with the first of their values."""
+    limit = max(_MIN_VALUES, _MAX_VALUES // min(len(parts), _MAX_NAMES))
+    texts: list[Phrase] = []
+    for part, values in parts.items():
+        items = [shortened(item, _MAX_VALUE) for item in _lone_content(part, values)]
+        if part in values:
+            texts.append(phrase("{parameter} {value}", parameter=part, value=items[0] or EMPTY))
+        else:
+            texts.append(phrase("{entry} ({items})", entry=part, items=joined_first(items, limit)))
+    return joined_first(texts, _MAX_NAMES)
 
 
 def _root(text: str) -> yaml.Node | None:
@@ -110,11 +133,17 @@ def _shown_values(old: YamlValue, new: YamlValue) -> tuple[str, str]:
 
 
 def _lone_content(part: str, values: Mapping[str, YamlValue]) -> tuple[str, ...]:
-    """Return the value of a part that one version has, or the names and values in a part with several."""
-    if len(values) == 1:
-        return tuple(value.text for value in values.values())
+    """Return the value of a part that is one, or the names and values in a part."""
+    if part in values:
+        return (values[part].text,)
     names = {name: name.removeprefix(part).lstrip(".").removeprefix("ros__parameters.") for name in values}
-    return tuple(f"{names[name]} {value.text}" for name, value in values.items())
+    return tuple(f"{names[name]} {value.text or EMPTY}" for name, value in values.items() if not _is_label(name, value))
+
+
+def _is_label(name: str, value: YamlValue) -> bool:
+    """Return whether a value is the name of an item of a list, which is the label of the item in the path."""
+    item, _, key = name.rpartition(".")
+    return key in _NAMES_OF_ITEMS and item.endswith(f"[{value.text}]")
 
 
 def _lone_parts(
@@ -138,17 +167,22 @@ def _is_below(name: str, part: str) -> bool:
 def _with_new_names(
     pair: FilePair, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]
 ) -> Mapping[str, YamlValue]:
-    """Add the renamed parts of a file, and return the old values with the new names of these parts."""
-    for old_part, new_part in renamed_parts(old, new).items():
+    """Add the renamed and moved parts of a file, and return the old values with the new names of these parts."""
+    renamed = renamed_parts(old, new)
+    groups: dict[Hashable, list[Change]] = {}
+    for old_part, new_part in renamed.items():
         inside = next(value for name, value in new.items() if _is_below(name, new_part))
-        text = phrase("{old} renamed to {name}", old=old_part, name=new_part)
-        location = Location(pair.new_path, inside.line, inside.column)
-        pair.add(text, location, renamed_node_reason(old_part, old))
-        old = {
-            f"{new_part}{name.removeprefix(old_part)}" if _is_below(name, old_part) else name: value
-            for name, value in old.items()
-        }
-    return old
+        text = phrase("{old} moved to {name}", old=old_part, name=new_part)
+        if parent_of(old_part) == parent_of(new_part):
+            text = phrase("{old} renamed to {name}", old=old_part, name=new_part)
+        reason = renamed_node_reason(old_part, new_part, old)
+        effect = Effect.CHANGED if reason is None else Effect.BREAKING
+        change = Change(text, effect, reason, Location(pair.new_path, inside.line, inside.column))
+        groups.setdefault((edit_of(old_part, new_part), str(reason)), []).append(change)
+    for first, *others in groups.values():
+        names = tuple(f"{each.sentence.arguments['old']} -> {each.sentence.arguments['name']}" for each in others)
+        pair.changes.append(replace(first, other_names=names))
+    return with_new_parts(old, renamed)
 
 
 def _read(file: Path) -> str:

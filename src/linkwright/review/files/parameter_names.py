@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.breaking import name_reason
 from linkwright.review.files.yaml_values import YamlValue
-from linkwright.review.list_changes import list_items
+from linkwright.review.list_changes import EMPTY, list_items
 
 _FRAMES = re.compile(r"(^|[._])frame_id$")
 """The parameters with frames that any node offers to other programs."""
@@ -33,9 +32,10 @@ _PLUGINS = re.compile(r"(^|[._])(plugins|plugin_names|plugin_ids)$")
 """The parameters with the names of plugins, which trees of behaviors and goals name."""
 _SEPARATOR = re.compile(r"(?<=.)[.\[]")
 """The separators of the names in a path."""
-_MIN_FACTS = 6
-"""The number of parameters and values from which a part can be recognized under another name."""
-_MIN_SIMILARITY = 0.6
+_SUBSTITUTION = re.compile(r"\\\$\\\([\w\\ -]+\\\)")
+"""A substitution of launch in a name, after `re.escape`."""
+_ANY = ("**", "*")
+"""The wildcards in the names of nodes in parameter files."""
 
 
 class NameRules:
@@ -47,7 +47,7 @@ class NameRules:
     """
 
     def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> None:
-        self._new = new
+        self._new_nodes = {node for name in new if (node := node_of_parameter(name)) is not None}
         self._controllers = {*controllers(old), *controllers(new)}
         self._new_controllers = set(controllers(new))
         self._new_frames = {value.text for name, value in new.items() if offers_frame(name)}
@@ -61,6 +61,7 @@ class NameRules:
         if controller is not None:
             return phrase("the controller '{name}' offers other topics and actions", name=controller["controller"])
         gone = _items(old) - _items(new)
+        gone -= {name for name in gone if any(_may_be(each, name) for each in _items(new))}
         if _TRANSFORMS.search(parameter) and (old.lower(), new.lower()) == ("true", "false"):
             return phrase("the node does not publish its transform any more")
         is_offered = offers_frame(parameter)
@@ -100,8 +101,8 @@ class NameRules:
 
     def _has_node(self, parameter: str) -> bool:
         """Return whether the new version has other parameters of the same node."""
-        node = _NODE.match(parameter)
-        return node is not None and any(name.startswith(node[0]) for name in self._new)
+        node = node_of_parameter(parameter)
+        return node is not None and any(matches_node(other, node) for other in self._new_nodes)
 
 
 def offers_frame(parameter: str) -> bool:
@@ -150,51 +151,39 @@ def controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
 
 def _items(text: str) -> set[str]:
     """Return the items of a value that is a list, or the value itself, without numbers and truth values."""
-    return {item for item in list_items(text) if item and not _NUMBER_OR_TRUTH.fullmatch(item)}
+    return {item for item in list_items(text) if item not in ("", EMPTY) and not _NUMBER_OR_TRUTH.fullmatch(item)}
 
 
-def renamed_parts(old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> dict[str, str]:
-    """Return the parts of a file that have another name but similar values: the new names, by old name.
+def renamed_node_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
+    """Return why it is breaking to rename or move a part of the old file, or None if it has no parameters of a node.
 
-    Nodes, and plugins of a node, are such parts.
+    It is not if the new name matches the old node, too, or if the old name matches any node.
     """
-    old_parts, new_parts = _lone_parts(old, new), _lone_parts(new, old)
-    renamed: dict[str, str] = {}
-    for old_name, first in old_parts.items():
-        for new_name, second in new_parts.items():
-            if new_name in renamed.values() or _parent(old_name) != _parent(new_name):
-                continue
-            similarity = 2 * (first & second).total() / (first.total() + second.total())
-            if first.total() >= _MIN_FACTS and similarity >= _MIN_SIMILARITY:
-                renamed[old_name] = new_name
-                break
-    return renamed
-
-
-def renamed_node_reason(part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
-    """Return why it is breaking to rename a part of the old file, or None if it has no parameters of a node."""
-    inside = next((match for name in values if (match := _NODE.match(name)) and name.startswith(f"{part}.")), None)
-    if inside is None or len(inside[0]) < len(part) or inside["node"] in controllers(values):
+    inside = next((name for name in values if _NODE.match(name) and name.startswith(f"{part}.")), None)
+    match = None if inside is None else _NODE.match(inside)
+    if inside is None or match is None or len(match[0]) < len(part) or match["node"] in controllers(values):
         return None
-    return phrase("the node '{name}' starts without these parameters", name=inside["node"])
+    new_node = node_of_parameter(f"{new_part}{inside.removeprefix(part)}")
+    if new_node is None or matches_node(new_node, match["node"]) or any(word in match["node"] for word in _ANY):
+        return None
+    return phrase("the node '{name}' starts without these parameters", name=match["node"])
+
+
+def matches_node(name: str, node: str) -> bool:
+    """Return whether a name in a parameter file, such as ``/**/amcl``, matches a node as in rcl."""
+    words = [word for word in re.split(r"[./]", name) if word]
+    pattern = "".join(
+        r"(?:/[^/]+)*" if word == "**" else r"/[^/]+" if word == "*" else f"/{re.escape(word)}" for word in words
+    )
+    return re.fullmatch(pattern, "/" + "/".join(word for word in re.split(r"[./]", node) if word)) is not None
+
+
+def _may_be(text: str, name: str) -> bool:
+    """Return whether a text with substitutions, such as ``$(arg arm)_joint1``, can be a name."""
+    pattern, count = _SUBSTITUTION.subn(".*", re.escape(text))
+    return count > 0 and re.fullmatch(pattern, name) is not None
 
 
 def part_names(name: str) -> list[str]:
     """Return the paths of the mappings and items that contain a value, the outermost first, and that of the value."""
     return [*(name[: match.start()] for match in _SEPARATOR.finditer(name)), name]
-
-
-def _parent(part: str) -> str:
-    return (["", *part_names(part)])[-2]
-
-
-def _lone_parts(values: Mapping[str, YamlValue], others: Mapping[str, YamlValue]) -> dict[str, Counter[str]]:
-    """Return the largest parts that other values do not have: their names and values, alone and together."""
-    other_parts = {part for name in others for part in part_names(name)}
-    parts: dict[str, Counter[str]] = {}
-    for name, value in values.items():
-        part = next((part for part in part_names(name) if part not in other_parts), name)
-        if part != name:
-            inside = name.removeprefix(part)
-            parts.setdefault(part, Counter()).update([inside, f"{inside}={value.text}"])
-    return parts

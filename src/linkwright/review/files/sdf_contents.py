@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase
-from linkwright.review.plugins import contents_text
+from linkwright.review.element_values import own_content
+from linkwright.review.plugins import contents_text, plugin_parts
 from linkwright.xmltree import Element
 
 _MAX_NAMES = 8
 """The number of models, links or joints that the line about an added world names."""
-_MAX_VALUES = 8
-"""The number of values that the line about an added element shows."""
+_MAX_VALUES_OF_PLUGIN = 4
+"""The number of values of each plugin or sensor that the line about an added world or model shows."""
 _NAMED_BY_CHILD = "include"
 """The tag of elements whose name is a child, or the URI if there is none."""
 
@@ -26,9 +27,7 @@ def names_in(element: Element) -> Iterator[Phrase]:
         yield phrase("links {names}", names=joined_first(names["link"], _MAX_NAMES))
     if names["joint"]:
         yield phrase("joints {names}", names=joined_first(names["joint"], _MAX_NAMES))
-    contents = contents_text(element)
-    if contents is not None:
-        yield contents
+    yield from plugin_parts(element, _MAX_VALUES_OF_PLUGIN)
 
 
 def _name(element: Element) -> str:
@@ -36,12 +35,6 @@ def _name(element: Element) -> str:
     texts = (element.first(tag) for tag in ("name", "uri"))
     included = next((text.text().strip().rstrip("/") for text in texts if text is not None), "")
     return element.attributes.get("name") or included.rpartition("/")[2]
-
-
-def own_content(element: Element) -> str:
-    """Return the attributes and the text of an element, without its name."""
-    words = [f"{name}={value}" for name, value in element.attributes.items() if name != "name"]
-    return " ".join([*words, *element.text().split()])
 
 
 def all_content(element: Element) -> str:
@@ -59,7 +52,7 @@ def added_text(path: str, element: Element) -> Phrase:
     contents = joined(names) if (names := list(names_in(element))) else None
     if contents is None:
         element, path = _only_descendant(element, path)
-        contents = _values_text(element)
+        contents = contents_text(element)
     text = phrase("{element} added", element=f"{path} {own_content(element)}".strip())
     return text if contents is None else phrase("{change}: {contents}", change=text, contents=contents)
 
@@ -72,21 +65,3 @@ def _only_descendant(element: Element, path: str) -> tuple[Element, str]:
         path = " ".join(filter(None, (path, element.tag, element.attributes.get("name"))))
         children = list(element.elements())
     return element, path
-
-
-def _values_text(element: Element) -> Phrase | None:
-    """Return the values in an element, or None if there are none."""
-    values = list(_values(element, ""))
-    return joined_first(values, _MAX_VALUES) if values else None
-
-
-def _values(element: Element, path: str) -> Iterator[str]:
-    name_tag = "uri" if element.first("name") is None else "name"
-    for child in element.elements():
-        if element.tag == _NAMED_BY_CHILD and child.tag == name_tag:
-            continue
-        child_path = " ".join(filter(None, (path, child.tag, child.attributes.get("name"))))
-        content = own_content(child)
-        if content or not any(child.elements()):
-            yield f"{child_path} {content}".strip()
-        yield from _values(child, child_path)

@@ -10,10 +10,13 @@ from typing import Literal
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.list_changes import change_text
+from linkwright.review.merging import common_reason, name_edit
 
 _ITEM = re.compile(r"(?P<list>[^\[]*)\[(?:old )?\d+\]")
 """The path of a list, and an item of it that has no name."""
-_MAX_VALUES = 6
+_NAME = re.compile(r"[~/]?[A-Za-z_][\w./:-]*")
+"""A value that is a name, such as that of a topic, a frame or a file."""
+_MAX_VALUES = 12
 """The number of values of a part that a line shows."""
 _MAX_ITEM_CHANGES = 6
 """The number of changes of the items of a list up to which all are shown."""
@@ -52,9 +55,24 @@ class ValueChange:
 
     @property
     def key(self) -> Hashable:
-        """A key that is equal for the same change of a value of the same name in other parts."""
+        """A key that is equal for the same change of a value of the same name in other parts.
+
+        Names that are edited in the same way, such as by a prefix of topics, have the same change.
+        """
+        edit = self._edit
+        if edit is not None:
+            return self.kind, edit, None if self.reason is None else self.reason.template
         leaf = self.name.rpartition(".")[2]
         return leaf, self.kind, self.values, None if self.reason is None else str(self.reason)
+
+    @property
+    def _edit(self) -> Hashable | None:
+        """The part of a changed name that is replaced and its replacement; None for other values."""
+        if self.kind != "changed" or not all(map(_NAME.fullmatch, self.values)):
+            return None
+        old, new = self.values
+        has_common = old[:1] == new[:1] or old[-1:] == new[-1:]
+        return name_edit(old, new) if has_common else None
 
 
 def merged_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
@@ -78,9 +96,11 @@ def merged_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
 def _as_one(group: Sequence[ValueChange]) -> Change:
     first = group[0]
     effect = Effect.CHANGED if first.reason is None else Effect.BREAKING
-    names = tuple(change.name for change in group[1:])
+    reason = common_reason(change.reason for change in group)
+    is_equal = all(change.values == first.values for change in group)
+    names = tuple(change.name if is_equal else str(change.sentence) for change in group[1:])
     locations = tuple(change.location for change in group[1:])
-    return Change(first.sentence, effect, first.reason, first.location, (), names, locations)
+    return Change(first.sentence, effect, reason, first.location, (), names, locations)
 
 
 def _summary(name: str, group: Sequence[ValueChange]) -> Change:

@@ -12,13 +12,16 @@ from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.review.breaking import plugin_name_reason
 from linkwright.review.changes import Change, Location
 from linkwright.review.drawings.scene_images import read_worlds, world_images, world_scenes
+from linkwright.review.element_values import own_content
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.merged_paths import MergedPaths, differing_parts, path_pattern
-from linkwright.review.files.sdf_contents import added_text, all_content, names_in, own_content
+from linkwright.review.files.sdf_contents import added_text, all_content, names_in
 from linkwright.review.files.sdf_figures import model_figures
 from linkwright.review.files.sdf_numbers import InertialDifference, with_inertials, without_rounding
+from linkwright.review.files.templates import is_template, template_elements
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.plugins import added_topics, contents_text, is_added, is_removed, missing_topics_reason
+from linkwright.review.replaced_plugins import PluginReplacement, with_replaced_plugins
 from linkwright.review.versions import Version
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
@@ -41,8 +44,9 @@ def compare_worlds(pair: FilePair) -> None:
     elements = pair.read(_elements)
     if elements is None:
         return
-    differences = list(with_inertials(without_rounding(ElementComparison().child_differences(*elements))))
-    added = added_topics(differences)
+    found = list(with_inertials(without_rounding(ElementComparison().child_differences(*elements))))
+    added = added_topics(found)
+    differences = with_replaced_plugins(found)
     changes = [_WorldChange(difference, _breaking_reason(difference, added)) for difference in differences]
     alone: list[_WorldChange] = []
     for group in _alike(changes):
@@ -57,7 +61,7 @@ def compare_worlds(pair: FilePair) -> None:
             Change(text, location=first.location(pair), other_names=tuple(parts[1:]), other_locations=locations)
         )
     _add_alone(pair, alone)
-    if differences:
+    if differences and not is_template(pair.new_path):
         _add_scenes(pair, may_be_visible=any(map(_may_be_visible, differences)))
 
 
@@ -140,6 +144,8 @@ def _add_alone(pair: FilePair, changes: Sequence[_WorldChange]) -> None:
 
 
 def _elements(file: Path) -> list[Element]:
+    if is_template(file.name):
+        return template_elements(str(file))
     document, _ = parse_as_gazebo(read_bytes(file), str(file))
     return list(document.root.elements())
 
@@ -154,6 +160,8 @@ def _sentence(difference: Difference, name: str) -> Phrase:
     old_path = path_of_renamed(difference, name)
     if old_path is not None:
         return phrase("{element} renamed to '{new}'", element=old_path, new=difference.new or "")
+    if isinstance(difference, PluginReplacement):
+        return phrase("{entry}: {change}", entry=name, change=difference.text)
     if isinstance(difference, InertialDifference):
         return phrase("{element}: {values}", element=name, values=difference.values_text())
     if is_added(difference):
@@ -178,7 +186,7 @@ def _breaking_reason(difference: Difference, added: frozenset[str]) -> Phrase | 
         return _name_reason(named["tag"], named["name"])
     if _INCLUDED_NAME.fullmatch(path) and difference.old:
         return _name_reason("include", difference.old)
-    if is_removed(difference) and difference.element is not None:
+    if isinstance(difference, PluginReplacement) or (is_removed(difference) and difference.element is not None):
         reason = missing_topics_reason(difference, added)
         if reason is not None:
             return reason

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from difflib import SequenceMatcher
 
 import yaml
@@ -10,6 +12,9 @@ from linkwright.review.files.yaml_values import is_structured_list, name_of_item
 
 _MAX_COMPARISONS = 1_000_000
 """The product of the lengths of two lists up to which their items are aligned."""
+_MAX_SIMILARITIES = 2_500
+"""The product of the numbers of different items of two lists up to which their contents align them."""
+_MIN_SIMILARITY = 0.4
 
 
 def item_labels(old: yaml.Node, new: yaml.Node) -> dict[int, str]:
@@ -47,17 +52,64 @@ def _matched_items(
         return pairs
     old_texts, new_texts = ([_text(item, texts) for item in items] for items in (old_items, new_items))
     matcher = SequenceMatcher(None, old_texts, new_texts, autojunk=False)
-    for _, old_start, old_end, new_start, new_end in matcher.get_opcodes():
-        count = min(old_end - old_start, new_end - new_start)
-        for offset in range(count):
-            first, second = old_items[old_start + offset], new_items[new_start + offset]
-            labels[id(first)] = labels[id(second)] = str(new_start + offset)
+    for tag, old_start, old_end, new_start, new_end in matcher.get_opcodes():
+        labels |= {id(new_items[number]): str(number) for number in range(new_start, new_end)}
+        labels |= {id(old_items[number]): f"old {number}" for number in range(old_start, old_end)}
+        matched = (
+            zip(range(old_end - old_start), range(new_end - new_start), strict=True)
+            if tag == "equal"
+            else _similar_items(old_items[old_start:old_end], new_items[new_start:new_end])
+        )
+        for i, k in matched:
+            first, second = old_items[old_start + i], new_items[new_start + k]
+            labels[id(first)] = labels[id(second)]
             pairs.append((first, second))
-        for number in range(new_start + count, new_end):
-            labels[id(new_items[number])] = str(number)
-        for number in range(old_start + count, old_end):
-            labels[id(old_items[number])] = f"old {number}"
     return pairs
+
+
+def _similar_items(old: Sequence[yaml.Node], new: Sequence[yaml.Node]) -> list[tuple[int, int]]:
+    """Return the numbers of the items that are versions of the same one, in the order of both lists.
+
+    Many items belong together by their order. Others do if they have something in common, or if as many have gone as
+    have come.
+    """
+    in_order = [(number, number) for number in range(min(len(old), len(new)))]
+    if len(old) * len(new) > _MAX_SIMILARITIES:
+        return in_order
+    old_facts, new_facts = (list(map(_facts, items)) for items in (old, new))
+    if len(old) == len(new) and all(set(a) & set(b) for a, b in zip(old_facts, new_facts, strict=True)):
+        return in_order
+    if len(old) == len(new) and not any(isinstance(item, yaml.MappingNode) for item in (*old, *new)):
+        return in_order
+    best: dict[tuple[int, int], tuple[float, list[tuple[int, int]]]] = {}
+    for i in range(len(old) + 1):
+        for k in range(len(new) + 1):
+            if not i or not k:
+                best[i, k] = 0.0, []
+                continue
+            options = [best[i - 1, k], best[i, k - 1]]
+            similarity = _similarity(old_facts[i - 1], new_facts[k - 1])
+            if similarity >= _MIN_SIMILARITY:
+                total, pairs = best[i - 1, k - 1]
+                options.append((total + similarity, [*pairs, (i - 1, k - 1)]))
+            best[i, k] = max(options, key=lambda option: option[0])
+    return best[len(old), len(new)][1]
+
+
+def _facts(node: yaml.Node) -> Counter[str]:
+    """Return the keys of an item, and its keys with their values."""
+    if isinstance(node, yaml.MappingNode):
+        values = [(str(key.value), _text(value, {})) for key, value in node.value]
+    elif isinstance(node, yaml.SequenceNode):
+        values = [(str(number), _text(value, {})) for number, value in enumerate(node.value)]
+    else:
+        values = [("", _text(node, {}))]
+    return Counter(f"{key}={value}" for key, value in values)
+
+
+def _similarity(old: Counter[str], new: Counter[str]) -> float:
+    total = old.total() + new.total()
+    return 2 * (old & new).total() / total if total else 1.0
 
 
 def _text(node: yaml.Node, texts: dict[int, str]) -> str:

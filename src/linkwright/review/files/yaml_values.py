@@ -11,6 +11,7 @@ import yaml
 
 from linkwright.diagnostics import foreign, phrase
 from linkwright.review.file_pair import LimitError, UnreadableFileError
+from linkwright.review.list_changes import EMPTY
 
 _MAX_VALUES = 20_000
 """The maximum number of values of a file. Aliases can repeat a value billions of times."""
@@ -142,7 +143,7 @@ def _type_of(node: yaml.Node) -> YamlType | None:
 
 def _scalar_text(node: yaml.Node) -> str:
     if isinstance(node, yaml.SequenceNode):
-        return f"[{', '.join(str(item.value) for item in node.value)}]"
+        return f"[{', '.join(str(item.value) or EMPTY for item in node.value)}]"
     return " ".join(str(node.value).split())
 
 

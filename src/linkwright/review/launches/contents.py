@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.review.launches.outlines import Entry
+from linkwright.review.launches.outlines import SERVER_PARAMETER, Entry
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.titles import settings_text, title
 from linkwright.review.versions import Version
 
-_KINDS = ("node", "process", "include", "parameters", "parameter", "argument")
-_MAX_TITLES = 10
+_KINDS = (
+    "node", "process", "include", "parameters", "parameter", SERVER_PARAMETER, "remapping", "environment", "argument",
+)  # fmt: skip
+_MAX_TITLES = 16
+_MAX_SETTINGS = 8
+"""The number of settings of each action that the line shows."""
 
 
 def launch_contents(version: Version, path: str) -> Phrase | None:
@@ -30,7 +34,7 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
 
 def _with_settings(entry: Entry) -> Phrase:
     """Return the title of an action with its settings, such as the default of an argument."""
-    items = settings_text(entry)
+    items = settings_text(entry, _MAX_SETTINGS)
     if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
         if items is None:
             return phrase("{entry} (required)", entry=title(entry))

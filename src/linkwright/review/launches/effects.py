@@ -21,6 +21,7 @@ from linkwright.review.launches.outlines import (
     REMAPPING,
     Entry,
     LaunchOutline,
+    without_condition,
 )
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, served_names, title
 from linkwright.review.list_changes import list_items
@@ -48,6 +49,7 @@ _CODE = re.compile(r"\w\(")
 _UNKNOWN_NAME = re.compile(r"\w\(|\w[.\[][a-z_\"']")
 """A call, attribute or item of Python in a name, whose value is unknown."""
 _FRAME_PREFIX = f"{PARAMETER}frame_prefix"
+_VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _NEVER = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
 _SUBSCRIBERS = re.compile(
@@ -90,11 +92,18 @@ def removal_reason(
     if entry.name.startswith(_JOINT_STATES) and any(other.name.startswith(_JOINT_STATES) for other in new.entries):
         return None
     names = _served_names(entry, outline)
+    if entry.name.startswith(TRANSFORM_PUBLISHERS) and _publishes_states(new) and not _publishes_states(outline):
+        return None  # robot_state_publisher may place the frame, which belongs to a joint now
     if not names:
         if entry.name.startswith(TRANSFORM_PUBLISHERS):
             return phrase("programs that look up the frame of the node do not find it")
         return phrase("the topics and services of the node are missing")
     return _served_reason(entry, names, new)
+
+
+def _publishes_states(outline: LaunchOutline) -> bool:
+    """Return whether a file starts a program that publishes the positions of joints."""
+    return any(entry.kind == "node" and entry.name.startswith(_JOINT_STATES) for entry in outline.entries)
 
 
 def _starts_same_node(entry: Entry, other: Entry, old: LaunchOutline, new: LaunchOutline) -> bool:
@@ -163,7 +172,7 @@ def setting_reason(
     if entry.kind != "node" or offers_nothing(entry):
         return None
     if setting.startswith(REMAPPING):
-        source = setting.removeprefix(REMAPPING)
+        source = without_condition(setting).removeprefix(REMAPPING)
         is_input = _SUBSCRIBERS.match(entry.name) and _INPUTS.fullmatch(source.lstrip("/~"))
         if is_input or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
             return None
@@ -195,6 +204,8 @@ def _parameter_reason(
     is_frame = offers_frame(setting.removeprefix(PARAMETER)) and "$(" not in old_name
     if is_frame and old_name != new_name:
         return name_reason(old_name)
+    if new_outline.is_ros1:
+        return None  # ROS 1 converts numbers
     old_value, new_value = _literal_value(old_name), _literal_value(new_name)
     return type_reason(old_value, new_value) if old_value and new_value else None
 
@@ -290,7 +301,7 @@ def _renaming_reason(
     old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
     old_name, new_name = _resolved_name(old, old_outline), _resolved_name(new, new_outline)
-    if old_name == new_name or _UNKNOWN_NAME.search(new_name):
+    if old_name == new_name or _UNKNOWN_NAME.search(new_name) or _has_new_variable(old_name, new_name):
         return None
     return phrase("programs that use the names of the node, its topics or its services do not find them")
 
@@ -318,9 +329,14 @@ def _remapping_reason(
     new_name = new_outline.resolved(source if new is None else new)
     if old_name.lstrip("/") == new_name.lstrip("/"):  # the same name in the empty namespace
         return None
-    if _CODE.search(new_name):
+    if _CODE.search(new_name) or _has_new_variable(old_name, new_name):
         return None  # the name may be the same
     return name_reason(old_name)
+
+
+def _has_new_variable(old: str, new: str) -> bool:
+    """Return whether a name has a variable without a known value that the old one does not have."""
+    return not set(_VARIABLE.findall(new)) <= set(_VARIABLE.findall(old))
 
 
 def _are_remapped_elsewhere(names: str, outline: LaunchOutline) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from difflib import SequenceMatcher
 
 from linkwright.diagnostics import Phrase, counted, phrase
@@ -13,11 +13,12 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import addition_reason, removal_reason, value_reason
 from linkwright.review.launches.included import IncludedActions, file_with_moved_action
 from linkwright.review.launches.matching import MIN_SIMILARITY, matched_entries, replacements
-from linkwright.review.launches.outlines import CodePart, Entry, LaunchOutline
+from linkwright.review.launches.outlines import READING, CodePart, Entry, LaunchOutline
+from linkwright.review.launches.readers_of_environment import reader_of
 from linkwright.review.launches.reading import read_outline
-from linkwright.review.launches.renames import renamed_names, with_new_names
+from linkwright.review.launches.renames import renamed_entry, renamed_names, with_new_names
 from linkwright.review.launches.settings import SettingChanges
-from linkwright.review.launches.titles import added_entry, joined_titles, title
+from linkwright.review.launches.titles import added_entry, joined_titles, removed_entry, title
 from linkwright.review.list_changes import excerpts, shortened
 
 _MAX_SOURCE = 120
@@ -39,8 +40,9 @@ def compare_launch_files(pair: FilePair) -> None:
     undeclared = _undeclared_arguments(pair, old, new)
     renamed = renamed_names(old, new)
     old = with_new_names(old, renamed)
-    settings = SettingChanges(pair, old, new)
-    settings.add_renamed(renamed)
+    old_names = {new_name: old_name for old_name, new_name in renamed.items()}
+    settings = SettingChanges(pair, old, new, renamed)
+    settings.add_renamed()
     gone: list[Entry] = []
     come: list[Entry] = []
     for old_entry, new_entry in matched_entries(old.entries, new.entries):
@@ -56,7 +58,7 @@ def compare_launch_files(pair: FilePair) -> None:
     }
     replaced = replacements(gone, come, new_paths)
     for old_entry, new_entry in replaced:
-        text = phrase("{old} replaced by {new}", old=title(old_entry), new=title(new_entry))
+        text = phrase("{old} replaced by {new}", old=title(renamed_entry(old_entry, old_names)), new=title(new_entry))
         pair.add(text, pair.location(new_entry.span))
         settings.compare(old_entry, new_entry)
     settings.add_groups()
@@ -73,13 +75,18 @@ def compare_launch_files(pair: FilePair) -> None:
         pair.add(text, pair.location(entry.span), reason)
     _add_unused_arguments(pair, old, new)
     if gone or come:
-        _add_lone_entries(pair, gone, come, old, new)
+        _add_lone_entries(pair, gone, come, old, new, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
         _compare_code(pair, old, new)
 
 
 def _add_lone_entries(
-    pair: FilePair, gone: Sequence[Entry], come: Sequence[Entry], old: LaunchOutline, new: LaunchOutline
+    pair: FilePair,
+    gone: Sequence[Entry],
+    come: Sequence[Entry],
+    old: LaunchOutline,
+    new: LaunchOutline,
+    old_names: Mapping[str, str],
 ) -> None:
     """Add the actions that only one version has, and those that are in an included file of the other version."""
     old_included = IncludedActions(pair.versions.old, pair.old_path, old)
@@ -97,10 +104,15 @@ def _add_lone_entries(
         if file is not None:
             moved.setdefault((file, True), []).append(entry)
             continue
-        text, location = phrase("{entry} removed", entry=title(entry)), pair.location(entry.span, is_old=True)
+        written = renamed_entry(entry, old_names)
+        text, location = removed_entry(written), pair.location(entry.span, is_old=True)
+        reader = reader_of(pair.versions.new.root, entry.name, pair.new_path) if entry.kind == READING else None
+        if reader is not None:
+            pair.add(phrase("{change}; {path} uses it", change=text, path=reader), location)
+            continue
         file = file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
         if file is not None:
-            text = phrase("{entry} moved to {file}", entry=title(entry), file=file)
+            text = phrase("{entry} moved to {file}", entry=title(written), file=file)
         includes_nodes = entry.kind == "include" and old_included.starts_nodes(entry)
         pair.add(text, location, removal_reason(entry, old, new, includes_nodes=includes_nodes))
     for (file, is_old), entries in moved.items():

@@ -79,7 +79,7 @@ class IncludedActions:
             return None
         shared = _SHARED.fullmatch(entry.name)
         if shared is not None:
-            share = self._version.shares.get(shared["package"])
+            share = self._version.share_of(shared["package"], includer.parent)
             file = None if share is None else _file_below(share, shared["path"])
         elif entry.name.startswith(_BESIDE) and "$" not in entry.name.removeprefix(_BESIDE):
             file = includer.parent / entry.name.removeprefix(_BESIDE)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import yaml
@@ -15,15 +15,19 @@ from linkwright.review.files.yaml_values import composed
 from linkwright.review.launches.environment import markup_readings
 from linkwright.review.launches.outlines import (
     CONDITION,
+    ENVIRONMENT,
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
     PARAMETER,
     REMAPPING,
+    SERVER_PARAMETER,
     CodePart,
     Entry,
     LaunchOutline,
     Scope,
+    with_condition,
 )
+from linkwright.review.launches.ros1_parameters import file_settings, written_parameters
 from linkwright.xmltree import Element
 
 _NODE_TAGS = ("node", "lifecycle_node", "composable_node", "node_container")
@@ -31,6 +35,7 @@ _PUSHES = ("push_ros_namespace", "push-ros-namespace", "push_namespace")
 _ENVIRONMENT = ("set_env", "env", "append_env", "unset_env")
 _REMAPPINGS = ("remap", "set_remap")
 _CONDITIONS = ("if", "unless")
+_ROSPARAM = "rosparam"
 _NOT_COMPARED = frozenset({"pkg", "exec", "type", "plugin", "description", "doc", "cmd"})
 _QUOTED_COMMAND = re.compile(r"\$\(command (['\"])(.*)\1( \w+)?\)")
 _MAX_NODES = 20_000
@@ -60,14 +65,16 @@ def read_markup_outline(root: LaunchTag) -> LaunchOutline:
     """Return the outline of a launch file in XML or YAML."""
     rest: list[CodePart] = []
     entries = list(_entries(root, Scope(), rest))
-    all_entries = [*entries, *markup_readings(_values(root))]
-    return LaunchOutline(all_entries, rest, is_ros1=any(map(_is_ros1, _tags(root))))
+    is_ros1 = any(map(_is_ros1, _tags(root)))
+    if is_ros1:
+        entries = [replace(each, kind=SERVER_PARAMETER) if each.kind == "parameter" else each for each in entries]
+    return LaunchOutline([*entries, *markup_readings(_values(root))], rest, is_ros1=is_ros1)
 
 
 def _is_ros1(tag: LaunchTag) -> bool:
     """Return whether only ROS 1 has an action: a node of a ``type``, parameters of the server, a path with ``find``."""
     is_node = tag.name == "node" and "type" in tag.attributes
-    return is_node or tag.name == "rosparam" or any("$(find " in value for value in tag.attributes.values())
+    return is_node or tag.name == _ROSPARAM or any("$(find " in value for value in tag.attributes.values())
 
 
 def _tags(tag: LaunchTag) -> Iterator[LaunchTag]:
@@ -88,7 +95,8 @@ def xml_tags(element: Element) -> LaunchTag:
     children = [xml_tags(child) for child in element.elements()]
     span = element.span() or Span("", 1, 1, 1, 1)
     attributes = {name: " ".join(value.split()) for name, value in element.attributes.items()}
-    return LaunchTag(element.tag, attributes, span, " ".join(element.text().split()), children)
+    text = element.text() if element.tag == _ROSPARAM else " ".join(element.text().split())
+    return LaunchTag(element.tag, attributes, span, text, children)
 
 
 def yaml_tags(path: Path) -> LaunchTag:
@@ -164,10 +172,11 @@ def _entries(parent: LaunchTag, scope: Scope, rest: list[CodePart]) -> Iterator[
             inner = scope.under(_condition(tag)).pushed(attributes.get("ns", ""))
             yield from _entries(tag, inner, rest)
         else:
-            entry = _entry(tag)
-            if entry is not None:
+            entries = list(_entries_of(tag))
+            for entry in entries:
                 yield Entry(entry.kind, entry.name, scope.settings(entry.kind, entry.settings), entry.span)
-                if entry.kind == "node":
+            if entries:
+                if entries[0].kind == "node":
                     inner_tags = [child for child in tag.children if child.name in _NODE_TAGS]
                     inner = scope.under(_condition(tag))
                     yield from _entries(LaunchTag("", {}, tag.span, children=inner_tags), inner, rest)
@@ -181,6 +190,18 @@ def _entries(parent: LaunchTag, scope: Scope, rest: list[CodePart]) -> Iterator[
 
 def _condition(tag: LaunchTag) -> str:
     return " and ".join(f"{name} {tag.attributes[name]}" for name in _CONDITIONS if name in tag.attributes)
+
+
+def _entries_of(tag: LaunchTag) -> Iterator[Entry]:
+    """Yield the entries of an action: several for the parameters that ``<rosparam>`` contains."""
+    parameters = written_parameters(tag.attributes, tag.text) if tag.name == _ROSPARAM else {}
+    condition = _condition(tag)
+    for name, value in parameters.items():
+        settings = {"value": value, **({CONDITION: condition} if condition else {})}
+        yield Entry("parameter", name, settings, tag.span)
+    entry = None if parameters else _entry(tag)
+    if entry is not None:
+        yield entry
 
 
 def _entry(tag: LaunchTag) -> Entry | None:
@@ -199,15 +220,16 @@ def _entry(tag: LaunchTag) -> Entry | None:
     elif tag.name in _NODE_TAGS:
         kind, name, settings = "node", _node_name(attributes), _node_settings(tag)
     elif tag.name == "executable":
-        kind, name, settings = "process", attributes.get("cmd", ""), _others(attributes)
+        kind, name, settings = "process", attributes.get("cmd", ""), {**_others(attributes), **_environment(tag)}
     elif tag.name == "include":
         kind, name, settings = "include", attributes.get("file", ""), _passed_arguments(tag)
     elif tag.name in _REMAPPINGS:
         kind, name, settings = "remapping", attributes.get("from", ""), {"to": attributes.get("to", "")}
     elif tag.name in ("param", "set_parameter"):
         kind, settings = "parameter", {"value": _parameter_value(tag)}
-    elif tag.name == "rosparam":
-        kind, name, settings = "parameters", attributes.get("file") or attributes.get("param", ""), _rosparam(tag)
+    elif tag.name == _ROSPARAM:
+        name = attributes.get("file") or attributes.get("param", "")
+        kind, settings = "parameters", file_settings(attributes)
     elif tag.name in _ENVIRONMENT:
         kind = "environment"
         key = {"append_env": "appended value", "unset_env": "unset"}.get(tag.name, "value")
@@ -237,19 +259,39 @@ def _node_settings(tag: LaunchTag) -> dict[str, str]:
     settings = _others(tag.attributes)
     files: list[str] = []
     for child in tag.children:
-        attributes = child.attributes
-        if child.name == "param" and "from" in attributes:
-            files.append(attributes["from"])
+        attributes, condition = child.attributes, _condition(child)
+        found: dict[str, str] = {}
+        if child.name in ("param", _ROSPARAM) and (attributes.get("from") or attributes.get("file")):
+            items = [f"{name} {value}" for name, value in file_settings(attributes).items() if child.name == _ROSPARAM]
+            items += filter(None, [condition])
+            file = attributes.get("from") or attributes["file"]
+            files.append(f"{file} ({', '.join(items)})" if items else file)
         elif child.name == "param":
-            settings |= _parameters(child, "")
-        elif child.name == "rosparam":
-            file = attributes.get("file") or attributes.get("param", "")
-            settings[f"{PARAMETER}{file}"] = child.text
+            found = _parameters(child, "")
+        elif child.name == _ROSPARAM:
+            parameters = written_parameters(attributes, child.text)
+            found = {f"{PARAMETER}{name}": value for name, value in parameters.items()}
+            if not found:
+                name = attributes.get("param") or attributes.get("ns", "")
+                found = {f"{PARAMETER}{name}": attributes.get("command", "")}
         elif child.name == "remap":
-            settings[f"{REMAPPING}{attributes.get('from', '')}"] = attributes.get("to", "")
-        elif child.name == "env":
-            settings[f"environment variable {attributes.get('name', '')}"] = attributes.get("value", "")
+            found = {f"{REMAPPING}{attributes.get('from', '')}": attributes.get("to", "")}
+        elif child.name == "extra_arg":
+            found = {f"extra argument {attributes.get('name', '')}": attributes.get("value", "")}
+        settings |= {with_condition(name, condition): value for name, value in found.items()}
+    settings |= _environment(tag)
     return {**settings, "parameters": f"[{', '.join(files)}]"} if files else settings
+
+
+def _environment(tag: LaunchTag) -> dict[str, str]:
+    """Return the environment variables that an action sets for its process, by name."""
+    return {
+        with_condition(f"{ENVIRONMENT}{child.attributes.get('name', '')}", _condition(child)): child.attributes.get(
+            "value", ""
+        )
+        for child in tag.children
+        if child.name == "env"
+    }
 
 
 def _parameters(tag: LaunchTag, path: str) -> dict[str, str]:
@@ -271,18 +313,15 @@ def _parameter_value(tag: LaunchTag) -> str:
     return _QUOTED_COMMAND.sub(r"$(command \2\3)", text)
 
 
-def _rosparam(tag: LaunchTag) -> dict[str, str]:
-    names = {"ns": NAMESPACE, "command": "command", "subst_value": "subst_value"}
-    return {**_some(tag.attributes, names), **({"text": tag.text} if tag.text else {})}
-
-
 def _passed_arguments(tag: LaunchTag) -> dict[str, str]:
     """Return the arguments that an include passes, and the namespace of the nodes in the file."""
     settings = {
-        child.attributes.get("name", ""): child.attributes.get("value", child.attributes.get("default", ""))
+        with_condition(child.attributes.get("name", ""), _condition(child)): child.attributes.get(
+            "value", child.attributes.get("default", "")
+        )
         for child in tag.children
         if child.name in ("arg", "let")
     }
     if tag.attributes.get("ns"):
         settings[NAMESPACE_OF_INCLUDED] = tag.attributes["ns"]
-    return settings
+    return {**settings, **_environment(tag)}

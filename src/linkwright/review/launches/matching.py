@@ -51,7 +51,7 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
     if old.kind == "environment":
         return float(old.settings == new.settings)
     similarity = _similarity(old, new)
-    if old.kind == "include":
+    if old.kind in ("include", "parameters"):
         old_name = PurePosixPath(old.name).name
         is_same = _file_key(new_names.get(old_name, old_name)) == _file_key(new.name)
         likeness = SequenceMatcher(None, _file_key(old.name), _file_key(new.name), autojunk=False).ratio()

@@ -4,20 +4,26 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from linkwright.diagnostics import Span
+from linkwright.review.launches.conditions import condition_holds
 
 CONDITION = "condition"
 NAMESPACE = "namespace"
 NAMESPACE_OF_INCLUDED = "namespace of its nodes"
 """The setting of an include that is not one of the arguments that it passes."""
 REMAPPING = "remapping "
+ENVIRONMENT = "environment variable "
 READING = "reading"
+SERVER_PARAMETER = "server parameter"
+"""The kind of a parameter of ROS 1 that does not belong to a node of the file."""
 PARAMETER = "parameter "
 _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*))?\)")
-_ENVIRONMENT = re.compile(r"\$\((?:opt)?env [^() ]+ (?P<default>[^()]*)\)")
+_ENVIRONMENT = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)")
+_CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")
+"""The condition of a setting after its name."""
 _MAX_DEPTH = 5
 """The number of variables whose values may contain variables."""
 _MAX_LENGTH = 10_000
@@ -29,8 +35,8 @@ class Entry:
 
     Attributes:
         kind: ``argument``, ``variable``, ``node``, ``process``, ``include``; ``remapping``, ``parameter``,
-            ``parameters`` or ``environment`` of all nodes that follow; ``reading`` of an environment variable;
-            ``handler`` of an event; ``action`` of a package that is not read.
+            ``parameters`` or ``environment`` of all nodes that follow; ``server parameter`` of ROS 1; ``reading`` of an
+            environment variable; ``handler`` of an event; ``action`` of a package that is not read.
         name: the name of the argument or variable, ``package/executable`` of the node, the command, the path of the
             file, or the function that makes the action.
         settings: the values, by name. The value of an argument is its default.
@@ -50,12 +56,28 @@ class Entry:
     def is_same_name(self, setting: str, old: str | None, new: str | None) -> bool:
         """Return whether a changed setting is a remapping of a name to itself, which is the same as none."""
         if self.kind == "node" and setting.startswith(REMAPPING):
-            source = setting.removeprefix(REMAPPING)
+            source = without_condition(setting).removeprefix(REMAPPING)
         elif self.kind == "remapping" and setting == "to":
             source = self.name
         else:
             return False
         return (old or source) == (new or source)
+
+
+def with_condition(setting: str, condition: str) -> str:
+    """Return the name of a setting that an action has under a condition, such as one of two remappings of a name."""
+    return f"{setting} ({condition})" if condition else setting
+
+
+def without_condition(setting: str) -> str:
+    """Return the name of a setting without its condition."""
+    return _CONDITION.sub("", setting)
+
+
+def condition_of_setting(setting: str) -> str:
+    """Return the condition of a setting; empty if there is none."""
+    match = _CONDITION.search(setting)
+    return "" if match is None else match["condition"]
 
 
 @dataclass(frozen=True)
@@ -95,7 +117,7 @@ class LaunchOutline:
     def resolved(self, text: str) -> str:
         """Return a text with the defaults of arguments and environment variables in place of ``$(var NAME)``."""
         for _ in range(_MAX_DEPTH):
-            resolved = _ENVIRONMENT.sub(r"\g<default>", _VARIABLE.sub(self._value, text))
+            resolved = _ENVIRONMENT.sub(lambda match: match["default"] or "", _VARIABLE.sub(self._value, text))
             if resolved == text or len(resolved) > _MAX_LENGTH:
                 break
             text = resolved
@@ -107,13 +129,33 @@ class LaunchOutline:
 
     @cached_property
     def _values(self) -> dict[str, str]:
-        """The defaults and values of arguments, and those of variables, if there is only one, by name."""
-        values: dict[str, set[str]] = {}
+        """The defaults and values of arguments, and those of variables, if there is only one, by name.
+
+        A name that several actions set under conditions has the value of the only one whose condition can hold.
+        """
+        values: dict[str, list[Entry]] = {}
         for entry in self.entries:
-            value = entry.settings.get("value", entry.settings.get("default"))
-            if entry.has_value and value is not None:
-                values.setdefault(entry.name, set()).add(value)
-        return {name: next(iter(found)) for name, found in values.items() if len(found) == 1}
+            if entry.has_value and not {"value", "default"}.isdisjoint(entry.settings):
+                values.setdefault(entry.name, []).append(entry)
+        result = {name: found for name, entries in values.items() if (found := _only_value(entries)) is not None}
+        several = {name: entries for name, entries in values.items() if name not in result}
+        known = replace(self, entries=[entry for name in result for entry in values[name][:1]]) if several else self
+        for name, entries in several.items():
+            holding = [entry for entry in entries if _holds(entry, known) is not False]
+            value = _only_value(holding) if all(_holds(entry, known) for entry in holding) else None
+            if value is not None:
+                result[name] = value
+        return result
+
+
+def _only_value(entries: Sequence[Entry]) -> str | None:
+    """Return the value of actions that set a name, or None if there are several."""
+    values = {entry.settings.get("value", entry.settings.get("default")) for entry in entries}
+    return next(iter(values)) if len(values) == 1 else None
+
+
+def _holds(entry: Entry, outline: LaunchOutline) -> bool | None:
+    return condition_holds(outline.resolved(entry.settings.get(CONDITION, "")))
 
 
 @dataclass(frozen=True)

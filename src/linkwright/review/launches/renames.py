@@ -14,6 +14,7 @@ _KINDS = ("argument", "variable")
 _MIN_USES = 0.5
 """The share of the uses of a name that must be uses of the new name."""
 _MIN_SIMILARITY = 0.6
+_MIN_LIKENESS_OF_USES = 0.8
 _Use = tuple[str, str]
 """The kind of an action, and a value that contains a variable."""
 
@@ -40,15 +41,16 @@ def with_new_names(outline: LaunchOutline, renamed: Mapping[str, str]) -> Launch
     """Return an outline with the new names of arguments and variables."""
     if not renamed:
         return outline
-    entries = [
-        replace(
-            entry,
-            name=renamed.get(entry.name, entry.name) if entry.has_value else _translated(entry.name, renamed),
-            settings={name: _translated(value, renamed) for name, value in entry.settings.items()},
-        )
-        for entry in outline.entries
-    ]
-    return replace(outline, entries=entries)
+    return replace(outline, entries=[renamed_entry(entry, renamed) for entry in outline.entries])
+
+
+def renamed_entry(entry: Entry, renamed: Mapping[str, str]) -> Entry:
+    """Return an action with other names of arguments and variables."""
+    return replace(
+        entry,
+        name=renamed.get(entry.name, entry.name) if entry.has_value else translated(entry.name, renamed),
+        settings={translated(name, renamed): translated(value, renamed) for name, value in entry.settings.items()},
+    )
 
 
 def _by_name(outline: LaunchOutline, kind: str) -> dict[str, Entry]:
@@ -58,14 +60,22 @@ def _by_name(outline: LaunchOutline, kind: str) -> dict[str, Entry]:
 def _likelihood(old_entry: Entry, new_entry: Entry, old: LaunchOutline, new: LaunchOutline) -> float:
     """Return how likely it is that an argument is another one under a new name; 0 if it is not."""
     names = {old_entry.name: new_entry.name}
-    old_uses = Counter((kind, _translated(value, names)) for kind, value in _uses(old, old_entry.name))
+    old_uses = Counter((kind, translated(value, names)) for kind, value in _uses(old, old_entry.name))
     new_uses = Counter(_uses(new, new_entry.name))
     similarity = SequenceMatcher(None, old_entry.name, new_entry.name, autojunk=False).ratio()
     is_same = old_entry.settings == new_entry.settings
     if not old_uses:
         return similarity if is_same and similarity >= _MIN_SIMILARITY and not new_uses else 0.0
-    share = (old_uses & new_uses).total() / old_uses.total()
+    common = old_uses & new_uses
+    rest = list((new_uses - common).elements())
+    alike = sum(any(_are_alike(use, other) for other in rest) for use in (old_uses - common).elements())
+    share = (common.total() + alike) / old_uses.total()
     return share + similarity + is_same if share >= _MIN_USES else 0.0
+
+
+def _are_alike(old: _Use, new: _Use) -> bool:
+    """Return whether two values with a variable are mostly equal, such as command lines with another option."""
+    return old[0] == new[0] and SequenceMatcher(None, old[1], new[1], autojunk=False).ratio() >= _MIN_LIKENESS_OF_USES
 
 
 def _uses(outline: LaunchOutline, name: str) -> Iterator[_Use]:
@@ -76,5 +86,6 @@ def _uses(outline: LaunchOutline, name: str) -> Iterator[_Use]:
                 yield entry.kind, text
 
 
-def _translated(text: str, renamed: Mapping[str, str]) -> str:
+def translated(text: str, renamed: Mapping[str, str]) -> str:
+    """Return a text with other names of arguments and variables."""
     return re.sub(r"(\$\((?:var|arg) )([^() ]+)", lambda match: f"{match[1]}{renamed.get(match[2], match[2])}", text)

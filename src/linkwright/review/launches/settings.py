@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.breaking import name_reason
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
+from linkwright.review.launches.conditional_settings import changed_settings
 from linkwright.review.launches.default_names import default_name
 from linkwright.review.launches.effects import setting_reason, value_reason
 from linkwright.review.launches.outlines import CONDITION, PARAMETER, READING, REMAPPING, Entry, LaunchOutline
-from linkwright.review.launches.titles import joined_titles, title
+from linkwright.review.launches.renames import translated
+from linkwright.review.launches.titles import distinct_title, joined_texts, joined_titles, title
 from linkwright.review.list_changes import change_text, shortened
+from linkwright.review.merging import name_edit
 
 _MIN_GROUP = 3
 """The number of added or removed parameters or remappings of a node from which they are one change."""
@@ -38,6 +41,14 @@ class _Setting:
     reason: Phrase | None
 
     @property
+    def edit(self) -> Hashable | None:
+        """The part of the target of a remapping that is replaced and its replacement; None for other settings."""
+        if not self.name.startswith(REMAPPING) or not self.old or not self.new:
+            return None
+        has_common = self.old[0] == self.new[0] or self.old[-1] == self.new[-1]
+        return name_edit(self.old, self.new) if has_common else None
+
+    @property
     def text(self) -> Phrase:
         """The change in one line."""
         old, new = (None if value is None else value or "''" for value in (self.old, self.new))
@@ -55,17 +66,21 @@ class SettingChanges:
         pair: the file.
         old: the old outline, with the new names of arguments.
         new: the new outline.
+        renamed: the new names of arguments, by old name.
     """
 
-    def __init__(self, pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
+    def __init__(self, pair: FilePair, old: LaunchOutline, new: LaunchOutline, renamed: Mapping[str, str]) -> None:
         self._pair = pair
         self._old = old
         self._new = new
+        self._renamed = renamed
+        self._old_names = {new_name: old_name for old_name, new_name in renamed.items()}
+        self._remappings: dict[Hashable, list[tuple[Entry, Location | None, _Setting]]] = {}
         self._groups: dict[tuple[str, str], list[tuple[Entry, Location | None, Phrase, Phrase | None]]] = {}
 
-    def add_renamed(self, renamed: Mapping[str, str]) -> None:
-        """Add the arguments and variables with new names, by old name."""
-        for old_name, new_name in renamed.items():
+    def add_renamed(self) -> None:
+        """Add the arguments and variables with new names."""
+        for old_name, new_name in self._renamed.items():
             entry = next(entry for entry in self._new.entries if entry.name == new_name and entry.has_value)
             is_argument = entry.kind == "argument" and "value" not in entry.settings
             text = phrase("{entry} renamed to '{name}'", entry=title(replace(entry, name=old_name)), name=new_name)
@@ -79,14 +94,23 @@ class SettingChanges:
         """Add the changed settings of an action."""
         if old.kind == "process" and old.name != new.name:
             program = replace(new, name=new.name.lstrip("[").partition(",")[0].partition(" ")[0])
-            self._add(program, change_text("command", old.name, new.name), None)
+            self._add(program, change_text("command", translated(old.name, self._old_names), new.name), None)
         settings = []
-        for name in dict.fromkeys([*new.settings, *old.settings]):
-            old_value, new_value = old.settings.get(name), new.settings.get(name)
-            if old_value != new_value and not self._is_same_name(new, name, old_value, new_value):
-                reason = setting_reason(new, name, old_value, new_value, self._old, self._new)
-                if new.kind != READING or reason is not None:
-                    settings.append(_Setting(name, old_value, new_value, reason))
+        for each in changed_settings(old, new, self._old, self._new):
+            if self._is_same_name(new, each.name, each.old, each.new):
+                continue
+            defaults = each.old_default, each.new_default
+            is_other = each.has_defaults and defaults[0] != defaults[1]
+            reason = setting_reason(new, each.name, *defaults, self._old, self._new) if is_other else None
+            if new.kind == READING and reason is None:
+                continue
+            old_text = None if each.old is None else translated(each.old, self._old_names)
+            setting = _Setting(each.name, old_text, each.new, reason)
+            if setting.edit is None:
+                settings.append(setting)
+            else:
+                place = new, self._pair.location(new.span), setting
+                self._remappings.setdefault((setting.edit, reason is None), []).append(place)
         for text, reason, name in _joined_settings(settings):
             # A group may give a condition to actions that other programs need and to those of a user interface.
             self._add(new, text, reason, is_apart=name != CONDITION)
@@ -101,13 +125,29 @@ class SettingChanges:
         place = entry, self._pair.location(entry.span), text, reason
         self._groups.setdefault((str(text), str(reason) if is_apart else ""), []).append(place)
 
+    def _add_remappings(self) -> None:
+        """Add the changed remappings; those whose targets are edited in the same way as one change."""
+        for places in self._remappings.values():
+            edits = {(setting.name, setting.old, setting.new) for _, _, setting in places}
+            if len(places) < _MIN_GROUP or len(edits) == 1:
+                for entry, _, setting in places:
+                    self._add(entry, setting.text, setting.reason)
+                continue
+            entries = [entry for entry, _, _ in places]
+            names = list(dict.fromkeys(f"{setting.old} -> {setting.new}" for _, _, setting in places))
+            text = phrase("remappings {items}", items=joined_first(names, _MAX_ITEMS))
+            text = phrase("{entry}: {change}", entry=joined_titles(entries), change=text)
+            self._pair.add(text, places[0][1], _group_reason([setting for _, _, setting in places]))
+
     def add_groups(self) -> None:
         """Add the changes to the file."""
+        self._add_remappings()
         for places in self._groups.values():
             _, location, change, _ = places[0]
             reason = next((reason for _, _, _, reason in places if reason is not None), None)
             entries = [entry for entry, _, _, _ in places]
-            text = phrase("{entry}: {change}", entry=joined_titles(entries), change=change)
+            titles = [distinct_title(entry, self._new.entries) for entry in entries]
+            text = phrase("{entry}: {change}", entry=joined_texts(titles), change=change)
             self._pair.add(text, location, reason)
             if len(set(map(title, entries))) == 1:  # a report counts equal changes
                 for _, other_location, _, _ in places[1:]:
@@ -159,5 +199,6 @@ def _group_reason(group: Sequence[_Setting]) -> Phrase | None:
     reasons = [setting.reason for setting in group if setting.reason is not None]
     names = [str(reason.arguments["name"]) for reason in reasons if reason.arguments.keys() == {"name"}]
     if len(names) == len(reasons) > 1:
+        names = list(dict.fromkeys(names))
         return name_reason(", ".join([*names[:_MAX_ITEMS], *["..."][: len(names) > _MAX_ITEMS]]))
     return reasons[0] if reasons else None

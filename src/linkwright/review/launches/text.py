@@ -119,7 +119,7 @@ class ExpressionTexts:
             node: the expression.
             of_parameters: whether the values are parameters, whose types are shown; see `parameter_text`.
         """
-        value_text = self.parameter_text if of_parameters else self.text
+        value_text = self.parameter_text if of_parameters else self.joined_text
         node = self._python.resolved(node)
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "items":
             node = self._python.resolved(node.func.value)
@@ -133,7 +133,7 @@ class ExpressionTexts:
         if not all(isinstance(pair, (ast.Tuple, ast.List)) and len(pair.elts) == 2 for pair in pairs):
             return None
         return [
-            (self.text(pair.elts[0]), value_text(pair.elts[1]))
+            (self.joined_text(pair.elts[0]), value_text(pair.elts[1]))
             for pair in pairs
             if isinstance(pair, (ast.Tuple, ast.List))
         ]

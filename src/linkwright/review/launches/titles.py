@@ -6,15 +6,26 @@ import re
 from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
-from linkwright.review.launches.outlines import CONDITION, READING, Entry
-from linkwright.review.list_changes import list_items, shortened
+from linkwright.diagnostics.phrase import as_phrase
+from linkwright.review.launches.outlines import (
+    CONDITION,
+    ENVIRONMENT,
+    NAMESPACE,
+    READING,
+    REMAPPING,
+    SERVER_PARAMETER,
+    Entry,
+)
+from linkwright.review.list_changes import EMPTY, list_items, shortened
 
 _MAX_TITLES = 4
-_MAX_SETTINGS = 5
-"""The number of settings that the line about an added action shows."""
-_MAX_SETTING = 80
-EMPTY = "''"
-"""An empty value as users write it."""
+_ORDER = (CONDITION, "name", NAMESPACE, "default", "value", "arguments", REMAPPING, ENVIRONMENT, "parameter")
+"""The beginnings of the names of settings in the order in which they are shown."""
+_MAX_SETTINGS = 16
+"""The number of settings that the line about an added or removed action shows."""
+_VALUES = ("to", "value", "appended value")
+"""The settings that are the value of an action with only one."""
+_MAX_SETTING = 120
 _MAX_NAME = 160
 TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
 _CHILD = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")
@@ -43,6 +54,8 @@ def title(entry: Entry) -> Phrase:
         return phrase("include of '{file}'", file=name)
     if entry.kind == "remapping":
         return phrase("remapping of '{name}' for the nodes that follow", name=name)
+    if entry.kind == SERVER_PARAMETER:
+        return phrase("parameter '{name}'", name=name)
     if entry.kind == "parameter":
         return phrase("parameter '{name}' of the nodes that follow", name=name)
     if entry.kind == "parameters":
@@ -93,33 +106,66 @@ def _controllers(words: Sequence[str]) -> Iterator[str]:
         is_value = word.startswith("-") and word not in _FLAGS
 
 
+def distinct_title(entry: Entry, others: Sequence[Entry]) -> Phrase:
+    """Return the title of an action, with its condition if another one sets the same name."""
+    condition = entry.settings.get(CONDITION)
+    count = sum((other.kind, other.name) == (entry.kind, entry.name) for other in others)
+    if entry.kind in ("node", "include", "process") or condition is None or count < 2:
+        return title(entry)
+    return phrase("{entry} ({items})", entry=title(entry), items=condition)
+
+
 def joined_titles(entries: Sequence[Entry]) -> Phrase:
     """Return the titles of actions, or the first ones and the number of the others."""
-    titles = list(dict.fromkeys(map(title, entries)))
-    return joined_first(titles, _MAX_TITLES)
+    return joined_texts(list(map(title, entries)))
+
+
+def joined_texts(titles: Sequence[Phrase]) -> Phrase:
+    """Return different titles, or the first ones and the number of the others."""
+    return joined_first(list(dict.fromkeys(titles)), _MAX_TITLES)
 
 
 def added_entry(entry: Entry) -> Phrase:
     """Return that an action was added, with its value if it has only one, or with its settings."""
-    value = entry.settings.get("to") or entry.settings.get("value") or entry.settings.get("appended value")
-    if entry.kind in ("remapping", "parameter", "environment", "variable") and value:
-        return phrase("{entry} added: {new}", entry=title(entry), new=shortened(value, _MAX_NAME))
-    if entry.kind == "argument" and "default" in entry.settings:
-        default = shortened(entry.settings["default"], _MAX_NAME) or EMPTY
-        return phrase("{entry} added: default {new}", entry=title(entry), new=default)
-    kinds = ("node", "include", "process", "action", "parameters")
-    if entry.kind not in kinds or settings_text(entry) is None:
+    items = _contents(entry)
+    if items is None:
         return phrase("{entry} added", entry=title(entry))
-    return phrase("{entry} added: {items}", entry=title(entry), items=settings_text(entry))
+    return phrase("{entry} added: {items}", entry=title(entry), items=items)
 
 
-def settings_text(entry: Entry) -> Phrase | None:
+def removed_entry(entry: Entry) -> Phrase:
+    """Return that an action was removed, with its value if it has only one, or with its settings."""
+    items = _contents(entry)
+    if items is None:
+        return phrase("{entry} removed", entry=title(entry))
+    return phrase("{entry} removed: {items}", entry=title(entry), items=items)
+
+
+def _contents(entry: Entry) -> Phrase | None:
+    """Return the value of an action if it has only one, or its settings; None if it has none."""
+    if entry.kind == READING:
+        return None
+    names = [name for name in entry.settings if name != "description"]
+    if len(names) == 1 and names[0] in _VALUES:
+        return as_phrase(shortened(entry.settings[names[0]], _MAX_NAME) or EMPTY)
+    return settings_text(entry)
+
+
+def settings_text(entry: Entry, limit: int = _MAX_SETTINGS) -> Phrase | None:
     """Return the settings of an action, its condition first, or None if it has none."""
-    names = sorted((name for name in entry.settings if name != "description"), key=lambda name: name != CONDITION)
+    names = sorted((name for name in entry.settings if name != "description"), key=_order)
     if not names:
         return None
-    return joined_first([_setting_text(name, entry.settings[name]) for name in names], _MAX_SETTINGS)
+    return joined_first([_setting_text(name, entry.settings[name]) for name in names], limit)
+
+
+def _order(setting: str) -> int:
+    """Return the place of a setting among those of an action: what others use and what differs in each node first."""
+    return next((number for number, start in enumerate(_ORDER) if setting.startswith(start)), len(_ORDER))
 
 
 def _setting_text(name: str, value: str) -> str:
-    return shortened(value if name == CONDITION else f"{name} {value or EMPTY}", _MAX_SETTING)
+    if name == CONDITION:
+        return shortened(value, _MAX_SETTING)
+    separator = " -> " if name.startswith(REMAPPING) else " "
+    return shortened(f"{name}{separator}{value or EMPTY}", _MAX_SETTING)

@@ -16,6 +16,7 @@ from linkwright.review.breaking import (
     plugin_name_reason,
 )
 from linkwright.review.changes import Change, Effect
+from linkwright.review.element_values import values_text
 from linkwright.review.files.semantics import removal_reason
 from linkwright.review.merging import common_reason, name_edit
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
@@ -28,6 +29,8 @@ _MAX_CHARACTERS = 80
 """The number of characters of a value that a line shows."""
 _SHOWN_BEGINNING = 20
 """The number of equal characters that are shown before the difference of long values."""
+_MAX_VALUES = 8
+"""The number of values of an added or removed element that a line shows."""
 _MAX_LINES = 15
 """The number of changes without a reason that are listed for a file."""
 _NAMESPACE = "namespace"
@@ -157,11 +160,13 @@ class _Described:
         pair: the file.
         macro: the macro that contains it, or None outside of macros.
         difference: the difference.
+        shows_contents: whether the line about an added or removed element has its values.
     """
 
     pair: PartPair
     macro: str | None
     difference: PartDifference
+    shows_contents: bool = True
 
     @property
     def element(self) -> str:
@@ -208,12 +213,27 @@ class _Described:
         if difference.value == "conditions":
             old, new = (text or phrase("always") for text in _shortened(difference.old or "", difference.new or ""))
             return phrase("{element}: condition {old} -> {new}", element=self.element, old=old, new=new)
-        if difference.new is None:
-            return phrase("{element} removed", element=self.element)
-        if difference.old is None:
-            return phrase("{element} added", element=f"{self.element} {_cut(difference.new)}".strip())
+        if difference.new is None or difference.old is None:
+            return self._presence()
         old, new = _shortened(difference.old, difference.new)
         return phrase("{element}: {old} -> {new}", element=self.element, old=old or "-", new=new or "-")
+
+    def _presence(self) -> Phrase:
+        """Return that one version has a value, or an element with its values."""
+        difference = self.difference
+        value = _cut((difference.new if difference.old is None else difference.old) or "")
+        name = f"{self.element} {value}".strip()
+        text = phrase("{element} added", element=name)
+        if difference.new is None:
+            text = phrase("{element} removed", element=name)
+        contents = self.contents if self.shows_contents else None
+        return text if contents is None else phrase("{change}: {contents}", change=text, contents=contents)
+
+    @property
+    def contents(self) -> Phrase | None:
+        """The values in an added or removed element, or None if there are none."""
+        element = self.difference.new_element or self.difference.old_element
+        return values_text(element, _MAX_VALUES) if self.difference.is_whole and element is not None else None
 
     @property
     def reason(self) -> Phrase | None:
@@ -263,6 +283,8 @@ def _merged(differences: list[_Described]) -> Iterator[Change]:
         groups.setdefault(each.key, []).append(each)
     changes = []
     for first, *others in groups.values():
+        if len({str(each.contents) for each in (first, *others)}) > 1:
+            first = replace(first, shows_contents=False)
         names = dict.fromkeys(other.name for other in others if other.element != first.element)
         reason = common_reason(described.reason for described in (first, *others))
         changes.append(replace(first.change, reason=reason, other_names=tuple(names)))

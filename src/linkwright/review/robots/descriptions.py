@@ -8,28 +8,34 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from linkwright.descriptions.comparison import Comparison, Difference, DifferenceLocation, sentence
-from linkwright.diagnostics import Phrase, phrase, term
+from linkwright.diagnostics import Phrase, joined, phrase, term
+from linkwright.diagnostics.phrase import as_phrase
 from linkwright.geometry.single import Pose, pose_quaternion
 from linkwright.review.breaking import breaking_reason, frame_reason
-from linkwright.review.robots.added_links import AddedLinks
-from linkwright.review.robots.cases import Case, cases, switched_cases
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.robots.collisions import collision_changes, may_change_collisions
-from linkwright.review.files.semantics import disabled_collisions
-from linkwright.review.robots.figures import RobotMeasures, figures_of
-from linkwright.review.robots.joined_values import JoinedDifferences, with_joined_values
+from linkwright.review.drawings.images import collision_images, view_images
+from linkwright.review.drawings.scenes import robot_scene
+from linkwright.review.element_values import own_content
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.semantics import disabled_collisions
 from linkwright.review.frames import UNMOVED, SharedFrames
-from linkwright.review.drawings.images import view_images
 from linkwright.review.merging import common_reason, merged
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.parts.expanded import expanded_places
-from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
-from linkwright.review.drawings.scenes import robot_scene
+from linkwright.review.plugins import added_topics, contents_text, is_still_offered, missing_topics_reason
+from linkwright.review.replaced_plugins import PluginReplacement, with_replaced_plugins
+from linkwright.review.robots.added_links import AddedLinks
+from linkwright.review.robots.cases import Case, cases, switched_cases
+from linkwright.review.robots.collisions import collision_changes, may_change_collisions
+from linkwright.review.robots.figures import RobotMeasures, figures_of
+from linkwright.review.robots.joined_values import JoinedDifferences, with_joined_values
 from linkwright.urdf import Robot
+from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
 
 _EXPRESSION = b"$(find "
+_REFERENCE = "reference"
+"""The attribute of ``<gazebo>`` with the link or joint, which is the name of the extension."""
 _DETAILS_OF_INERTIAL = ("origin rpy 0 0 0", "inertia ixy", "inertia ixz", "inertia iyz")
 
 
@@ -53,6 +59,7 @@ def compare_descriptions(pair: FilePair) -> None:
             continue  # where the links are is unknown
         if pair.drawings.images and not pair.images:
             pair.images += view_images(case.models, case.old.robot, case.new.robot, comparison, frames)
+            pair.images += collision_images(case.models, case.old.robot, case.new.robot, comparison, frames)
             if pair.images and pair.drawings.scenes:
                 roots = pair.versions.old.root, pair.versions.new.root
                 pair.scene = robot_scene(case.models, case.old, case.new, roots)
@@ -80,7 +87,7 @@ def _cases(pair: FilePair, groups: Sized) -> Iterator[Case]:
 
 @dataclass
 class _Group:
-    """A change with the names of the links or joints, and of the argument sets, with which it occurs, and its reasons."""
+    """A change with its reasons, and the names of the links, joints and argument sets with which it occurs."""
 
     first: Change
     names: dict[str, None] = field(default_factory=dict)
@@ -118,8 +125,9 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case:
     if has_other_root:
         yield _root_change(old, new, frames)
     added = added_topics(comparison.differences)
-    added_links = AddedLinks(comparison.differences, new)
-    for difference in with_joined_values(comparison.differences):
+    differences = with_replaced_plugins(comparison.differences)
+    added_links = AddedLinks(differences, new)
+    for difference in with_joined_values(differences):
         if added_links.is_in_line_of_link(difference):
             continue
         if partial is not None and not partial.is_certain(difference):
@@ -127,7 +135,7 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case:
         if has_other_root and (difference.subject, difference.kind, difference.name) == ("link", "removed", old.root):
             continue
         reason = (
-            breaking_reason(difference, old, new)
+            (None if is_still_offered(difference, added) else breaking_reason(difference, old, new))
             or missing_topics_reason(difference, added)
             or _expression_reason(difference)
         )
@@ -196,6 +204,9 @@ def sentence_of_difference(difference: Difference) -> Phrase:
     """Return a difference in one line. A moved or rotated frame also has the distance or angle."""
     if isinstance(difference, JoinedDifferences):
         return difference.sentence()
+    if isinstance(difference, PluginReplacement):
+        name = f"{term(difference.subject)} '{difference.name}'"
+        return phrase("{entry}: {change}", entry=name, change=difference.text)
     text = sentence(difference)
     old_path = path_of_renamed(difference, difference.property)
     if old_path is not None:
@@ -206,12 +217,13 @@ def sentence_of_difference(difference: Difference) -> Phrase:
             property=old_path,
             new=difference.new or "",
         )
-    contents = None if difference.element is None else contents_text(difference.element)
-    if contents is not None:
-        change = _presence(difference) if difference.kind == "changed" else text
-        return phrase("{change}: {contents}", change=change, contents=contents)
+    if difference.element is not None:
+        contents = _element_contents(difference.element)
+        if difference.kind == "changed":
+            return _presence(difference, contents)
+        return text if contents is None else phrase("{change}: {contents}", change=text, contents=contents)
     if difference.kind == "changed" and (difference.old is None or difference.new is None):
-        return _presence(difference)
+        return _presence(difference, _known_value(difference))
     if difference.old is None or difference.new is None or not difference.property.endswith(("xyz", "rpy")):
         return text
     try:
@@ -227,19 +239,31 @@ def sentence_of_difference(difference: Difference) -> Phrase:
     return text
 
 
-def _presence(difference: Difference) -> Phrase:
-    """Return in one line that a property or a part was added or removed."""
-    subject, name = term(difference.subject), difference.name
-    if difference.new is None:
+def _element_contents(element: Element) -> Phrase | None:
+    """Return the attributes of an element without its name, and the values in it; None if there are none."""
+    parts = [as_phrase(own_content(element, (_REFERENCE,))), contents_text(element)]
+    return joined(list(filter(None, parts))) if any(parts) else None
+
+
+def _known_value(difference: Difference) -> str:
+    """Return the value that one version has, with its unit."""
+    value = difference.old if difference.new is None else _without_details(difference)
+    return " ".join(filter(None, (value, difference.unit)))
+
+
+def _presence(difference: Difference, value: str | None) -> Phrase:
+    """Return in one line that a property or a part was added or removed, with its value."""
+    subject, name, part = term(difference.subject), difference.name, difference.property
+    if difference.new is not None and not value:
+        return phrase("{subject} '{name}': {property} added", subject=subject, name=name, property=part)
+    if difference.new is not None:
         return phrase(
-            "{subject} '{name}': {property} removed", subject=subject, name=name, property=difference.property
+            "{subject} '{name}': {property} added: {new}", subject=subject, name=name, property=part, new=value
         )
+    if not value:
+        return phrase("{subject} '{name}': {property} removed", subject=subject, name=name, property=part)
     return phrase(
-        "{subject} '{name}': {property} added: {new}",
-        subject=subject,
-        name=name,
-        property=difference.property,
-        new=" ".join(filter(None, (_without_details(difference), difference.unit))),
+        "{subject} '{name}': {property} removed: {value}", subject=subject, name=name, property=part, value=value
     )
 
 

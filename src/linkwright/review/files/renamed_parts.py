@@ -1,0 +1,153 @@
+"""Parts of YAML files that have another name or place in the new version, such as nodes, plugins and joints."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Hashable, Iterator, Mapping
+
+from linkwright.review.files.parameter_names import part_names
+from linkwright.review.files.yaml_values import YamlValue
+from linkwright.review.merging import name_edit
+
+_MIN_FACTS = 6
+"""The number of parameters and values from which a part can be recognized under another name."""
+_MIN_SIMILARITY = 0.6
+_MIN_ALIKE = 2
+"""The number of parts beside each other, renamed in the same way, from which they need not have many values."""
+_MAX_PARTS = 60
+"""The number of parts of either version up to which moved parts are searched."""
+_ITEM = re.compile(r"\[(old )?\d+\]$")
+"""The end of the path of an item of a list that has no name."""
+_Facts = Counter[str]
+"""The names and values in a part, alone and together."""
+
+
+def renamed_parts(old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> dict[str, str]:
+    """Return the parts of a file that have another name or place but similar values: the new paths, by old path."""
+    old_parts, new_parts = _lone_parts(old, new), _lone_parts(new, old)
+    renamed = dict(_renamed_alike(old_parts, new_parts))
+    for old_name, first in old_parts.items():
+        if old_name in renamed:
+            continue
+        for new_name, second in new_parts.items():
+            if new_name in renamed.values() or parent_of(old_name) != parent_of(new_name) or _ITEM.search(new_name):
+                continue
+            if first.total() >= _MIN_FACTS and _similarity(first, second) >= _MIN_SIMILARITY:
+                renamed[old_name] = new_name
+                break
+    old_rest = {name: facts for name, facts in old_parts.items() if name not in renamed}
+    new_rest = {name: facts for name, facts in new_parts.items() if name not in renamed.values()}
+    renamed |= dict(_moved(_with_inner_parts(old_rest, old), _with_inner_parts(new_rest, new)))
+    return renamed
+
+
+def with_new_parts(values: Mapping[str, YamlValue], renamed: Mapping[str, str]) -> dict[str, YamlValue]:
+    """Return the values of the old version with the new paths of renamed parts."""
+    return {_with_new_part(name, renamed): value for name, value in values.items()}
+
+
+def _with_new_part(name: str, renamed: Mapping[str, str]) -> str:
+    for part in reversed(part_names(name)):
+        if part in renamed:
+            return f"{renamed[part]}{name.removeprefix(part)}"
+    return name
+
+
+def edit_of(old: str, new: str) -> Hashable:
+    """Return what differs in the last names of two paths beside each other; where they are for others."""
+    parent, new_parent = parent_of(old), parent_of(new)
+    if parent != new_parent:
+        return parent, new_parent
+    return name_edit(old.removeprefix(parent), new.removeprefix(parent))
+
+
+def parent_of(part: str) -> str:
+    """Return the path of the mapping or list that contains a part; empty for one at the top."""
+    return (["", *part_names(part)])[-2]
+
+
+def _renamed_alike(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:
+    """Yield the parts of which several beside each other are renamed in the same way, in their order.
+
+    Such parts are the joints of a controller that all get another prefix.
+    """
+    old_groups, new_groups = _beside_each_other(old), _beside_each_other(new)
+    for parent, gone in old_groups.items():
+        come = new_groups.get(parent, [])
+        pairs = list(zip(gone, come, strict=False))
+        if len(gone) != len(come) or len(pairs) < _MIN_ALIKE or any(_ITEM.search(name) for name in (*gone, *come)):
+            continue
+        if len({edit_of(*pair) for pair in pairs}) == 1 and all(_inside(old[a]) == _inside(new[b]) for a, b in pairs):
+            yield from pairs
+
+
+def _inside(facts: _Facts) -> set[str]:
+    return {fact for fact in facts if "=" not in fact}
+
+
+def _beside_each_other(parts: Mapping[str, _Facts]) -> dict[str, list[str]]:
+    groups: dict[str, list[str]] = {}
+    for name in parts:
+        groups.setdefault(parent_of(name), []).append(name)
+    return groups
+
+
+def _moved(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:
+    """Yield the parts that keep their last name and are inside another part, each with its new path.
+
+    A small part is moved if another one was beside it in both versions.
+    """
+    if max(len(old), len(new)) > _MAX_PARTS:
+        return
+    moved: dict[str, str] = {}
+    parents: set[tuple[str, str]] = set()
+    for is_first in (True, False):
+        for old_name, first in old.items():
+            if any(old_name == name or old_name.startswith(f"{name}.") for name in moved):
+                continue
+            for new_name, second in new.items():
+                places = parent_of(old_name), parent_of(new_name)
+                if _last_name(new_name) != _last_name(old_name) or new_name in moved.values():
+                    continue
+                is_like = first.total() >= _MIN_FACTS and _similarity(first, second) >= _MIN_SIMILARITY
+                if is_like if is_first else places in parents:
+                    moved[old_name] = new_name
+                    parents.add(places)
+                    break
+    yield from moved.items()
+
+
+def _last_name(part: str) -> str:
+    return part.removeprefix(parent_of(part)).lstrip(".")
+
+
+def _with_inner_parts(parts: Mapping[str, _Facts], values: Mapping[str, YamlValue]) -> dict[str, _Facts]:
+    """Return parts with the parts inside them, the outer ones first."""
+    result: dict[str, _Facts] = dict(parts)
+    for name, value in values.items():
+        inner = part_names(name)[:-1]
+        if any(part in parts for part in inner):
+            for part in inner:
+                if any(part.startswith((f"{outer}.", f"{outer}[")) for outer in parts):
+                    result.setdefault(part, Counter()).update(_facts(name.removeprefix(part), value))
+    return result
+
+
+def _similarity(first: _Facts, second: _Facts) -> float:
+    return 2 * (first & second).total() / (first.total() + second.total())
+
+
+def _lone_parts(values: Mapping[str, YamlValue], others: Mapping[str, YamlValue]) -> dict[str, _Facts]:
+    """Return the largest parts that other values do not have: their names and values, alone and together."""
+    other_parts = {part for name in others for part in part_names(name)}
+    parts: dict[str, _Facts] = {}
+    for name, value in values.items():
+        part = next((part for part in part_names(name) if part not in other_parts), name)
+        if name not in others:
+            parts.setdefault(part, Counter()).update(_facts(name.removeprefix(part), value))
+    return parts
+
+
+def _facts(name: str, value: YamlValue) -> list[str]:
+    return [name, f"{name}={value.text}"]

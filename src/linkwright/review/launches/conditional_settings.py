@@ -1,0 +1,80 @@
+"""The settings of an action in both versions, also those that it has under conditions, such as ``<remap if="...">``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from linkwright.review.launches.conditions import condition_holds
+from linkwright.review.launches.outlines import Entry, LaunchOutline, condition_of_setting, without_condition
+
+
+@dataclass(frozen=True)
+class SettingPair:
+    """A setting that differs.
+
+    Attributes:
+        name: the name.
+        old: the old value; None if there was none.
+        new: the new value; None if there is none.
+        old_default: the old value that applies with the defaults of arguments; None if there was none.
+        new_default: the new value that applies with the defaults of arguments; None if there is none.
+        has_defaults: whether both of these values are known.
+    """
+
+    name: str
+    old: str | None
+    new: str | None
+    old_default: str | None
+    new_default: str | None
+    has_defaults: bool = True
+
+
+def changed_settings(
+    old: Entry, new: Entry, old_outline: LaunchOutline, new_outline: LaunchOutline
+) -> Iterator[SettingPair]:
+    """Yield the settings of an action that differ.
+
+    A setting that gets other conditions, or loses them, is one with all its values.
+    """
+    old_groups, new_groups = _by_name(old.settings), _by_name(new.settings)
+    for name in dict.fromkeys([*new_groups, *old_groups]):
+        old_values, new_values = old_groups.get(name, {}), new_groups.get(name, {})
+        has_conditions = any(map(condition_of_setting, (*old_values, *new_values)))
+        if old_values.keys() == new_values.keys() or not has_conditions:
+            for key in dict.fromkeys([*new_values, *old_values]):
+                before, after = old_values.get(key), new_values.get(key)
+                if before != after:
+                    yield SettingPair(key, before, after, before, after)
+            continue
+        old_default, is_old_known = _default(old_values, old_outline)
+        new_default, is_new_known = _default(new_values, new_outline)
+        texts = _text(old_values), _text(new_values)
+        yield SettingPair(name, *texts, old_default, new_default, has_defaults=is_old_known and is_new_known)
+
+
+def _by_name(settings: Mapping[str, str]) -> dict[str, dict[str, str]]:
+    groups: dict[str, dict[str, str]] = {}
+    for name, value in settings.items():
+        groups.setdefault(without_condition(name), {})[name] = value
+    return groups
+
+
+def _text(values: Mapping[str, str]) -> str | None:
+    """Return the values of a setting with their conditions, or None if there are none."""
+    texts = [
+        f"{value} ({condition})" if (condition := condition_of_setting(name)) else value
+        for name, value in values.items()
+    ]
+    return ", ".join(texts) if texts else None
+
+
+def _default(values: Mapping[str, str], outline: LaunchOutline) -> tuple[str | None, bool]:
+    """Return the value that applies with the defaults of arguments, and whether it is known."""
+    result = None
+    for name, value in values.items():
+        holds = condition_holds(outline.resolved(condition_of_setting(name)))
+        if holds is None:
+            return None, False
+        result = value if holds else result
+    return result, True

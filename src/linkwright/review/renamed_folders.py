@@ -1,0 +1,71 @@
+"""Renamed and moved folders, as one change instead of one for each file in them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import counted, joined_first, phrase
+from linkwright.review.changes import Change, Effect, Subject, SubjectKind
+
+_MIN_FILES = 3
+"""The number of files of a folder from which they are one line."""
+_MAX_NAMES = 12
+"""The number of files that the line names."""
+_RENAMED = "renamed from {path}"
+_Folders = tuple[str, str]
+"""The old and the new path of a folder."""
+
+
+def with_renamed_folders(subjects: Sequence[Subject]) -> list[Subject]:
+    """Return subjects with one for several files that are renamed because a folder above them is another one."""
+    groups: dict[_Folders, list[Subject]] = {}
+    for subject in subjects:
+        folders = _folders(subject)
+        if folders is not None:
+            groups.setdefault(folders, []).append(subject)
+    result = list(subjects)
+    for folders, group in groups.items():
+        if len(group) < _MIN_FILES:
+            continue
+        for subject in group:
+            others = [change for change in subject.changes if change.sentence.template != _RENAMED]
+            result[next(i for i, each in enumerate(result) if each is subject)] = replace(subject, changes=others)
+        result.append(_folder(folders, group))
+    return sorted(result, key=lambda subject: subject.path)
+
+
+def _folders(subject: Subject) -> _Folders | None:
+    """Return the paths of the outermost folder that differs in the paths of a file; None if the name differs, too."""
+    is_renamed = any(change.sentence.template == _RENAMED for change in subject.changes)
+    if not is_renamed or subject.old_path is None or subject.new_path is None or subject.kind is SubjectKind.MESH:
+        return None
+    old, new = (PurePosixPath(path).parts for path in (subject.old_path, subject.new_path))
+    if old[-1] != new[-1]:
+        return None
+    common = 0
+    while common < min(len(old), len(new)) and old[-1 - common] == new[-1 - common]:
+        common += 1
+    return "/".join(old[: len(old) - common]), "/".join(new[: len(new) - common])
+
+
+def _folder(folders: _Folders, group: Sequence[Subject]) -> Subject:
+    old, new = (f"{folder or '.'}/" for folder in folders)
+    is_breaking = any(
+        change.effect is Effect.BREAKING
+        for subject in group
+        for change in subject.changes
+        if change.sentence.template == _RENAMED
+    )
+    text = counted(
+        "folder renamed from {path} with {count} compared file: {names}",
+        "folder renamed from {path} with {count} compared files: {names}",
+        len(group),
+        path=old,
+        names=joined_first((subject.path.removeprefix(new) for subject in group), _MAX_NAMES),
+    )
+    reason = phrase("launch files, descriptions and users that name the files do not find them")
+    effect = Effect.BREAKING if is_breaking else Effect.CHANGED
+    change = Change(text, effect, reason if is_breaking else None)
+    return Subject(group[0].kind, new, old, new, [change])

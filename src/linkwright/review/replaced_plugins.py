@@ -1,0 +1,97 @@
+"""Plugins of simulators that replace another one, such as the drive of another version of Gazebo."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+
+from linkwright.descriptions.comparison import Difference
+from linkwright.diagnostics import Phrase, joined, phrase
+from linkwright.diagnostics.phrase import as_phrase
+from linkwright.review.element_values import own_content
+from linkwright.review.plugins import contents_text, is_added, is_removed, plugin_name, plugins_of
+from linkwright.xmltree import Element
+
+_FILE_ROLE = re.compile(
+    r"(lib)?((gazebo|gz|ignition|ign)[-_])?((sim|gazebo)[-_])?(ros2?[-_])?(?P<role>.+?)([-_](system|plugin))*(\.so)?"
+)
+"""The name of a file without what tells only the version of the simulator."""
+_SEPARATORS = re.compile(r"[\W_]+")
+_MIN_ROLE = 3
+"""The number of characters from which a role is one."""
+
+
+@dataclass(frozen=True, slots=True)
+class PluginReplacement(Difference):
+    """A plugin that replaces another one.
+
+    Attributes:
+        old_plugin: the old plugin.
+        new_plugin: the new plugin.
+    """
+
+    old_plugin: Element | None = field(default=None, compare=False, repr=False)
+    new_plugin: Element | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def text(self) -> Phrase:
+        """Both plugins with their values."""
+        old, new = (_described(plugin) for plugin in (self.old_plugin, self.new_plugin) if plugin is not None)
+        return phrase("{old} replaced by {new}", old=old, new=new)
+
+
+def _described(plugin: Element) -> Phrase:
+    title = phrase("plugin '{name}'", name=plugin_name(plugin))
+    items = list(filter(None, [as_phrase(own_content(plugin)), contents_text(plugin)]))
+    return phrase("{entry} ({items})", entry=title, items=joined(items)) if items else title
+
+
+def with_replaced_plugins(differences: Iterable[Difference]) -> list[Difference]:
+    """Return differences in which a removed and an added plugin of the same name, file or role are one."""
+    result = list(differences)
+    come = [(each, plugin) for each in result if is_added(each) and (plugin := _only_plugin(each)) is not None]
+    for difference in tuple(result):
+        old_plugin = _only_plugin(difference) if is_removed(difference) else None
+        match = None if old_plugin is None else _replacement(old_plugin, [plugin for _, plugin in come])
+        if old_plugin is None or match is None:
+            continue
+        added, new_plugin = come.pop(match)
+        names = plugin_name(old_plugin), plugin_name(new_plugin)
+        places = difference.old_place, added.new_place
+        index = next(index for index, each in enumerate(result) if each is added)
+        result[index] = PluginReplacement(
+            added.subject, added.name, "changed", added.property, *names, "", *places, None, old_plugin, new_plugin
+        )
+        result = [each for each in result if each is not difference]
+    return result
+
+
+def _replacement(plugin: Element, others: Sequence[Element]) -> int | None:
+    """Return the number of the plugin that replaces another one, or None if there is none."""
+    return next((index for index, other in enumerate(others) if not _keys(plugin).isdisjoint(_keys(other))), None)
+
+
+def _only_plugin(difference: Difference) -> Element | None:
+    """Return the plugin of an added or removed element that contains nothing else, or None for another element."""
+    if difference.element is None:
+        return None
+    plugins = [plugin for plugin in plugins_of(difference.element) if plugin.attributes]
+    children = list(difference.element.elements())
+    is_alone = difference.element.tag == "plugin" or (difference.element.tag == "gazebo" and children == plugins)
+    return plugins[0] if is_alone and len(plugins) == 1 else None
+
+
+def _keys(plugin: Element) -> set[str]:
+    """Return the name and the roles of a plugin, which are equal in a plugin that replaces it."""
+    return {f"name {plugin_name(plugin)}", *(f"role {role}" for role in _roles(plugin))}
+
+
+def _roles(plugin: Element) -> Iterator[str]:
+    match = _FILE_ROLE.fullmatch(PurePosixPath(plugin.attributes.get("filename", "")).name)
+    class_name = plugin.attributes.get("name", "").rpartition("::")
+    for text in (match["role"] if match else "", class_name[2] if class_name[1] else ""):
+        role = _SEPARATORS.sub("", text).lower()
+        if len(role) >= _MIN_ROLE:
+            yield role

@@ -1,0 +1,183 @@
+"""Contents of plugins, folders, templates and descriptions of packages in the lines about changes."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.review import open_versions, review
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+URDF = "arm/urdf/arm.urdf"
+OLD_DRIVE = """<plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+  <ros><remapping>cmd_vel:=base/cmd</remapping></ros><rate>{rate}</rate>
+</plugin>"""
+NEW_DRIVE = """<plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">
+  <topic>base/cmd</topic><odom_topic>odom</odom_topic>
+</plugin>"""
+
+
+def robot(plugin: str) -> str:
+    return f'<robot name="r"><link name="base"/><gazebo>{plugin}</gazebo></robot>'
+
+
+def test_plugin_of_the_same_role_replaces_another_one(repository, compare):
+    repository.commit({URDF: robot(OLD_DRIVE.format(rate=9))})
+    repository.write({URDF: robot(NEW_DRIVE)})
+    result = compare(repository)
+    assert sentences(subject(result, URDF)) == [
+        (
+            "extension 'gazebo': plugin 'drive' (filename=libgazebo_ros_diff_drive.so, "
+            "ros remapping cmd_vel:=base/cmd, rate 9, topics 'odom') "
+            "replaced by plugin 'gz::sim::systems::DiffDrive' (filename=gz-sim-diff-drive-system, "
+            "topic base/cmd, odom_topic odom)"
+        )
+    ]
+    assert breaking(result) == []
+
+
+def test_replaced_plugin_without_a_topic_is_breaking(repository, compare):
+    world = '<sdf version="1.9"><world name="w">{}</world></sdf>'
+    repository.commit({"arm/worlds/w.sdf": world.format(OLD_DRIVE.format(rate=9))})
+    repository.write({"arm/worlds/w.sdf": world.format(NEW_DRIVE.replace("<odom_topic>odom</odom_topic>", ""))})
+    result = compare(repository)
+    assert [change.reason.arguments["topics"] for _, change in result.breaking_changes] == ["'odom'"]
+
+
+def test_topic_in_another_parameter_of_a_plugin_is_not_lost(repository, compare):
+    plugin = '<plugin name="imu" filename="libimu.so">{}</plugin>'
+    repository.commit({URDF: robot(plugin.format("<topicName>imu</topicName>"))})
+    repository.write({URDF: robot(plugin.format("<ros><remapping>~/out:=imu</remapping></ros>"))})
+    result = compare(repository)
+    assert sentences(subject(result, URDF)) == [
+        "extension 'gazebo': plugin imu ros added: remapping ~/out:=imu",
+        "extension 'gazebo': plugin imu topicName removed: imu",
+    ]
+    assert breaking(result) == []
+
+
+def test_files_of_a_renamed_folder_are_one_change(repository, compare):
+    files = {
+        f"robots/{name}.yaml": f"{name}:\n  a: 1\n  b: {name}\n  c: 2\n  d: 3\n  e: 4\n"
+        for name in ("left", "right", "rear")
+    }
+    repository.commit({"arm/package.xml": PACKAGE_XML, **{f"arm/config/{name}": text for name, text in files.items()}})
+    moved = {f"arm/settings/{name}": text for name, text in files.items()}
+    moved["arm/settings/robots/left.yaml"] = files["robots/left.yaml"].replace("a: 1", "a: 2")
+    repository.write({**{f"arm/config/{name}": None for name in files}, **moved})
+    repository.git("add", "-A")
+    result = compare(repository)
+    assert sentences(subject(result, "arm/settings/")) == breaking(result)
+    assert breaking(result) == [
+        "folder renamed from arm/config/ with 3 compared files: robots/left.yaml, robots/rear.yaml, robots/right.yaml"
+    ]
+    assert sentences(subject(result, "arm/settings/robots/left.yaml")) == ["left.a 1 -> 2"]
+
+
+TEMPLATE = """<?xml version="1.0"?>
+{# a model #}
+<sdf version="1.6">
+  <model name="{{ name }}">
+    <link name="base">
+      {%- if heavy < 2 %}
+      <pose>0 0 1 0 0 0</pose>
+      {%- endif %}
+      <inertial><mass>{{ mass if mass > 1 else 1 }}</mass></inertial>
+    </link>
+  </model>
+</sdf>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("0 0 1 0", "0 0 2 0", "model {{ name }} link base pose: 0 0 1 0 0 0 -> 0 0 2 0 0 0"),
+        ("else 1", "else 2",
+         "model {{ name }} link base inertial mass: {{ mass if mass > 1 else 1 }} -> {{ mass if mass > 1 else 2 }}"),
+    ],
+)  # fmt: skip
+def test_template_of_a_model_is_compared_without_its_statements(repository, compare, old, new, expected):
+    path = "arm/models/arm.sdf.jinja"
+    repository.commit({path: TEMPLATE})
+    repository.write({path: TEMPLATE.replace(old, new)})
+    (change,) = subject(compare(repository), path).changes
+    assert str(change.sentence) == expected
+
+
+def test_template_that_is_not_xml_is_a_problem(repository, compare):
+    path = "arm/models/arm.sdf.jinja"
+    repository.commit({path: "<sdf>{% if a %}<model name='a'>{% else %}<model name='b'>{% endif %}</model></sdf>"})
+    repository.write({path: "<sdf>{% if a %}<model name='a'>{% else %}<model name='c'>{% endif %}</model></sdf>"})
+    assert len(subject(compare(repository), path).problems) == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("<b>arm</b>", "<b>crane</b>", ["description: An arm. See x. -> An crane. See x."]),
+        ("<b>arm</b>", "<i>arm</i>", ["markup of the description changed"]),
+        ("http://x", "http://y", ["markup of the description changed"]),
+        ("<b>arm</b>.", "<b>arm</b>.\n   ", []),
+    ],
+)
+def test_description_of_a_package_is_compared_as_text(repository, compare, old, new, expected):
+    text = PACKAGE_XML.replace("An arm.", '<p>An <b>arm</b>.</p><p>See <a href="http://x">x</a>.</p>')
+    repository.commit({"arm/package.xml": text})
+    repository.write({"arm/package.xml": text.replace(old, new)})
+    assert [sentence for each in compare(repository).subjects for sentence in sentences(each)] == expected
+
+
+LIBRARY = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="tool" params=""><link name="{name}"/></xacro:macro>
+</robot>
+"""
+ROBOT = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">
+  <xacro:include filename="$(find library)/tool.xacro"/>
+  <xacro:tool/>
+</robot>
+"""
+
+
+def test_nearest_copy_of_a_package_is_used(repository, compare):
+    files = {}
+    for folder in ("one", "two"):
+        files[f"{folder}/library/package.xml"] = PACKAGE_XML.replace("arm_description", "library")
+        files[f"{folder}/library/tool.xacro"] = LIBRARY.format(name=folder)
+        files[f"{folder}/robot/package.xml"] = PACKAGE_XML.replace("arm_description", f"robot_{folder}")
+        files[f"{folder}/robot/arm.urdf.xacro"] = ROBOT
+    repository.commit(files)
+    repository.write({"two/library/tool.xacro": LIBRARY.format(name="three")})
+    (found,) = compare(repository).subjects
+    assert found.path == "two/robot/arm.urdf.xacro"
+    assert sentences(found)[0] == "root link 'two' -> 'three'"
+
+
+def test_changed_collisions_have_images(repository):
+    shape = '<collision><geometry><box size="{} 1 1"/></geometry></collision>'
+    text = f'<robot name="r"><link name="base">{shape}</link></robot>'
+    repository.commit({URDF: text.format(1)})
+    repository.write({URDF: text.format(2)})
+    versions = open_versions(repository.root, "HEAD")
+    try:
+        result = review(versions, with_images=True)
+    finally:
+        versions.close()
+    views = subject(result, URDF).images
+    assert [view.name for view in views] == ["iso, collision", "front, collision"]
+    assert views[0].old != views[0].new
+
+
+INTERFACES = """<robot name="r"><link name="base"/><ros2_control name="{name}" type="system">
+  <joint name="a">{interface}</joint><joint name="b">{interface}</joint>
+</ros2_control></robot>
+"""
+
+
+def test_interface_that_all_joints_gain_is_one_change(repository, compare):
+    repository.commit({URDF: INTERFACES.format(name="arm", interface='<state_interface name="position"/>')})
+    interfaces = '<state_interface name="position"/><state_interface name="effort"/>'
+    repository.write({URDF: INTERFACES.format(name="arm", interface=interfaces)})
+    (change,) = subject(compare(repository), URDF).changes
+    assert str(change.sentence) == "extension 'ros2_control arm': joint a state_interface effort added"
+    assert change.other_names == ("joint b",)

@@ -1,0 +1,168 @@
+"""Contents of added and removed launch actions, settings under conditions, and parameters of ROS 1."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+PATH = "arm/launch/arm.launch"
+
+
+@pytest.fixture
+def changes_of(repository, compare):
+    """Review two contents of a launch file, and return the sentences of all changes and of the breaking ones."""
+
+    def run(old: str, new: str, **files: str):
+        others = {f"arm/{name}": text for name, text in files.items()}
+        repository.commit({"arm/package.xml": PACKAGE_XML, PATH: f"<launch>\n{old}\n</launch>\n", **others})
+        repository.write({PATH: f"<launch>\n{new}\n</launch>\n"})
+        result = compare(repository)
+        return sentences(subject(result, PATH)) if result.subjects else [], breaking(result)
+
+    return run
+
+
+NODE = """<node pkg="cam" type="driver" name="cam" output="screen" args="--fast">
+  <param name="rate" value="10"/>
+  <rosparam>
+    gain: 3
+    pid: {p: 1, i: 2}
+  </rosparam>
+  <rosparam param="sizes">[1, 2]</rosparam>
+  <rosparam command="load" file="cam.yaml" ns="lens"/>
+  <remap from="image" to="front/image"/>
+  <env name="DISPLAY" value=":1"/>
+</node>"""
+
+
+@pytest.mark.parametrize(("is_added", "word"), [(True, "added"), (False, "removed")])
+def test_added_and_removed_node_has_its_contents(changes_of, is_added, word):
+    changes, _ = changes_of(*(("", NODE) if is_added else (NODE, "")))
+    assert changes == [
+        (
+            f"node 'cam/driver' {word}: name cam, arguments --fast, remapping image -> front/image, "
+            "environment variable DISPLAY :1, parameter rate 10, parameter gain 3, parameter pid.p 1, "
+            "parameter pid.i 2, parameter sizes [1, 2], parameters [cam.yaml (namespace lens)], output screen"
+        )
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("p: 1", "p: 4", "node 'cam/driver': parameter pid.p 1 -> 4"),
+        ("[1, 2]", "[1, 3]", "node 'cam/driver': parameter sizes [1, 2] -> [1, 3]"),
+        ('"10"', '"10.5"', "node 'cam/driver': parameter rate 10 -> 10.5"),
+        (":1", ":2", "node 'cam/driver': environment variable DISPLAY :1 -> :2"),
+        ("lens", "mount",
+         "node 'cam/driver': parameters [cam.yaml (namespace lens)] -> [cam.yaml (namespace mount)]"),
+    ],
+)  # fmt: skip
+def test_changed_parameters_of_a_node_of_ros1_are_named(changes_of, old, new, expected):
+    assert changes_of(NODE, NODE.replace(old, new)) == ([expected], [])
+
+
+def test_parameters_in_a_text_that_is_not_yaml_are_shown_as_it_is(changes_of):
+    text = "<rosparam>a: [$(arg x)}</rosparam>"
+    assert changes_of("", text)[0] == ["parameter 'YAML text' added: a: [$(arg x)}"]
+
+
+def test_renamed_parameter_file_is_the_same_one(changes_of):
+    old, new = (f'<rosparam ns="x" command="load" file="$(find arm)/{name}.yaml"/>' for name in ("limits", "limit"))
+    (change,), _ = changes_of(old, new)
+    assert change == "parameters of '$(find arm)/limits.yaml' replaced by parameters of '$(find arm)/limit.yaml'"
+
+
+ARGUMENTS = """<arg name="sim" default="false"/>
+<arg name="side" value="sim" if="$(arg sim)"/>
+<arg name="side" value="real" unless="$(arg sim)"/>
+"""
+REMAP = '<node pkg="cam" type="driver" name="cam"><remap from="scan" to="{}"/></node>'
+REMAPS = REMAP.format("real/scan").replace(
+    "<remap ", '<remap if="$(arg sim)" from="scan" to="sim/scan"/><remap unless="$(arg sim)" '
+)
+
+
+def test_values_of_one_name_have_their_conditions(changes_of):
+    changes, _ = changes_of(ARGUMENTS, ARGUMENTS.replace('"real"', '"robot"'))
+    assert changes == ["argument 'side' (unless $(arg sim)): value real -> robot"]
+
+
+def test_name_has_the_value_whose_condition_holds_by_default(changes_of):
+    old, new = REMAP.format("$(arg side)/scan"), REMAP.format("real/scan")
+    changes, found_breaking = changes_of(ARGUMENTS + old, ARGUMENTS + new)
+    assert changes == ["node 'cam/driver': remapping scan $(arg side)/scan -> real/scan"]
+    assert found_breaking == []
+    _, found_breaking = changes_of(ARGUMENTS + old, ARGUMENTS + REMAP.format("sim/scan"))
+    assert len(found_breaking) == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        (REMAPS, REMAPS.replace("sim/scan", "gz/scan"), "scan (if $(arg sim)) sim/scan -> gz/scan", True),
+        (REMAP.format("real/scan"), REMAPS,
+         "scan real/scan -> sim/scan (if $(arg sim)), real/scan (unless $(arg sim))", False),
+        (REMAP.format("scan"), REMAPS,
+         "scan scan -> sim/scan (if $(arg sim)), real/scan (unless $(arg sim))", True),
+    ],
+)  # fmt: skip
+def test_remappings_of_one_name_under_conditions_are_told_apart(changes_of, old, new, expected, is_breaking):
+    changes, found_breaking = changes_of(ARGUMENTS + old, ARGUMENTS + new)
+    assert changes == [f"node 'cam/driver': remapping {expected}"]
+    assert bool(found_breaking) is is_breaking
+
+
+def test_old_text_has_the_old_name_of_a_renamed_argument(changes_of):
+    text = '<arg name="robot" default="a"/><node pkg="cam" type="driver" name="cam" args="-m $(arg robot) -x {}"/>'
+    changes, _ = changes_of(text.format(1), text.replace("robot", "model").format(2))
+    assert changes[1:] == ["node 'cam/driver': arguments -m $(arg robot) -x 1 -> -m $(arg model) -x 2"]
+
+
+def test_targets_of_remappings_with_another_prefix_are_one_change(changes_of):
+    text = "".join(
+        f'<node pkg="cam" type="{name}" name="{name}"><remap from="a" to="/x/a"/>'
+        f'<remap from="{name}" to="/x/{name}"/></node>'
+        for name in ("left", "right")
+    )
+    changes, found_breaking = changes_of(text, text.replace("/x/", "/y/"))
+    assert changes == found_breaking
+    assert changes == [
+        "node 'cam/left', node 'cam/right': remappings /x/a -> /y/a, /x/left -> /y/left, /x/right -> /y/right"
+    ]
+
+
+ROBOT = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm">
+  <xacro:arg name="x" default="$(optenv TOOL a)"/>
+</robot>
+"""
+
+
+def test_environment_variable_that_another_file_reads_is_not_lost(changes_of):
+    text = '<arg name="tool" default="$(optenv TOOL a)"/>'
+    changes, found_breaking = changes_of(text, '<arg name="tool" default="a"/>', **{"urdf/arm.xacro": ROBOT})
+    assert changes == [
+        "argument 'tool': default $(optenv TOOL a) -> a",
+        "use of environment variable 'TOOL' removed; arm/urdf/arm.xacro uses it",
+    ]
+    assert found_breaking == []
+
+
+def test_name_that_callers_choose_is_not_a_lost_name(changes_of):
+    node = '<node pkg="cam" type="driver" name="$(arg name)"/>'
+    _, found_breaking = changes_of(
+        f'<arg name="name" default="cam"/>{node}', f'<arg name="robot"/><arg name="name" default="$(arg robot)"/>{node}'
+    )
+    assert found_breaking == ["argument 'robot' added"]
+
+
+TRANSFORM = '<node pkg="tf2_ros" exec="static_transform_publisher" args="0 0 0 0 0 0 base wheel"/>'
+STATES = '<node pkg="joint_state_publisher" exec="joint_state_publisher"/>'
+
+
+@pytest.mark.parametrize(("old", "new", "count"), [("", "", 1), ("", STATES, 0), (STATES, STATES, 1)])
+def test_frame_of_a_joint_whose_position_is_published_now_may_not_be_lost(changes_of, old, new, count):
+    _, found_breaking = changes_of(TRANSFORM + old, new)
+    assert len(found_breaking) == count

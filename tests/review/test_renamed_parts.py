@@ -1,0 +1,119 @@
+"""Changes of YAML files whose values have another place: renamed and moved parts, and items of lists."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+PATH = "arm/config/arm.yaml"
+
+
+@pytest.fixture
+def changes_of(repository, compare):
+    """Review two versions of a YAML file, and return the changes and the sentences of the breaking ones."""
+
+    def run(old: str | None, new: str | None):
+        repository.commit({"arm/package.xml": PACKAGE_XML, PATH: old})
+        repository.write({PATH: new})
+        result = compare(repository)
+        return subject(result, PATH), breaking(result)
+
+    return run
+
+
+CONTROLLER = """arm_controller:
+  type: position_controllers/JointTrajectoryController
+  joints: [left_joint1, left_joint2]
+  constraints:
+    left_joint1: {goal: 0.05}
+    left_joint2: {goal: 0.06}
+  gains:
+    left_joint1: {p: 1, i: 2}
+    left_joint2: {p: 1, i: 2}
+"""
+
+
+def test_joints_that_get_another_prefix_are_one_change_and_the_list_of_them(changes_of):
+    found, found_breaking = changes_of(CONTROLLER, CONTROLLER.replace("left", "right").replace("0.06", "0.07"))
+    part = "arm_controller.constraints"
+    assert sentences(found) == [
+        f"{part}.left_joint1 renamed to {part}.right_joint1",
+        "arm_controller.joints [left_joint1, left_joint2] -> [right_joint1, right_joint2]",
+        f"{part}.right_joint2.goal 0.06 -> 0.07",
+    ]
+    gains = "arm_controller.gains"
+    assert found.changes[0].other_names == (
+        f"{part}.left_joint2 -> {part}.right_joint2",
+        f"{gains}.left_joint1 -> {gains}.right_joint1",
+        f"{gains}.left_joint2 -> {gains}.right_joint2",
+    )
+    assert found_breaking == sentences(found)[1:2]
+
+
+def test_name_with_a_substitution_can_be_the_old_name(changes_of):
+    _, found_breaking = changes_of(CONTROLLER, CONTROLLER.replace("left", "$(arg side)"))
+    assert found_breaking == []
+
+
+TELEOP = """bluetooth:
+  teleop: {axis: 1, scale: 0.4, turbo: 2}
+  joy: {deadzone: 0.1}
+"""
+
+
+def test_parts_outside_their_group_are_moved(changes_of):
+    found, _ = changes_of(TELEOP, "teleop: {axis: 1, scale: 0.5, turbo: 2}\njoy: {deadzone: 0.1}\n")
+    assert sentences(found) == ["bluetooth.teleop moved to teleop", "teleop.scale 0.4 -> 0.5"]
+    assert found.changes[0].other_names == ("bluetooth.joy -> joy",)
+
+
+NODE = "{ros__parameters: {rate: 1, size: 2, base: x}}"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_breaking"),
+    [("amcl", "/**/amcl", False), ("/**", "/**/amcl", False), ("amcl", "map_server", True), ("/a/amcl", "/*/b", True)],
+)
+def test_node_whose_new_name_matches_the_old_one_keeps_its_parameters(changes_of, old, new, is_breaking):
+    _, found_breaking = changes_of(f"{old}: {NODE}\n", f"{new}: {NODE}\n")
+    assert found_breaking == [f"{old} renamed to {new}"][: int(is_breaking)]
+
+
+STEPS = [f"- {{action: move, to: {n}, tool: t{n}}}\n" for n in range(6)]
+
+
+@pytest.mark.parametrize(
+    ("steps", "expected"),
+    [
+        ([*STEPS[:3], "- {wait: 3}\n", STEPS[3].replace("t3", "t9"), *STEPS[4:]],
+         ["steps[4].tool t3 -> t9", "steps[3].wait 3 added"]),
+        ([*STEPS[:3], STEPS[4].replace("t4", "t9"), STEPS[5]],
+         ["steps[3].tool t4 -> t9", "steps[old 3] removed: action move, to 3, tool t3"]),
+        ([*STEPS[:5], "- {wait: 3}\n"],
+         ["steps[5].wait 3 added", "steps[old 5] removed: action move, to 5, tool t5"]),
+    ],
+)  # fmt: skip
+def test_items_that_move_in_a_list_are_compared_with_the_old_ones(changes_of, steps, expected):
+    found, _ = changes_of("steps:\n" + "".join(STEPS), "steps:\n" + "".join(steps))
+    assert sentences(found) == expected
+
+
+def test_equal_edits_of_names_are_one_change(changes_of):
+    text = "".join(f"{name}: {{topic: /robot/{name}, timeout: 1}}\n" for name in ("joy", "key"))
+    found, _ = changes_of(text, text.replace("/robot/", ""))
+    assert sentences(found) == ["joy.topic /robot/joy -> joy"]
+    assert found.changes[0].other_names == ("key.topic /robot/key -> key",)
+
+
+def test_empty_text_in_a_list_is_visible(changes_of):
+    found, _ = changes_of('buttons: [Select, "", ""]\n', "buttons: [Select]\n")
+    assert sentences(found) == ["buttons [Select, '', ''] -> [Select]"]
+
+
+def test_removed_file_has_its_values_and_the_number_of_the_others(changes_of):
+    text = "".join(f"gain{number}: {number}\n" for number in range(10))
+    found, _ = changes_of(text, None)
+    assert sentences(found)[0].startswith("parameter file removed: gain0 0, gain1 1, ")
+    assert sentences(found)[0].endswith(" and 2 more")
