@@ -78,7 +78,7 @@ def test_pose_estimate_uses_covariance_of_tool_properties(scene):
     assert (abs(pose.orientation.z), pose.orientation.w) == pytest.approx((1, 0), abs=0.01)
     covariance = list(estimate.pose.covariance)
     assert (covariance[0], covariance[7], covariance[35]) == (0.25, 0.25, 0.5)
-    pose_tool = next(tool for tool in scene.file()["Tools"] if tool["Class"].endswith("/SetInitialPose"))
+    pose_tool = next(tool for tool in scene.saved_settings()["Tools"] if tool["Class"].endswith("/SetInitialPose"))
     assert pose_tool["Covariance yaw"] == 0.5
 
 
@@ -133,7 +133,7 @@ def test_tools_are_added_and_removed(scene):
     page.get_by_role("button", name="Add a tool").click()
     page.get_by_role("menuitem", name="Measure").click()
     until(page, "lw.tools.length === 8")
-    tools = [tool["Class"].rpartition("/")[2] for tool in scene.file()["Tools"]]
+    tools = [tool["Class"].rpartition("/")[2] for tool in scene.saved_settings()["Tools"]]
     assert tools[-2:] == ["SetGoal", "Measure"]
 
 
@@ -144,23 +144,23 @@ def test_links_are_selected_by_click_and_box(scene):
     page = scene.page
     scene.press("s")
     scene.click(0, 0)
-    assert scene.selected() == ["base"]
+    assert scene.selected_keys() == ["base"]
     page.keyboard.down("Shift")
     scene.click(*TIP)
-    assert scene.selected() == ["base", "tip"]
+    assert scene.selected_keys() == ["base", "tip"]
     page.keyboard.up("Shift")
     page.keyboard.down("Control")
     scene.click(0, 0)
     page.keyboard.up("Control")
-    assert scene.selected() == ["tip"]
+    assert scene.selected_keys() == ["tip"]
     scene.click(-3, -3)
-    assert scene.selected() == []
+    assert scene.selected_keys() == []
     scene.drag((-3, -3), (2, 2))
-    assert scene.selected() == ["base"]
+    assert scene.selected_keys() == ["base"]
     scene.drag((-3, -3), (4, 2))
-    assert sorted(scene.selected()) == ["base", "tip"]
+    assert sorted(scene.selected_keys()) == ["base", "tip"]
     scene.viewer.settle(page)
-    assert sorted(scene.selected()) == ["base", "tip"]
+    assert sorted(scene.selected_keys()) == ["base", "tip"]
 
 
 def test_selection_panel_shows_link_poses(scene):

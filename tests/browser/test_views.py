@@ -99,9 +99,9 @@ def test_views_are_saved_renamed_used_and_removed(scene):
     page.get_by_role("treeitem").filter(has_text="map").locator(".row-name").dblclick()
     until(page, "lw.view.type === 'TopDownOrtho'")
     assert state(page, "view.values")["Scale"] == SCALE
-    becomes(lambda: scene.file()["Views"]["Current"]["Class"], "rviz_default_plugins/TopDownOrtho")
-    views = scene.file()["Views"]
+    becomes(lambda: scene.saved_settings()["Views"]["Current"]["Class"], "rviz_default_plugins/TopDownOrtho")
+    views = scene.saved_settings()["Views"]
     assert [(view["Name"], view["Scale"]) for view in views["Saved"]] == [("map", SCALE)]
     page.get_by_role("button", name="Remove", exact=True).click()
     until(page, "lw.view.saved.length === 0")
-    assert not scene.file()["Views"]["Saved"]
+    assert not scene.saved_settings()["Views"]["Saved"]

@@ -65,15 +65,15 @@ def arm(tmp_path, monkeypatch) -> Iterator[type[Arm]]:
     (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: my_robot\nVersion: 1.0\n")
     (metadata / "entry_points.txt").write_text(f"[linkwright.hardware]\nmy_robot/Arm = {__name__}:Arm\n")
     monkeypatch.syspath_prepend(tmp_path)
-    for name in ("wrong", "life", "sent"):
+    for name in ("fault", "life", "sent"):
         monkeypatch.setattr(Arm, name, getattr(Arm, name))
     extensions._all_groups.cache_clear()
     yield Arm
     extensions._all_groups.cache_clear()
 
 
-@pytest.mark.parametrize("wrong", [HardwareError("the cable is out"), OSError("the cable is out")])
-async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(graph, clock, tmp_path, logged, arm, wrong):
+@pytest.mark.parametrize("fault", [HardwareError("the cable is out"), OSError("the cable is out")])
+async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(graph, clock, tmp_path, logged, arm, fault):
     path = tmp_path / "controllers.yaml"
     path.write_text(FILE)
     words = ["--ros-args", "--params-file", str(path)]
@@ -93,7 +93,7 @@ async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(grap
     await advance(graph, clock, 3)
     assert arm.sent == 2.0
 
-    arm.fault = wrong
+    arm.fault = fault
     await advance(graph, clock, 3)
     controllers = (await call_service(graph, node, "list_controllers")).controller
     assert {controller.name: controller.state for controller in controllers} == {"hips": "inactive", "knees": "active"}

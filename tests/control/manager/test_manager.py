@@ -293,7 +293,7 @@ async def test_unsupported_hardware_is_replaced_by_mock(graph, logged):
 
 @pytest.mark.parametrize("distribution", ["humble", "jazzy"])
 async def test_async_controllers_and_hardware_run_synchronously_with_notice(
-    create_manager, lines, monkeypatch, distribution
+    create_manager, logged, monkeypatch, distribution
 ):
     monkeypatch.setenv("ROS_DISTRO", distribution)
     text = CONTROL.replace("type='system'", "type='system' is_async='true'")
@@ -302,7 +302,7 @@ async def test_async_controllers_and_hardware_run_synchronously_with_notice(
     assert controller_manager.switch(["low"], [], STRICT)[0]
     controller_manager.cycle(1, 0.01)
     assert value(controller_manager, "hip/velocity") == 0.5
-    lines = [line for line in lines("INFO") if "is_async" in line]
+    lines = [line for line in logged("INFO") if "is_async" in line]
     assert (
         lines[0] == "hardware 'arm': is_async is not supported, so the hardware is read and written in the control loop"
     )

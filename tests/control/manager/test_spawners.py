@@ -30,11 +30,11 @@ def states(manager_node):
     return {name: loaded.controller.state.label for name, loaded in manager_node._manager.controllers.items()}
 
 
-async def test_controllers_are_spawned_and_unspawned(graph, tmp_path, lines):
+async def test_controllers_are_spawned_and_unspawned(graph, tmp_path, logged):
     manager_node = start(graph, tmp_path, CONTROL)
     assert await run(graph, Spawner, "broadcaster", "positions", "-c", "controller_manager") == 0
     assert states(manager_node) == {"broadcaster": "active", "positions": "active"}
-    lines = [line for line in lines("INFO") if line.startswith(("Loaded", "Configured and"))]
+    lines = [line for line in logged("INFO") if line.startswith(("Loaded", "Configured and"))]
     assert lines == [
         "Loaded broadcaster",
         "Configured and activated broadcaster",

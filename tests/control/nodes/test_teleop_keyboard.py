@@ -117,13 +117,13 @@ async def test_arrow_keys_stop_robot(start):
 async def test_message_type_matches_subscriber(start, stage):
     driver = start(kind=TWIST_STAMPED, frame_id="base_link")
     await driver.type("i", 1)
-    assert driver.heard[0].header.frame_id == "base_link"
-    assert driver.heard[0].header.stamp.sec == stage.clock.now_ns() // 10**9
+    assert driver.messages[0].header.frame_id == "base_link"
+    assert driver.messages[0].header.stamp.sec == stage.clock.now_ns() // 10**9
 
 
 async def test_message_type_follows_late_subscriber(start, stage):
     driver = start(kind=None)
-    stage.node.create_subscription(TWIST_STAMPED, "/cmd_vel", driver.heard.append, 10)
+    stage.node.create_subscription(TWIST_STAMPED, "/cmd_vel", driver.messages.append, 10)
     await stage.clock.advance(0.6)
     await driver.type("i", 1)
 
@@ -140,24 +140,24 @@ async def test_key_timeout_stops_robot(start, stage):
     await stage.clock.advance(0.5)
     await driver.type("i", 2)
     await stage.clock.advance(0.5)
-    assert len(driver.heard) == 2
+    assert len(driver.messages) == 2
     await stage.clock.advance(0.2)
     assert driver.last() == (0, 0, 0, 0)
     await stage.clock.advance(5.0)
-    assert len(driver.heard) == 3, "it stops once"
+    assert len(driver.messages) == 3, "it stops once"
 
 
 async def test_repeat_rate_republishes_velocity(start, stage):
     driver = start(repeat_rate=10.0)
     await driver.type("u", 1)
     await stage.clock.advance(1.05)
-    assert len(driver.heard) == 11
+    assert len(driver.messages) == 11
     assert driver.last() == (0.5, 0, 0, 1)
 
 
 async def test_missing_subscriber_is_reported_once(start, stage, logged):
     driver = start(kind=None)
-    os.write(driver.typing, b"i")
+    os.write(driver.typing_end, b"i")
     await eventually(lambda: driver.node._direction.x == 1.0)
     await stage.clock.advance(3.0)
     assert logged("WARN") == ["no node subscribes to /cmd_vel; run `linkwright doctor` for details"]
@@ -166,20 +166,20 @@ async def test_missing_subscriber_is_reported_once(start, stage, logged):
 @pytest.mark.parametrize("end", ["\x03", "closed"])
 async def test_exit_stops_robot_and_restores_terminal(start, end):
     driver = start()
-    assert not echoes(driver.own)
+    assert not echoes(driver.program_end)
     await driver.type("i", 1)
     if end == "closed":
-        os.close(driver.typing)
+        os.close(driver.typing_end)
     else:
-        settings = termios.tcgetattr(driver.own)
+        settings = termios.tcgetattr(driver.program_end)
         settings[3] &= ~termios.ISIG
-        termios.tcsetattr(driver.own, termios.TCSANOW, settings)
-        os.write(driver.typing, end.encode())
+        termios.tcsetattr(driver.program_end, termios.TCSANOW, settings)
+        os.write(driver.typing_end, end.encode())
     await eventually(driver.node.finished.done)
     assert driver.node.finished.result() == 0
     await driver.stage.graph.settle()
     assert driver.last() == (0, 0, 0, 0)
-    assert end == "closed" or echoes(driver.own)
+    assert end == "closed" or echoes(driver.program_end)
 
 
 async def test_closing_node_stops_robot(start):
@@ -188,7 +188,7 @@ async def test_closing_node_stops_robot(start):
     driver.close()
     await driver.stage.graph.settle()
     assert driver.last() == (0, 0, 0, 0)
-    assert echoes(driver.own)
+    assert echoes(driver.program_end)
 
 
 async def test_missing_terminal_is_reported(stage):

@@ -165,11 +165,11 @@ async def test_planning_failure_has_error_code_and_message(jazzy, robot, server,
     assert not len(result.path.poses)
 
 
-async def test_planning_failure_is_logged(robot, server, text):
+async def test_planning_failure_is_logged(robot, server, logged):
     await server(grid=divided_room())
     status, _ = await to_pose(robot, pose(2.1, 1.5)).wait_ended()
     assert status == ABORTED
-    assert text("WARN")[-1] == (
+    assert logged("WARN")[-1] == (
         "GridBased plugin failed to plan from (1.00, 1.00) to (2.10, 1.50): "
         '"Goal Coordinates of(2.100000, 1.500000) was in lethal cost"'
     )

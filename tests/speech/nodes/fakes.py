@@ -21,7 +21,7 @@ from tests.waiting import eventually
 
 STRING, BOOL = get_message("std_msgs/msg/String"), get_message("std_msgs/msg/Bool")
 TWIST = get_message("geometry_msgs/msg/Twist")
-ENTRY = extensions.EntryPoint("told", f"{__name__}:ToldEngine", "tests")
+ENTRY = extensions.EntryPoint("told", f"{__name__}:ScriptedEngine", "tests")
 
 
 class ScriptedEngine(SpeechEngine):

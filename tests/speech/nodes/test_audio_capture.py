@@ -87,7 +87,7 @@ async def test_microphone_is_published(test, sounddevice):
     recording = test.record("/audio_stamped")
     await test.settle()
     (stream,) = sounddevice.open_streams
-    assert (stream.rate, stream.block, stream.started) == (16_000, 1_600, True)
+    assert (stream.rate, stream.block, stream.is_started) == (16_000, 1_600, True)
     for first in (0, 1_600):
         stream.deliver(TONE[first : first + 1_600])
     await test.settle()
