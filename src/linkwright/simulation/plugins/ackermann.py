@@ -50,7 +50,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
     """The substitute for ``libgazebo_ros_ackermann_drive.so``: drives and steers a car."""
 
     PARAMETERS = AckermannParameters
-    RESUMED_ATTRIBUTES = ("_speed", "_angle", "_distance")
+    CARRIED = ("_speed", "_angle", "_distance")
     IGNORED = (
         *("left_steering_pid_gain", "right_steering_pid_gain", "linear_velocity_pid_gain"),
         *("left_steering_i_range", "right_steering_i_range", "linear_velocity_i_range"),

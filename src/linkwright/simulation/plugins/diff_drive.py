@@ -99,7 +99,7 @@ class _WheelPair:
 class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     """A differential drive that follows a commanded velocity, with wheel odometry."""
 
-    RESUMED_ATTRIBUTES: ClassVar[tuple[str, ...]] = ("_command", "_limited_command", "_pose")
+    CARRIED: ClassVar[tuple[str, ...]] = ("_command", "_limited_command", "_pose")
     _pairs: tuple[_WheelPair, ...]
     _topics: OdometryTopics
 
@@ -189,7 +189,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
     """The substitute for ``libgazebo_ros_diff_drive.so``."""
 
     PARAMETERS: ClassVar[type[Any]] = ClassicParameters
-    RESUMED_ATTRIBUTES: ClassVar[tuple[str, ...]] = (*_DiffDrive.RESUMED_ATTRIBUTES, "_wheel_speeds")
+    CARRIED: ClassVar[tuple[str, ...]] = (*_DiffDrive.CARRIED, "_wheel_speeds")
 
     def start(self) -> None:
         """Create motors for the wheels and publishers of the odometry, and subscribe to the commands."""

@@ -31,7 +31,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
     """The substitute for ``libgazebo_ros_force.so``."""
 
     PARAMETERS = ForceParameters
-    RESUMED_ATTRIBUTES = ("_wrench",)
+    CARRIED = ("_wrench",)
 
     def start(self) -> None:
         """Find the link, and subscribe to the force.

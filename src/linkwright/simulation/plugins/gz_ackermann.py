@@ -52,7 +52,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     """The substitute for ``gz-sim-ackermann-steering-system``: drives a car, or only steers it."""
 
     PARAMETERS = SteeringParameters
-    RESUMED_ATTRIBUTES = ("_angle", "_pose")
+    CARRIED = ("_angle", "_pose")
     IGNORED = (
         *("steer_i_gain", "steer_d_gain", "steer_i_max", "steer_i_min", "steer_cmd_offset"),
         *("use_actuator_msg", "actuator_number"),

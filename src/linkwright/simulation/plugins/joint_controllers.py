@@ -142,7 +142,7 @@ class GzJointPosition(_JointController[PositionParameters]):
     """
 
     PARAMETERS = PositionParameters
-    RESUMED_ATTRIBUTES = ("_command",)
+    CARRIED = ("_command",)
 
     def start(self) -> None:
         """Find the joints, create any servos, and subscribe to the position commands."""

@@ -24,7 +24,7 @@ class GzJointForce(SimulatedPlugin[JointForceParameters]):
     """The substitute for ``gz-sim-apply-joint-force-system``."""
 
     PARAMETERS = JointForceParameters
-    RESUMED_ATTRIBUTES = ("_force",)
+    CARRIED = ("_force",)
 
     def start(self) -> None:
         """Find the joint, and subscribe to ``/model/MODEL/joint/JOINT/cmd_force``."""

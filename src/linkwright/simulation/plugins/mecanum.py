@@ -42,7 +42,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
     """The substitute for ``gz-sim-mecanum-drive-system``."""
 
     PARAMETERS = MecanumParameters
-    RESUMED_ATTRIBUTES = ("_pose",)
+    CARRIED = ("_pose",)
 
     def start(self) -> None:
         """Create motors for the wheels and publishers of the odometry, and subscribe to the commands.

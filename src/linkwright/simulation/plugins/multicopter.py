@@ -71,7 +71,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
 
     PARAMETERS = MotorParameters
     IGNORED = ("motorSpeedPubTopic",)
-    RESUMED_ATTRIBUTES = ("target_speed", "speed")
+    CARRIED = ("target_speed", "speed")
 
     def start(self) -> None:
         """Find the rotor, and subscribe to its speed commands.
@@ -160,7 +160,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         "angularVelocityNoiseMean",
         "angularVelocityNoiseStdDev",
     )
-    RESUMED_ATTRIBUTES = ("_command", "_is_enabled")
+    CARRIED = ("_command", "_is_enabled")
 
     def start(self) -> None:
         """Find the rotors, and subscribe to the commands.

@@ -73,7 +73,7 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
 
     PARAMETERS = PlanarMoveParameters
     IGNORED = ("update_rate",)
-    RESUMED_ATTRIBUTES = ("_command",)
+    CARRIED = ("_command",)
 
     def start(self) -> None:
         """Subscribe to the commands, and create the odometry topics.

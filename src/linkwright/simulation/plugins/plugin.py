@@ -131,7 +131,7 @@ class SimulatedPlugin(Generic[P]):
     Attributes:
         PARAMETERS: the dataclass with its parameters.
         IGNORED: the names of parameters that have no effect here and give no warning.
-        RESUMED_ATTRIBUTES: the names of the attributes that `resume` copies from the previous instance.
+        CARRIED: the names of the attributes that `resume` copies from the previous instance.
         context: the elements that contain the plugin, and its name.
         node: creates the plugin's topics and services.
         parameters: the values of the parameters, an instance of `PARAMETERS`.
@@ -141,7 +141,7 @@ class SimulatedPlugin(Generic[P]):
 
     PARAMETERS: ClassVar[type[Any]] = NoParameters
     IGNORED: ClassVar[Collection[str]] = ()
-    RESUMED_ATTRIBUTES: ClassVar[tuple[str, ...]] = ()
+    CARRIED: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self, context: PluginContext, node: PluginNode, parameters: P, environment: Environment) -> None:
         self.context = context
@@ -172,7 +172,7 @@ class SimulatedPlugin(Generic[P]):
         Args:
             previous: the previous instance, which has ended.
         """
-        for name in self.RESUMED_ATTRIBUTES:
+        for name in self.CARRIED:
             setattr(self, name, getattr(previous, name))
 
     def is_same_plugin(self, other: SimulatedPlugin[Any]) -> bool:

@@ -30,7 +30,7 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
 
     PARAMETERS = VelocityControlParameters
     IGNORED = ("link_name",)
-    RESUMED_ATTRIBUTES = ("_command",)
+    CARRIED = ("_command",)
 
     def start(self) -> None:
         """Subscribe to the velocity commands.
