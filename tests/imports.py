@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 _ALWAYS = "import importlib"
-"""What every program of ours imports; with Python 3.10 it loads more than with later ones."""
+"""The modules that every program imports; Python 3.10 loads more than later versions."""
 
 
 def loaded_by(code: str) -> set[str]:

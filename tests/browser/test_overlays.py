@@ -159,7 +159,7 @@ def test_tall_robot_moves_below_banner_and_returns(start, open_page, tmp_path, w
     page.keyboard.press("Shift+F")
 
     def head() -> int:
-        """How many pixels of the head are seen."""
+        """Return the number of visible pixels of the head."""
         until(page, "lw.settled")
         box = page.locator(".scene-box").bounding_box()
         with Image.open(io.BytesIO(page.screenshot(clip=box))) as image:

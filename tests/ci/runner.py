@@ -18,7 +18,7 @@ from tests.places import REPOSITORY
 
 TEMPLATES = REPOSITORY / "packaging" / "ci"
 BASH = ("bash", "--noprofile", "--norc", "-eo", "pipefail")
-"""How a runner starts ``shell: bash``."""
+"""The command with which a runner starts ``shell: bash``."""
 
 _EXPRESSION = re.compile(r"\$\{\{ (.+?) \}\}")
 _COMPARISON = re.compile(r"([\w.-]+)(?: (==|!=) '([^']*)')?")

@@ -17,7 +17,7 @@ from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, Madgwic
 
 angles = st.floats(-1.4, 1.4)
 DIP = 1.0
-"""How far below the horizon the magnetic field points, rad."""
+"""The angle of the magnetic field below the horizon, in rad."""
 
 
 def acceleration_at_rest(orientation, world=WorldFrame.ENU):

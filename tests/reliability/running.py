@@ -146,7 +146,7 @@ class Machine:
         }
         self._started: list[Running] = []
         self.before: tuple[str, ...] = ()
-        """What command lines begin with, such as a shell that prepares something and becomes the command."""
+        """The start of command lines, such as a shell that prepares something and becomes the command."""
 
     def command(self, *words: object, **variables: str) -> Running:
         """Start ``linkwright WORDS``."""

@@ -31,7 +31,7 @@ LIMITS = Limits(
     output_bytes=100_000,
 )
 MOST_OVERSHOOT = 400 * MEBIBYTE
-"""What a run may occupy beyond its limit until the watchdog sees it, on a slow machine."""
+"""The space that a run may occupy beyond its limit before the watchdog sees it, on a slow machine."""
 
 
 @pytest.fixture(params=list(SITUATIONS))
