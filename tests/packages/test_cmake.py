@@ -68,7 +68,7 @@ def test_install_patterns_select_files(package: Path) -> None:
 def test_excluded_missing_folder_is_not_required(package: Path, more: str, is_required: bool) -> None:
     # As file(INSTALL) of CMake 3.25 does: what no pattern takes is passed over, there or not.
     install_rules = rules(f"install(DIRECTORY include/ DESTINATION include {more})")
-    assert [item.text for item in install_rules.required] == (["include/"] if is_required else [])
+    assert [item.text for item in install_rules.required_paths] == (["include/"] if is_required else [])
 
 
 def test_install_programs_and_rename(package: Path) -> None:

@@ -64,7 +64,7 @@ def write(tmp_path: Path) -> Callable[..., Path]:
 
 
 @pytest.fixture
-def moved_files(write: Callable[..., Path]) -> Path:
+def moved(write: Callable[..., Path]) -> Path:
     return write(
         {
             "CMakeLists.txt": CMAKE,
@@ -96,7 +96,7 @@ def test_layout_places_files_moved_by_cmake(moved: Path) -> None:
     share = finder_of(moved).share("arm")
     assert os.path.realpath(share / "urdf" / "arm.xacro") == str(moved / "description" / "urdf" / "arm.xacro")
     cmake = read_cmake(SourceText("CMakeLists.txt", CMAKE), moved)
-    installed = {file.destination.removeprefix("share/arm/") for file in cmake.installed(moved)}
+    installed = {file.destination.removeprefix("share/arm/") for file in cmake.installed_files(moved)}
     assert installed == {
         *("urdf/arm.xacro", "meshes/base.stl", "launch/show.launch.py", "config/arm.rviz", "config/limits.yaml"),
         "rviz/arm.rviz",

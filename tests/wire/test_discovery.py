@@ -80,7 +80,7 @@ def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeyp
         announced.append(entities)
         on_entities_announced(entities)
 
-    monkeypatch.setattr(other.transport._remote, "entities_announced", listen)
+    monkeypatch.setattr(other.transport._remote, "on_entities_announced", listen)
     monkeypatch.setattr(engine, "Engine", Late)
     monkeypatch.setattr(engine, "_FIRST_ANNOUNCE_SPAN", float("inf"))
     process = processes("ours", join_now=False)

@@ -280,9 +280,9 @@ class Router:
             (name, question.answers[name].get("result")) for name in names if "error" not in question.answers[name]
         ]
         result = combine_responses(question.method, answers, question.text, question.parameters)
-        own_server = question.answers.get(OWN, {})
-        if result is None and "error" in own_server:
-            self._editor.send(own_server)
+        own_answer = question.answers.get(OWN, {})
+        if result is None and "error" in own_answer:
+            self._editor.send(own_answer)
         else:
             self._editor.send({"jsonrpc": "2.0", "id": identifier, "result": result})
 
