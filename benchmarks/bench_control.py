@@ -33,7 +33,7 @@ _BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
 
 
 @dataclass(frozen=True)
-class Beats:
+class CycleTimes:
     """The result of a turn.
 
     Attributes:
@@ -93,7 +93,7 @@ def started(graph: Graph) -> Ros2ControlNode:
     return node
 
 
-async def controlled(*, listened: bool) -> tuple[Beats, float]:
+async def controlled(*, listened: bool) -> tuple[CycleTimes, float]:
     """Return the result of a turn, and the microseconds of a cycle without pauses."""
     graph = Graph()
     node = started(graph)
@@ -130,7 +130,7 @@ def nothing(message: object) -> None:
     """Do nothing with a message."""
 
 
-def bare() -> Beats:
+def bare() -> CycleTimes:
     """Return the result of a loop that only sleeps."""
     times = list[int]()
     begun, start = time.monotonic(), time.process_time()
@@ -144,15 +144,15 @@ def bare() -> Beats:
     return judged(times, time.process_time() - start, time.monotonic() - begun)
 
 
-def judged(times: list[int], cpu_s: float, real_s: float) -> Beats:
+def judged(times: list[int], cpu_s: float, real_s: float) -> CycleTimes:
     """Return the result for the times of updates."""
     over = sorted((after - before) / 1e3 - 1e6 / RATE for before, after in pairwise(times))
-    return Beats(len(times) / real_s, 100.0 * cpu_s / real_s, over[len(over) * 99 // 100], over[-1])
+    return CycleTimes(len(times) / real_s, 100.0 * cpu_s / real_s, over[len(over) * 99 // 100], over[-1])
 
 
 def rows() -> list[Row]:
     """Measure, and return the rows of the table."""
-    turns: dict[str, list[Beats]] = {"nobody": [], "somebody": [], "bare": []}
+    turns: dict[str, list[CycleTimes]] = {"nobody": [], "somebody": [], "bare": []}
     cycles: dict[str, list[float]] = {"nobody": [], "somebody": []}
     for _ in range(TURNS):
         for name in ("nobody", "somebody"):

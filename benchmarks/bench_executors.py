@@ -138,7 +138,7 @@ def in_same_thread_us() -> float:
     return statistics.median(latencies)
 
 
-def as_users_write_it() -> tuple[float, float]:
+def run_user_program() -> tuple[float, float]:
     """Return messages per second, and the latency in microseconds, of a program that uses rclpy's stand-in."""
     from linkwright.standins import activate
 
@@ -184,7 +184,7 @@ def rows() -> list[Row]:
     def rate(what: str, messages: Callable[[], float], target: str = "") -> Row:
         return Row(what, statistics.median(messages() for _ in range(ROUNDS)) / 1000, "1000/s", target)
 
-    users_rate, users_latency = as_users_write_it()
+    users_rate, users_latency = run_user_program()
     return [
         Row("small messages, a program over rclpy, spin_once", users_rate / 1000, "1000/s", "200"),
         Row("one message, a program over rclpy, spin_once", users_latency, "us", "20"),

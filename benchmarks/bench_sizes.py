@@ -100,7 +100,7 @@ class SizeRow:
 
 
 class Case(NamedTuple):
-    """What is measured.
+    """A measured case.
 
     Attributes:
         command: the name of the command in the table.

@@ -72,13 +72,13 @@ class Scene:
 
     @property
     def config(self) -> RvizConfig:
-        """The .rviz file."""
+        """Return the .rviz file."""
         others = _ROBOT if self.links else ""
         return RvizConfig.parse(_FILE.format(cls=self.display, topic=TOPIC, others=others, frame=FRAME))
 
 
 def clouds(points: int = 100_000) -> list[Any]:
-    """Clouds like a lidar's: points of a wavy floor, each with an intensity."""
+    """Return clouds like a lidar's: points of a wavy floor, each with an intensity."""
     chance = np.random.default_rng(1)
     messages = []
     for turn in range(KINDS):
@@ -98,7 +98,7 @@ def clouds(points: int = 100_000) -> list[Any]:
 
 
 def markers(count: int = 1000) -> list[Any]:
-    """Arrays of cubes that all move."""
+    """Return arrays of moving cubes."""
     marker, color = get_message("visualization_msgs/msg/Marker"), get_message("std_msgs/msg/ColorRGBA")
     messages = []
     for turn in range(KINDS):
@@ -116,7 +116,7 @@ def markers(count: int = 1000) -> list[Any]:
 
 
 def images(width: int = 640, height: int = 480) -> list[Any]:
-    """Pictures of a camera that pans over a textured wall."""
+    """Return images of a camera that pans over a textured wall."""
     chance = np.random.default_rng(2)
     rough = chance.uniform(0, 255, (height // 8, width // 8, 3))
     wall = np.kron(rough, np.ones((8, 8, 1))) + chance.normal(0, 6, (height, width, 3))
@@ -130,7 +130,7 @@ def images(width: int = 640, height: int = 480) -> list[Any]:
 
 
 def scans(beams: int = 720) -> list[Any]:
-    """Scans of a room that is not quite round."""
+    """Return scans of a slightly irregular round room."""
     angles = np.linspace(-np.pi, np.pi, beams, endpoint=False)
     messages = []
     for turn in range(KINDS):

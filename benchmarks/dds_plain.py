@@ -107,7 +107,7 @@ class Image(IdlStruct):
 
 
 def message(kind: str) -> Any:
-    """The same content as `dds_sides.ours`."""
+    """Return a message with the same content as `dds_sides.ours`."""
     header = Header(Time(0, 0), "base_link")
     if kind == "joints":
         names = [f"joint_{number}" for number in range(JOINTS)]
@@ -149,7 +149,7 @@ def send(kind: str, seconds: float, rate: float) -> Result:
 
 
 def receive(kind: str, seconds: float, _rate: float) -> Result:
-    """Take until no more comes."""
+    """Take samples until none are left."""
     side = _Side(kind)
     reader = DataReader(side.participant, side.topic, QOS)
     count, first, last, cpu = 0, 0.0, 0.0, 0.0

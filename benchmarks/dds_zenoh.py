@@ -26,7 +26,7 @@ PORT = 17447
 
 
 def _sdk(kind: str, *, listens: bool) -> tuple[Any, dict[str, Any]]:
-    """The SDK, and what a publisher or a subscriber of a kind is made with."""
+    """Return the SDK, and its arguments for a publisher or a subscriber of a kind."""
     ours, none = f'["tcp/127.0.0.1:{PORT}"]', "[]"
     listen, connect = (ours, none) if listens else (none, ours)
     os.environ["ZENOH_CONFIG_OVERRIDE"] = f"listen/endpoints={listen};connect/endpoints={connect}"
@@ -39,7 +39,7 @@ def _sdk(kind: str, *, listens: bool) -> tuple[Any, dict[str, Any]]:
 
 
 def fields(kind: str, types: Any) -> dict[str, Any]:
-    """The fields of a message, of the same content as `dds_sides.ours`."""
+    """Return the fields of a message with the same content as `dds_sides.ours`."""
     import numpy as np
 
     stamp = types["builtin_interfaces/msg/Time"](sec=0, nanosec=0)
@@ -79,7 +79,7 @@ def send(kind: str, seconds: float, rate: float) -> Result:
 
 
 def receive(kind: str, seconds: float, _rate: float) -> Result:
-    """Receive until no more comes."""
+    """Receive messages until none are left."""
     ages: list[float] = []
     count, first, last, cpu = 0, 0.0, 0.0, 0.0
 

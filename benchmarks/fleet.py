@@ -156,7 +156,7 @@ def spent_by(used: dict[int, psutil.Process]) -> dict[int, float]:
 
 
 def settle(used: dict[int, psutil.Process]) -> float:
-    """Wait until all have heard of all, which is when no less is spent than a while ago; what was spent until then."""
+    """Wait until the traffic of discovery has settled, and return the traffic until then."""
     before, last = sum(spent_by(used).values()), float("inf")
     while True:
         time.sleep(SAMPLE)

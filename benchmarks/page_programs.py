@@ -26,7 +26,7 @@ READY = "window.linkwright?.ready === true"
 
 @contextmanager
 def started(*words: str) -> Iterator[tuple[subprocess.Popen[str], int, float]]:
-    """A `linkwright` process on a port of its own: the process, the port, and when it was started."""
+    """Start a `linkwright` process on a port of its own; return the process, the port, and the start time."""
     port = free_port()
     begin = time.perf_counter()
     with _running("-m", "linkwright", *words, "--no-open", "--port", str(port)) as process:
@@ -35,14 +35,14 @@ def started(*words: str) -> Iterator[tuple[subprocess.Popen[str], int, float]]:
 
 @contextmanager
 def showing(scene: str) -> Iterator[subprocess.Popen[str]]:
-    """A process that publishes and shows one of `data_scenes.SCENES`."""
+    """Start a process that publishes and shows one of `data_scenes.SCENES`."""
     with _running("-m", "benchmarks.data_scenes", scene) as process:
         yield process
 
 
 @contextmanager
 def shown_by_viser(scene: str) -> Iterator[subprocess.Popen[str]]:
-    """A process in which viser shows one of `viser_scenes`."""
+    """Start a process in which viser shows one of `viser_scenes`."""
     with _running("-m", "benchmarks.viser_scenes", scene) as process:
         yield process
 
@@ -78,7 +78,7 @@ def viewer_url(process: subprocess.Popen[str]) -> str:
 
 
 def answered(port: int, begin: float) -> float:
-    """Seconds from `begin` until the server answers a request at all (a refusal for want of a token counts)."""
+    """Return the seconds from `begin` until the server answers any request, also with a rejection."""
     while True:
         try:
             urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=5).close()
@@ -116,7 +116,7 @@ def _program() -> str:
 
 @contextmanager
 def chromium() -> Iterator[Browser]:
-    """A Chromium that draws in software, driven by Playwright."""
+    """Run a Chromium that draws in software, driven by Playwright."""
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=_program(), args=list(FLAGS))
         yield browser
@@ -125,21 +125,21 @@ def chromium() -> Iterator[Browser]:
 
 @contextmanager
 def plain_chromium() -> Iterator[PlainBrowser]:
-    """The same, with nothing that listens to what it does."""
+    """Run the same browser without any listeners."""
     with running(_program(), FLAGS) as browser:
         yield browser
 
 
 @contextmanager
 def watched(browser: PlainBrowser, url: str, ready: str = READY, script: str = "") -> Iterator[PlainPage]:
-    """The page of a program, when it has drawn the robot (or another condition holds)."""
+    """Open a program's page, and wait until it has drawn the robot, or another condition holds."""
     with browser.opened(url, ready, **SIZE, script=script) as page:
         yield page
 
 
 @contextmanager
 def opened(browser: Browser, url: str, ready: str = READY) -> Iterator[Page]:
-    """The page of a program, when it has drawn the robot (or another condition holds)."""
+    """Open a program's page, and wait until it has drawn the robot, or another condition holds."""
     # Conditions are evaluated as text, which the page's policy allows to nobody else.
     context = browser.new_context(viewport=SIZE, bypass_csp=True, locale="en-US")  # type: ignore[arg-type]  # a dict
     page = context.new_page()

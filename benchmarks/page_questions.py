@@ -1,4 +1,4 @@
-"""What is asked of an opened page: how soon it shows something, how often it draws, how old is what it shows."""
+"""Measurements of an opened page: time to the first frame, frame rate, and age of the data."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def slider_latency(page: Page, moves: int) -> tuple[list[float], list[float]]:
 
 
 def save_latency(page: Page, model: Path, saves: int) -> list[float]:
-    """Milliseconds from the end of a file's writing to the changed frame in the page."""
+    """Return the milliseconds from the end of a file's writing to the changed frame in the page."""
     text = model.read_text(encoding="utf-8")
     times = []
     for number in range(saves):
@@ -109,7 +109,7 @@ def save_latency(page: Page, model: Path, saves: int) -> list[float]:
 
 
 def wheel_latency(page: PlainPage, turns: int) -> list[float]:
-    """Milliseconds from the browser's getting a turn of the mouse wheel to the frame drawn after it."""
+    """Return the milliseconds from a mouse wheel event in the browser to the frame drawn after it."""
     page.evaluate(_WATCH_WHEEL)
     for number in range(turns):
         page.wheel(640, 400, 20 if number % 2 else -20)
@@ -119,32 +119,32 @@ def wheel_latency(page: PlainPage, turns: int) -> list[float]:
 
 
 def frames_drawn(page: Page | PlainPage) -> int:
-    """How many frames the page has drawn."""
+    """Return the number of frames that the page has drawn."""
     count: int = page.evaluate(_DRAWN)
     return count
 
 
 def frames_with_drawing(page: PlainPage) -> int:
-    """How many frames a page with `COUNT_FRAMES` has drawn."""
+    """Return the number of frames that a page with `COUNT_FRAMES` has drawn."""
     count: int = page.evaluate("() => window.framesWithDrawing")
     return count
 
 
 def images_shown(page: PlainPage) -> int:
-    """How many images the first display has shown, in a panel of its own."""
+    """Return the number of images that the first display has shown, in a panel of its own."""
     count: int = page.evaluate("() => window.linkwright.displays[0].drawn.images")
     return count
 
 
 def rate_of(counted: Callable[[PlainPage], int], page: PlainPage, seconds: float) -> float:
-    """How much more there is of something that is counted, each second."""
+    """Return the increase of a counter per second."""
     before, begin = counted(page), time.perf_counter()
     time.sleep(seconds)
     return (counted(page) - before) / (time.perf_counter() - begin)
 
 
 def transform_age(pages: list[PlainPage], times: int) -> float:
-    """Milliseconds since the transforms came to be that pages have, in the median of the oldest among them."""
+    """Return the median age of the oldest transforms in pages, in milliseconds."""
     oldest: list[float] = []
     for number in range(times):
         time.sleep(0.1 + 0.013 * (number % 7))

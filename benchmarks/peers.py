@@ -44,12 +44,12 @@ def install() -> list[str]:
 
 
 def site_packages() -> Path:
-    """Where the peers are."""
+    """Return the folder of the peers."""
     return FOLDER / "lib" / f"python{sys.version_info.major}.{sys.version_info.minor}" / "site-packages"
 
 
 def version(module: str) -> str | None:
-    """The version of a peer, or None when it is not installed."""
+    """Return the version of a peer, or None if it is not installed."""
     name = PEERS[module].partition("==")[0]
     distributions = list(metadata.distributions(name=name, path=[str(site_packages())]))
     return distributions[0].version if distributions else None
@@ -73,7 +73,7 @@ def load(module: str, part: str | None = None) -> types.ModuleType | None:
 
 
 def command(name: str) -> str | None:
-    """The path of a peer's command, or None when it is not installed."""
+    """Return the path of a peer's command, or None if it is not installed."""
     path = FOLDER / "bin" / name
     return str(path) if path.is_file() else None
 

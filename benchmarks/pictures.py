@@ -35,7 +35,7 @@ PAIRS = [
 
 
 def profile(reliable: bool, depth: int) -> Any:
-    """The quality of service of both sides."""
+    """Return the quality of service of both sides."""
     from rclpy.qos import QoSProfile, ReliabilityPolicy
 
     return QoSProfile(
@@ -44,7 +44,7 @@ def profile(reliable: bool, depth: int) -> Any:
 
 
 def publish(reliable: bool, depth: int, rate: float, seconds: float) -> None:
-    """Publish pictures from the moment on that somebody listens, and print how many."""
+    """Publish images from the first subscription on, and print their number."""
     import rclpy
     from sensor_msgs.msg import Image
 

@@ -77,7 +77,7 @@ class PlainPage:
         return value
 
     def evaluate(self, function: str) -> Any:
-        """What a JavaScript function without arguments returns."""
+        """Return the result of a JavaScript function without arguments."""
         told = self._socket.call("Runtime.evaluate", expression=f"({function})()", returnByValue=True)
         if "exceptionDetails" in told:
             raise RuntimeError(told["exceptionDetails"]["text"])
@@ -106,7 +106,7 @@ class Socket:
         self._loop.run_until_complete(self._open(address))
 
     def call(self, method: str, **parameters: Any) -> dict[str, Any]:
-        """The result of a command."""
+        """Return the result of a command."""
         return self._loop.run_until_complete(asyncio.wait_for(self._call(method, parameters), SECONDS))
 
     def close(self) -> None:
@@ -133,7 +133,7 @@ class Socket:
 
 @contextmanager
 def running(program: str, flags: tuple[str, ...]) -> Iterator[PlainBrowser]:
-    """A Chromium, from its start to its end, with a profile of its own that goes then."""
+    """Run a Chromium with a temporary profile."""
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         own = ("--headless", "--remote-debugging-port=0", f"--user-data-dir={profile}", "--no-first-run")
         # Of the locale C it tells pages a language that Intl does not know.

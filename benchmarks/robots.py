@@ -26,7 +26,7 @@ class Model:
 
     @property
     def name(self) -> str:
-        """A short name for tables."""
+        """Return a short name for tables."""
         path = Path(self.path)
         return f"{path.parent.name}/{path.name}" + "".join(
             f" {name}:={value}" for name, value in self.arguments.items()
@@ -34,12 +34,12 @@ class Model:
 
 
 def has_corpus() -> bool:
-    """Whether the real robots are beside the repository."""
+    """Return whether the real robots are beside the repository."""
     return (CORPUS / "manifest.json").is_file()
 
 
 def models(folder: Path) -> list[Model]:
-    """The descriptions to expand: those of the corpus, else the shipped ones and some written into a folder."""
+    """Return the descriptions to expand: those of the corpus, or else the shipped ones and generated ones."""
     if has_corpus():
         manifest = json.loads((CORPUS / "manifest.json").read_text(encoding="utf-8"))
         packages = {name: str(CORPUS / place) for name, place in manifest["packages"].items()}
@@ -53,7 +53,7 @@ def models(folder: Path) -> list[Model]:
 
 
 def collected(folder: Path) -> list[Model]:
-    """The descriptions below a folder, such as checkouts of public repositories, each with all packages there."""
+    """Return the descriptions below a folder of checked-out repositories, each with all packages there."""
     packages: dict[str, str] = {}
     for path in filter(Path.is_file, sorted(folder.rglob("package.xml"))):  # a checkout may have dangling links
         name = re.search(r"<name>\s*([\w-]+)\s*</name>", path.read_text(encoding="utf-8", errors="replace"))
@@ -64,7 +64,7 @@ def collected(folder: Path) -> list[Model]:
 
 
 def crawler(legs: int) -> str:
-    """A xacro text: a macro for a leg of three links, called as often as there are legs."""
+    """Return a xacro text with a macro for a leg of three links, called for each leg."""
     calls = "\n".join(
         f'  <xacro:leg name="leg_{leg}" x="${{{leg} * 0.1}}" side="{1 if leg % 2 else -1}"/>' for leg in range(legs)
     )
@@ -123,7 +123,7 @@ CALLS
 
 
 def tree_robot(links: int, branching: int = 8) -> str:
-    """A URDF with that many links, each with a box, joined by continuous joints into a tree."""
+    """Return a URDF with a number of links, each with a box, joined by continuous joints into a tree."""
     parts = ['<?xml version="1.0"?>', '<robot name="tree">']
     for number in range(links):
         parts.append(
@@ -142,7 +142,7 @@ def tree_robot(links: int, branching: int = 8) -> str:
 
 
 def robot_with_mesh(folder: Path, kind: str) -> Path:
-    """The path of a robot of one link with a mass and a mesh of four triangles, an ``stl`` or a ``dae``."""
+    """Return the path of a robot of one link with a mass and a mesh of four triangles, an ``stl`` or a ``dae``."""
     corners = ((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.1))
     faces = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
     if kind == "stl":
@@ -187,7 +187,7 @@ _COLLADA = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" vers
 
 
 def detailed_robot(links: int, moving: int) -> str:
-    """A robot with as many links and moving joints, each link with inertia, two shapes and numbers of its own."""
+    """Return a robot of links and moving joints; each link has inertia, two shapes and its own numbers."""
     chance = random.Random(links)
 
     def numbers(count: int) -> str:
@@ -282,7 +282,7 @@ def write_sweep(folder: Path, links: int, rate: int) -> Path:
 
 
 def write_arm_sweep(folder: Path, rate: int) -> Path:
-    """The same of an arm of seven links whose shapes are meshes."""
+    """Write the same for an arm of seven links with meshes."""
     parts = ['<?xml version="1.0"?>', '<robot name="arm">']
     for number, (length, triangles) in enumerate(zip(ARM_LENGTHS, ARM_TRIANGLES, strict=True)):
         mesh = folder / f"link_{number}.stl"
@@ -303,7 +303,7 @@ def write_arm_sweep(folder: Path, rate: int) -> Path:
 
 
 def _ribbed_tube(radius: float, length: float, triangles: int) -> bytes:
-    """A binary STL, m, along z: round, with ribs."""
+    """Return a binary STL of a round tube with ribs along z, in m."""
     rings = round((triangles / 2) ** 0.5)
     corners = triangles // 2 // rings
     z = np.linspace(0, length, rings + 1)

@@ -39,12 +39,12 @@ WAIT = 10.0
 
 
 def topic(rate: int) -> str:
-    """The topic of a rate."""
+    """Return the topic of a rate."""
     return f"/soak/rate_{rate}"
 
 
 class Part(Node):
-    """A node that tells what it has seen: counts in `seen`, the first failures in words."""
+    """A node with counters in `seen`, and descriptions of its first failures."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name)

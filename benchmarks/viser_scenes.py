@@ -25,7 +25,7 @@ _POINTS_RATE = 10.0
 
 
 def arm(server: Any) -> None:
-    """The arm of `write_arm_sweep`, each joint of which moves at 30 Hz."""
+    """Show the arm of `write_arm_sweep`, each joint of which moves at 30 Hz."""
     trimesh = peers.load("trimesh")
     assert trimesh is not None
     joints, name = [], ""
@@ -46,7 +46,7 @@ def arm(server: Any) -> None:
 
 
 def points(server: Any) -> None:
-    """The clouds of 100 000 points of `data_scenes`, ten a second, colored by their heights."""
+    """Show the clouds of 100 000 points of `data_scenes`, ten a second, colored by height."""
     messages = []
     for message in clouds():
         array = np.frombuffer(message.data, np.float32).reshape(-1, 4)

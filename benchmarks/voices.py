@@ -82,12 +82,12 @@ SPEAKERS = (
 
 
 def installed() -> list[Speaker]:
-    """The speakers whose program is there."""
+    """Return the speakers whose program is installed."""
     return [speaker for speaker in SPEAKERS if shutil.which(_program(speaker))]
 
 
 def missing() -> list[str]:
-    """Programs that are not there."""
+    """Return the programs that are not installed."""
     return sorted({speaker.program for speaker in SPEAKERS if not shutil.which(_program(speaker))})
 
 
@@ -127,7 +127,7 @@ def clip(
     decibels: float | None = None,
     level: float = 2000.0,
 ) -> Samples:
-    """A recording of it: at a level, half a second of background before and after, noise so far below the speech."""
+    """Return a recording at a level, with half a second of background before and after, and noise below the speech."""
     speech = said.astype(np.float64)
     loud = np.sqrt(np.mean(speech**2))
     sound = np.concatenate((np.zeros(RATE // 2), speech * level / loud, np.zeros(RATE // 2)))
@@ -137,7 +137,7 @@ def clip(
 
 
 def music(seconds: float, rng: np.random.Generator) -> Samples:
-    """Chords of plucked harmonic tones, half a second each, with a beat."""
+    """Return chords of plucked harmonic tones, half a second each, with a beat."""
     count = RATE // 2
     at = np.arange(count) / RATE
     parts = []
@@ -151,7 +151,7 @@ def music(seconds: float, rng: np.random.Generator) -> Samples:
 
 
 def reading(seconds: float, speakers: Sequence[Speaker]) -> Iterator[tuple[Speaker, Samples]]:
-    """Speakers in turn read texts, until so many seconds have passed."""
+    """Let speakers read texts in turn, until a number of seconds is reached."""
     left = seconds * RATE
     turn = 0
     able = [speaker for speaker in speakers if speaker.language in READING]
@@ -168,7 +168,7 @@ def _program(speaker: Speaker) -> str:
 
 
 def _command(speaker: Speaker, text: str, speed: float, pitch: float, path: Path) -> tuple[list[str], str | None]:
-    """The words of the command, and what it reads."""
+    """Return the words of the command, and its input."""
     if speaker.program == "espeak-ng":
         numbers = ["-s", str(round(_SPEED * speed)), "-p", str(round(min(99, _PITCH * pitch)))]
         return ["espeak-ng", "-v", speaker.voice, *numbers, "-w", str(path), text], None

@@ -1,1 +1,1 @@
-"""Coverage-guided fuzzing of everything that reads what strangers wrote."""
+"""Coverage-guided fuzzing of all readers of files from unknown sources."""

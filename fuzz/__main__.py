@@ -66,7 +66,7 @@ def main() -> int:
 
 
 def fuzz_one(name: str, runs: int, seconds: int) -> None:
-    """Fuzz one target in this process, which ends with it; what is found is kept and the run goes on."""
+    """Fuzz one target in this process, which ends with it; findings are saved, and the run continues."""
     import atheris  # type: ignore[import-untyped]
 
     work = FOLDER / "work"
@@ -133,7 +133,7 @@ def fuzz_one(name: str, runs: int, seconds: int) -> None:
 
 
 def _most_memory() -> int:
-    """The most memory that this process ever had, in MiB."""
+    """Return the peak memory of this process, in MiB."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> 10
 
 
@@ -148,7 +148,7 @@ def _seconds(target: Callable[[bytes], None], data: bytes) -> float:
 
 
 class _TooLongError(BaseException):
-    """What is read takes so long that it is broken off; nothing that reads catches this."""
+    """An error for reading that takes too long; no reader catches it."""
 
 
 def _break_off(_number: int, _frame: object) -> None:

@@ -21,11 +21,11 @@ class Choices:
 
     @property
     def left(self) -> int:
-        """How many bytes are left."""
+        """Return the number of remaining bytes."""
         return len(self._data) - self._at
 
     def number(self, below: int) -> int:
-        """A number from 0 up to a bound."""
+        """Return a number from 0 up to a bound."""
         if self._at >= len(self._data):
             return 0
         value = self._data[self._at]
@@ -33,7 +33,7 @@ class Choices:
         return value % below
 
     def pick(self, alternatives: Sequence[_T]) -> _T:
-        """One of some alternatives; the first one should be the simplest."""
+        """Return one of some alternatives; the first one should be the simplest."""
         return alternatives[self.number(len(alternatives))]
 
     def chance(self, of: int) -> bool:
@@ -41,7 +41,7 @@ class Choices:
         return self.number(of) == of - 1
 
     def rest(self) -> bytes:
-        """All bytes that are left."""
+        """Return all remaining bytes."""
         taken = self._data[self._at :]
         self._at = len(self._data)
         return taken

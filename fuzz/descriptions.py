@@ -18,7 +18,7 @@ _BLOCK_MACRO = (
 
 
 def description(choices: Choices) -> tuple[dict[str, str], dict[str, str]]:
-    """Files by name, the first of them main.xacro, and the arguments given."""
+    """Return files by name, the first of them main.xacro, and the arguments."""
     maker = _Maker(choices)
     start = choices.pick(
         ["", '<?xml version="1.0"?>\n', '<?xml version="1.0" encoding="UTF-8"?>\n<!-- top -->\n', "<!-- top -->"]

@@ -32,7 +32,7 @@ class Peer:
         )
 
     def expand(self, path: str, arguments: dict[str, str], packages: dict[str, str]) -> dict[str, str]:
-        """Its answer."""
+        """Return its answer."""
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         self._process.stdin.write(json.dumps({"path": path, "arguments": arguments, "packages": packages}) + "\n")
@@ -52,7 +52,7 @@ def ours(path: str, arguments: dict[str, str], packages: dict[str, str]) -> dict
 
 
 def compare(peer: Peer, files: dict[str, str], arguments: dict[str, str]) -> tuple[str, dict[str, str], dict[str, str]]:
-    """How the two answers differ ("same", "both fail", ...), and the answers; files go to the current folder."""
+    """Return the kind of difference ("same", "both fail", ...), and the answers; files go to the current folder."""
     for name, content in files.items():
         data = content.encode("utf-8")
         Path(name).parent.mkdir(parents=True, exist_ok=True)

@@ -77,14 +77,14 @@ class Files(NamedTuple):
 
 
 def files(choices: Choices) -> Files:
-    """A description of up to three files."""
+    """Return a description of up to three files."""
     main = _document(choices)
     other = _document(choices) if choices.left else f"{HEAD}/>"
     return Files(main, other, yaml_text(choices))
 
 
 def text(choices: Choices) -> str:
-    """What may stand in an attribute: expressions and substitutions among plain text."""
+    """Return the text of an attribute: expressions and substitutions among plain text."""
     parts = []
     for _ in range(1 + choices.number(3)):
         kind = choices.number(6)
@@ -100,7 +100,7 @@ def text(choices: Choices) -> str:
 
 
 def yaml_text(choices: Choices) -> str:
-    """A small YAML file."""
+    """Return a small YAML file."""
     keys = ["a", "b", "p", "q"][: choices.number(5)]
     return "\n".join(f"{key}: {_yaml_value(choices, 0)}" for key in keys)
 

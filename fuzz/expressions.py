@@ -56,7 +56,7 @@ METHODS = [
 
 
 def expression(choices: Choices, depth: int = 0) -> str:
-    """An expression, without the brackets of the language."""
+    """Return an expression, without the brackets of the language."""
     if depth > 5 or choices.left == 0:
         return choices.pick(NAMES)
     make = choices.pick(_FORMS)

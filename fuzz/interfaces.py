@@ -57,7 +57,7 @@ class _Any:
 
 
 def check_interface(text: str) -> None:
-    """An interface file is understood, or its mistakes are told with their places."""
+    """Check that an interface file is read, or its mistakes are reported with their positions."""
     for kind in ("msg", "srv", "action"):
         source = SourceText(f"Fuzz.{kind}", text)
         try:
@@ -67,7 +67,7 @@ def check_interface(text: str) -> None:
 
 
 def check_idl(text: str) -> None:
-    """An IDL file is understood, or the first mistake is told with its place."""
+    """Check that an IDL file is read, or the first mistake is reported with its position."""
     try:
         parse_idl(SourceText("Fuzz.idl", text), "fuzz_msgs/msg/Fuzz", _Any())
     except LinkwrightError as error:
@@ -75,7 +75,7 @@ def check_idl(text: str) -> None:
 
 
 def check_message(data: bytes) -> None:
-    """Bytes are a message that can be written again, or are refused."""
+    """Check that bytes are a message that can be written again, or are rejected."""
     cls = get_message(TYPES[data[0] % len(TYPES)] if data else TYPES[0])
     with contextlib.suppress(MessageDataError):
         message = deserialize(data[1:], cls)
@@ -84,12 +84,12 @@ def check_message(data: bytes) -> None:
 
 
 def words(choices: Choices) -> str:
-    """The words of an interface file, in any order."""
+    """Return the words of an interface file, in any order."""
     return " ".join(choices.pick(_WORDS) for _ in range(choices.left))
 
 
 def message_bytes(choices: Choices) -> bytes:
-    """A message of zeros and small numbers: the lengths in it are often possible."""
+    """Return a message of zeros and small numbers, so that its lengths are often possible."""
     number = choices.number(len(TYPES))
     body = b"".join(
         choices.pick((b"\0", b"\0\0\0", b"\1\0\0\0", b"\2\0\0\0a\0", b"\1", b"\xff")) for _ in range(choices.left)

@@ -19,7 +19,7 @@ SECONDS = 5.0
 
 
 def install_packages(packages: dict[str, str]) -> None:
-    """A stand-in for ``ament_index_python`` that knows some packages."""
+    """Install a stand-in for ``ament_index_python`` that knows some packages."""
     module = types.ModuleType("ament_index_python")
     inner = types.ModuleType("ament_index_python.packages")
 
@@ -39,7 +39,7 @@ def install_packages(packages: dict[str, str]) -> None:
 
 
 def answer(request: dict[str, object]) -> dict[str, str]:
-    """The expansion of one file, or why there is none."""
+    """Return the expansion of one file, or the error."""
     import xacro  # type: ignore[import-not-found]  # that of ROS, in an environment of its own
 
     install_packages(request["packages"])  # type: ignore[arg-type]  # JSON from differential.py

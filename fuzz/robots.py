@@ -42,7 +42,7 @@ _TAGS = [
 
 
 def urdf(choices: Choices) -> str:
-    """A robot, or nearly."""
+    """Return a robot, not always a valid one."""
     opening = choices.pick(
         ['<robot name="r">', "<robot>", '<robot name="r" version="1.2">', '<robot name="" version="x">']
     )
@@ -219,7 +219,7 @@ _VALUES = [
 
 
 def rviz(choices: Choices) -> str:
-    """A configuration of RViz, or nearly."""
+    """Return a configuration of RViz, not always a valid one."""
     return "Visualization Manager:\n" + _mapping(choices, 1) if not choices.chance(12) else _mapping(choices, 0)
 
 

@@ -1,4 +1,4 @@
-"""What descriptions are put together from: values, expressions, substitutions and conditions, odd ones among them."""
+"""The building blocks of descriptions: values, expressions, substitutions and conditions, including unusual ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is fuzzed, and what must hold for every input.
+"""The targets of fuzzing, with the properties that hold for every input.
 
 For each target: nothing but a `LinkwrightError` is raised, its diagnostics can be printed, what comes out can be read
 again, and it takes less than a second of processor time.
@@ -46,7 +46,7 @@ _FIXED = {"items": [3, 1, 2], "data": {"a": 1, "b": [1, {"c": 2}]}, "name": "r",
 
 
 def check_xml(text: str) -> None:
-    """A document that is read is written, read again and written alike."""
+    """Check that a document can be written, read again, and written with the same result."""
     try:
         document = parse(text, "fuzz.xml")
     except LinkwrightError as error:
@@ -62,7 +62,7 @@ def check_xml(text: str) -> None:
 
 
 def check_expansion(files: documents.Files) -> None:
-    """A description that is expanded gives a document that can be read, and the same one each time."""
+    """Check that an expanded description is a readable document, and the same one each time."""
     folder = Path(_FOLDER.name)
     _save(folder / "other.xacro", files.other)
     _save(folder / "data.yaml", files.data)
@@ -88,7 +88,7 @@ def check_expansion(files: documents.Files) -> None:
 
 
 def check_expression(source: str) -> None:
-    """An expression has a value that can be written, or a mistake in it is told with its place."""
+    """Check that an expression has a printable value, or its mistake is reported with its position."""
     session = Session("main.xacro", {"name": "r", "n": "3"}, {}, _LIMITS)
     scope = Scope(session.globals, session, dict(_FIXED, items=[3, 1, 2]))
     for text in ("${" + source + "}", "a ${" + source + "} b"):
@@ -108,7 +108,7 @@ def _fault_of(session: Session, text: str, scope: Scope) -> Fault | None:
 
 
 def check_urdf(text: str) -> None:
-    """A robot that is read can be written and read again as the same robot."""
+    """Check that a robot can be written, and is the same when it is read again."""
     try:
         document, warnings = parse_as_urdfdom(text, "robot.urdf")
         reading = read(document)
@@ -130,7 +130,7 @@ def check_urdf(text: str) -> None:
 
 
 def check_world(text: str) -> None:
-    """A world that is read can be printed, and everything in it either stands somewhere or is told of."""
+    """Check that a world can be printed, and all its contents are listed or reported."""
     folder = Path(_FOLDER.name)
     try:
         document, warnings = parse_as_gazebo(text, str(folder / "fuzz.sdf"))
@@ -154,7 +154,7 @@ def check_world(text: str) -> None:
 
 
 def check_yaml(text: str) -> None:
-    """A YAML file has a value, or a mistake."""
+    """Check that a YAML file has a value, or a mistake."""
     session = Session("main.xacro", {}, {}, _LIMITS)
     try:
         load(text, session._unit_value)
@@ -163,7 +163,7 @@ def check_yaml(text: str) -> None:
 
 
 def check_rviz(text: str) -> None:
-    """A configuration that is read is written, and read again."""
+    """Check that a configuration can be written and read again."""
     try:
         config = RvizConfig.parse(text)
     except LinkwrightError as error:
@@ -234,7 +234,7 @@ TARGETS: dict[str, Callable[[bytes], None]] = {
 
 
 def seeds(name: str) -> list[bytes]:
-    """Inputs to begin a target with: random decisions, or texts that a grammar makes of them."""
+    """Return the first inputs of a target: random decisions, or texts that a grammar makes of them."""
     random = Random(name)
     decisions = [random.randbytes(random.randrange(4, 400)) for _ in range(_SEEDS)]
     write_text = _SEED_TEXTS.get(name)
@@ -244,7 +244,7 @@ def seeds(name: str) -> list[bytes]:
 
 
 def hard_seeds(name: str) -> list[str]:
-    """Texts of the kinds that once took too long, or too much memory."""
+    """Return texts of the kinds that once took too long, or too much memory."""
     return _HARD_SEEDS.get(name, [])
 
 

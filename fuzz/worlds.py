@@ -39,7 +39,7 @@ _DEEPEST = 12
 
 
 def world(choices: Choices) -> str:
-    """A world or model, or nearly."""
+    """Return a world or model, not always a valid one."""
     version = choices.pick(["1.9", "1.6", "1.4", "1.12", "2.0", "x"])
     inside = "".join(_element(choices, choices.pick(SDF.children), 1) for _ in range(1 + choices.number(3)))
     return f'<sdf version="{version}">{inside}{choices.pick(["</sdf>", "</sdf>", "</sdf> text", ""])}'

@@ -1,7 +1,7 @@
-"""Commands that say when Ctrl-C is ours to take care of.
+"""Commands that report when Linkwright handles Ctrl-C.
 
-While Python only starts itself it drops one now and then ("Exception ignored in"), and nobody learns of it. A test that
-interrupts a command at any moment counts from the first moment that is ours.
+While Python starts, it sometimes drops a Ctrl-C without a trace ("Exception ignored in"). A test that interrupts a
+command at any moment counts only from the moment at which Linkwright handles it.
 """
 
 from __future__ import annotations
@@ -22,5 +22,5 @@ runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
 
 
 def telling(module: str, *words: str) -> list[str]:
-    """The command line of ``python -m MODULE WORDS``, which prints `BEGUN` first."""
+    """Return the command line of ``python -m MODULE WORDS`` that prints `BEGUN` first."""
     return [sys.executable, "-c", _PROGRAM, module, *words]

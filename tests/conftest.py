@@ -1,4 +1,4 @@
-"""What all tests share."""
+"""Fixtures and hooks for all tests."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ if sys.platform != "win32" and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """What is collected stays: Python does not look for garbage among 17,000 tests, while they are made or later.
+    """Freeze the collected objects, so that the garbage collector ignores 17,000 tests.
 
-    How many objects are frozen is said without counting them, which would take longer than reading a small robot.
+    The number of frozen objects is not counted, because that would take longer than reading a small robot.
     """
     gc.disable()
     try:
@@ -46,7 +46,7 @@ def pytest_collection() -> Generator[None, object, object]:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Modules that are marked as a whole, and those of pages, are not imported by `make test-base`: they would fail."""
+    """Ignore wholly marked modules and those of pages in `make test-base`: their imports would fail."""
     if "not extra" not in config.option.markexpr:
         return None
     if collection_path.name == "browser":
@@ -57,7 +57,7 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 @pytest.fixture(autouse=True, scope="session")
 def _state_of_the_user(tmp_path_factory):
-    """What programs of tests remember for the next time is not the user's own."""
+    """Keep the saved state of programs in tests apart from the user's."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
         yield
@@ -65,13 +65,13 @@ def _state_of_the_user(tmp_path_factory):
 
 @pytest.fixture(autouse=True, scope="session")
 def _catalogs():
-    """The program speaks other languages as the catalogs of the checkout have it."""
+    """Use the catalogs of the checkout for other languages."""
     load_tool("catalogs").compile_catalogs()
 
 
 @pytest.fixture(scope="session")
 def fork_server() -> Iterator[ForkServer]:
-    """What starts ``python -m linkwright`` in a fifth of the time, for tests of what it does then."""
+    """Return a server that starts ``python -m linkwright`` in a fifth of the time."""
     server = ForkServer()
     yield server
     server.close()
@@ -79,7 +79,7 @@ def fork_server() -> Iterator[ForkServer]:
 
 @pytest.fixture(autouse=True)
 def plain_environment(monkeypatch):
-    """No workspace, color or language setting of the machine reaches a test, nor does a node of another test run."""
+    """Remove settings of workspace, color and language, and use a domain without nodes of other test runs."""
     for name in ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "ROS_PACKAGE_PATH", "NO_COLOR", "FORCE_COLOR"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("LINKWRIGHT_LANG", "en")
@@ -88,7 +88,7 @@ def plain_environment(monkeypatch):
 
 @pytest.fixture(autouse=True)
 def own_definitions():
-    """Definitions of messages that recordings bring along in a test are not known in the next one."""
+    """Drop message definitions that recordings brought along, after each test."""
     yield
     module = sys.modules.get("linkwright.messages.definitions.library")
     carried = module.LIBRARY._embedded_sources if module is not None else {}

@@ -22,7 +22,7 @@ FOLDER_MARK = "@CORPUS@"
 
 @dataclass(frozen=True)
 class Corpus:
-    """A folder of packages with robots, and of what the programs of ROS make of them."""
+    """A folder of packages with robots, and with the results of ROS's programs for them."""
 
     folder: Path
 
@@ -34,17 +34,17 @@ class Corpus:
 
     @property
     def robots(self) -> Path:
-        """The folder that the paths of robots begin with."""
+        """Return the folder of the robots' paths."""
         return self.folder / "robots"
 
     @property
     def packages(self) -> dict[str, str]:
-        """The share folders of the packages by their names."""
+        """Return the share folders of the packages by name."""
         return {name: str(self.folder / place) for name, place in self.content["packages"].items()}
 
     @property
     def models(self) -> list[Model]:
-        """The robots, each with arguments."""
+        """Return the robots, each with arguments."""
         return [Model(self, data) for data in self.content["models"]]
 
 
@@ -57,41 +57,41 @@ class Model:
 
     @property
     def path(self) -> Path:
-        """The file to expand."""
+        """Return the file to expand."""
         return self.corpus.robots / self.data["entry"]
 
     @property
     def arguments(self) -> dict[str, str]:
-        """The values of its ``xacro:arg``."""
+        """Return the values of its ``xacro:arg``."""
         return dict(self.data["args"])
 
     @property
     def packages(self) -> dict[str, str]:
-        """The packages that it may name."""
+        """Return the packages that it may name."""
         return self.corpus.packages
 
     @property
     def expected(self) -> str:
-        """The expansion that ros/xacro writes, with a mark for the folder of the robots."""
+        """Return the expansion by ros/xacro, with a placeholder for the robots' folder."""
         return (self.corpus.folder / self.data["expected"]).read_text(encoding="utf-8")
 
     @property
     def diagram(self) -> str:
-        """What urdf_to_graphviz writes."""
+        """Return the output of urdf_to_graphviz."""
         return (self.corpus.folder / self.data["gv"]).read_text(encoding="utf-8")
 
     @property
     def accepted(self) -> bool:
-        """Whether check_urdf accepts the expansion."""
+        """Return whether check_urdf accepts the expansion."""
         return bool(self.data.get("urdfdom", {}).get("accepts"))
 
     @property
     def complaints(self) -> list[str]:
-        """The errors that check_urdf tells, of an accepted robot too."""
+        """Return the errors of check_urdf, which accepted robots can have, too."""
         return list(self.data["urdfdom"]["errors"]) if "urdfdom" in self.data else ["no links"]
 
     def marked(self, text: str) -> str:
-        """A text of this machine with the mark for the folder of the robots."""
+        """Replace the robots' folder in a text by the placeholder."""
         return text.replace(str(self.corpus.robots), FOLDER_MARK)
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""ROS domains that nobody else on this machine uses: other checkouts, other workers of a parallel run."""
+"""ROS domains that no other process on this machine uses, such as other checkouts or workers of a parallel run."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _locks: list[socket.socket] = []
 
 @functools.cache
 def own_domain(which: int = 0) -> int:
-    """A ROS_DOMAIN_ID for this process and what it starts.
+    """Return a ROS_DOMAIN_ID for this process and its child processes.
 
-    Taken by listening on a port of its number, which only one process at a time can do.
+    It is reserved by listening on a port of its number, which only one process at a time can do.
 
     Args:
-        which: for tests that need domains of which none hears of the others.
+        which: distinguishes several domains of a test.
     """
     domains = list(range(1, _LAST + 1))
     random.SystemRandom().shuffle(domains)

@@ -56,7 +56,7 @@ class Program:
         return self.process.pid
 
     def poll(self) -> int | None:
-        """The exit status, or None while it runs."""
+        """Return the exit status, or None while it runs."""
         return self.process.poll()
 
     def wait(self, timeout: float | None = None) -> int:
@@ -92,7 +92,7 @@ class ForkServer:
         self._server = forked.ForkServer(_IMPORTED, variables={"PYTHONUNBUFFERED": "1"})
 
     def start(self, words: list[str], *, cwd: Path, env: Mapping[str, str]) -> Program:
-        """The same as `start_process`, forked off where the system can do that."""
+        """Start a program as `start_process` does, but forked where the system supports that."""
         return _start(self._server.start, words, cwd, env)
 
     def close(self) -> None:

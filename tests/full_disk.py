@@ -1,4 +1,4 @@
-"""A disk that is full: no file may grow beyond a limit, and the system refuses the rest."""
+"""A full disk: no file may grow beyond a limit, and further writes fail."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which modules a program loads."""
+"""The modules that a program loads."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import subprocess
 import sys
 
 _ALWAYS = "import importlib"
-"""What every program of ours imports; with Python 3.10 it loads more than with later ones."""
+"""The modules that every program imports; Python 3.10 loads more than later versions."""
 
 
 def loaded_by(code: str) -> set[str]:
-    """The modules that a process loads for some code, besides those of `_ALWAYS`."""
+    """Return the modules that a process loads for some code, except those of `_ALWAYS`."""
     return _modules(code) - _modules(_ALWAYS)
 
 
 def rooms_of(loaded: set[str]) -> set[str]:
-    """The rooms of ours that modules are from."""
+    """Return the rooms of Linkwright to which modules belong."""
     return {name.split(".")[1] for name in loaded if name.startswith("linkwright.") and name.count(".") > 1}
 
 

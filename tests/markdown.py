@@ -1,4 +1,4 @@
-"""Test cases on Markdown pages: a ``##`` heading is a case, the fenced blocks below it are what it consists of."""
+"""Test cases on Markdown pages: a ``##`` heading is a case, and the fenced blocks below it are its parts."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Block(NamedTuple):
 
 
 def read_sections(page: Path) -> list[tuple[str, list[Block]]]:
-    """The titles of a page's sections with the blocks in each."""
+    """Return the titles of a page's sections, with the blocks in each."""
     text = page.read_text(encoding="utf-8")
     return [
         (

@@ -1,4 +1,4 @@
-"""Where things are in the repository, for tests."""
+"""Paths in the repository, for tests."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TUTORIAL_PACKAGES = [PACKAGE, *([PUBLISHED] if PUBLISHED.is_dir() else [])]
 
 
 def without_meshes(package: Path, folder: Path) -> Path:
-    """A copy of a package in a folder as readers of the tutorial have it at first: meshes are downloaded."""
+    """Copy a package without its meshes, which readers of the tutorial download later."""
     return shutil.copytree(package, folder / package.name, ignore=shutil.ignore_patterns("meshes", "__pycache__"))
 
 

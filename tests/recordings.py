@@ -1,4 +1,4 @@
-"""Where recordings can be written and read."""
+"""Conditions for reading and writing recordings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Publishers of other processes, without processes: they send, leave and are lost when a test says so."""
+"""Simulated publishers of other processes: a test sends their messages, closes them, and loses them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.messages import serialize
 
 
 class RemoteTransport(Transport):
-    """A transport that sends nothing, and receives what its `RemotePublisher`s send."""
+    """A transport that sends nothing, and delivers the messages of its `RemotePublisher`s."""
 
     def __init__(self, graph: Graph) -> None:
         self.graph = graph
@@ -19,7 +19,7 @@ class RemoteTransport(Transport):
         self.publishers: list[EndpointInfo] = []
         graph.attach(self)
 
-    def look_around(self) -> None:
+    def start_discovery(self) -> None:
         pass
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
@@ -67,7 +67,7 @@ class RemotePublisher:
         for subscription in self._transport.graph.bus.subscriptions(self._info.name):
             subscription.receive(serialize(message), MessageInfo(0, 0, self._info.gid, is_remote=True))
 
-    def be_lost(self) -> None:
+    def disappear(self) -> None:
         """Disappear as if the process had been killed."""
         assert self._transport.lose is not None, "the graph does not watch for lost publishers"
         self._transport.publishers.remove(self._info)

@@ -12,7 +12,7 @@ TOOLS = REPOSITORY / "tools"
 
 
 def load_tool(name: str) -> ModuleType:
-    """The module of ``tools/NAME.py``."""
+    """Return the module of ``tools/NAME.py``."""
     specification = importlib.util.spec_from_file_location(name, TOOLS / f"{name}.py")
     assert specification is not None
     assert specification.loader is not None

@@ -25,7 +25,7 @@ T = TypeVar("T")
 
 
 class _SkippingSelector(selectors.DefaultSelector):  # type: ignore[misc, valid-type]
-    """Gives the loop what is ready; instead of waiting for it, lets the loop's time pass."""
+    """A selector that returns ready events, and advances the loop's time instead of waiting."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -72,12 +72,12 @@ class LoopClock(Timebase):
         self._begin_ns = time.time_ns() - self.steady_ns()
 
     def now_ns(self) -> int:
-        """Nanoseconds since the epoch."""
+        """Return the nanoseconds since the epoch."""
         self._begin_ns += 1000
         return self._begin_ns + self.steady_ns()
 
     def steady_ns(self) -> int:
-        """Nanoseconds of the loop."""
+        """Return the loop's time in nanoseconds."""
         return round(self._loop.time() * 1e9)
 
     def call_at(self, loop: asyncio.AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Any:
@@ -86,7 +86,7 @@ class LoopClock(Timebase):
 
 
 def graph_clock() -> Timebase:
-    """The clock for a graph on the running loop: that of the loop where it skips its waits."""
+    """Return the clock for a graph on the running loop: the loop's own if it skips its waits."""
     return LoopClock() if isinstance(asyncio.get_running_loop(), SkippingLoop) else SystemClock()
 
 

@@ -1,4 +1,4 @@
-"""Benchmarks run by hand only: whether what they import is there is found here."""
+"""Benchmarks run only by hand: these tests check that their imports exist."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The list of what runs with each Python names what is there."""
+"""The list of tests for each Python names existing files."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ MOST_BYTES = 90 * 1024 * 1024
 
 @pytest.fixture(scope="module")
 def engine(tmp_path_factory) -> Path:
-    """The environment."""
+    """Return the environment."""
     return install(tmp_path_factory.mktemp("engine"), extra="", project=REPOSITORY / "core")
 
 

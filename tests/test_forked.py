@@ -1,4 +1,4 @@
-"""Programs that are forked off do what processes of their own do."""
+"""Forked programs behave as separate processes do."""
 
 from __future__ import annotations
 

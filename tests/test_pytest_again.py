@@ -1,4 +1,4 @@
-"""What CI runs again, and what not."""
+"""The tests that CI runs again, and those that it does not."""
 
 from __future__ import annotations
 

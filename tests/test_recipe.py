@@ -1,4 +1,4 @@
-"""The recipe for conda-forge says what pyproject.toml says."""
+"""The recipe for conda-forge matches pyproject.toml."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def recipe() -> dict[str, Any]:
 
 
 def bounds(requirements: list[str]) -> dict[str, str]:
-    """The versions that requirements allow, by name, whatever their markers: a package for all Pythons has none."""
+    """Return the versions that requirements allow, by name, and without markers."""
     parsed = [Requirement(requirement) for requirement in requirements]
     return {requirement.name: str(requirement.specifier) for requirement in parsed}
 

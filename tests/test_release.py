@@ -1,4 +1,4 @@
-"""What `make release` puts together: the changelog of a version, the bill of materials, and files without a date."""
+"""The results of `make release`: the changelog of a version, the bill of materials, and files without dates."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def test_changelog_has_section_of_current_version(release, notes):
 
 
 def listed() -> str:
-    """What cyclonedx-py says of an environment with one package beside ours, installed from a folder."""
+    """Return the components that cyclonedx-py lists for an environment with ours and a package from a folder."""
     local = {"type": "distribution", "url": "file:///home/somebody/linkwright.whl"}
     website = {"type": "website", "url": "https://example.org"}
     components = [

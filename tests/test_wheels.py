@@ -1,4 +1,4 @@
-"""Whether everything that ``linkwright[all]`` brings can be installed without a compiler, by wheels in uv.lock."""
+"""The wheels in uv.lock: ``linkwright[all]`` can be installed without a compiler."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def _has_wheel(package: dict[str, Any], tags: set[Tag]) -> bool:
 
 
 def _needed(lock: dict[str, list[dict[str, Any]]], environment: dict[str, str]) -> Iterator[dict[str, Any]]:
-    """What ``linkwright[all]`` brings to such a machine."""
+    """Return the packages of ``linkwright[all]`` on such a machine."""
     (root,) = lock["linkwright"]
     asked = [*root["dependencies"], *root["optional-dependencies"]["all"]]
     seen: set[tuple[str, str, str]] = set()
@@ -117,7 +117,7 @@ def _needed(lock: dict[str, list[dict[str, Any]]], environment: dict[str, str]) 
 def _chosen(
     lock: dict[str, list[dict[str, Any]]], wanted: dict[str, Any], environment: dict[str, str]
 ) -> dict[str, Any]:
-    """The version of a package that the lock has for a machine."""
+    """Return the version of a package in the lock for a machine."""
     (package,) = [
         package
         for package in lock[wanted["name"]]

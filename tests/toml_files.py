@@ -13,7 +13,7 @@ _tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tom
 
 
 def read_toml(text: str) -> dict[str, Any]:
-    """What a text of TOML says."""
+    """Return the content of a TOML text."""
     found: dict[str, Any] = _tomllib.loads(text)
     return found
 

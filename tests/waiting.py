@@ -1,6 +1,6 @@
-"""Waiting for what another thread, process or task is about to do: tests wait for it, not for some time.
+"""Waiting for the results of other threads, processes and tasks, instead of waiting for a fixed time.
 
-A test that passes waits no longer than it has to, so the limits are generous: a busy machine fails nothing.
+A passing test waits no longer than necessary, so the limits are generous: a busy machine causes no failures.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ _EXECUTOR_WAITS = ("_sleep", "work.py")
 def wait_until(
     condition: Callable[[], object], seconds: float = SECONDS, what: object = "", pause: float = _PAUSE
 ) -> None:
-    """Wait in this thread until a condition holds; ``what``, or what it returns, is said when it never does.
+    """Wait in this thread until a condition holds; on failure, the message contains ``what``, or its result.
 
-    Between two looks there is a pause of some seconds: a longer one where looking is work, as in a browser.
+    The pause between two checks is given in seconds: it is longer if a check is expensive, as in a browser.
     """
     limit = time.monotonic() + seconds
     while not condition():
@@ -40,7 +40,7 @@ async def eventually(condition: Callable[[], object], seconds: float = SECONDS, 
 
 
 def is_waiting(thread: threading.Thread) -> bool:
-    """Whether a thread waits for another one (for an event, a condition, the work of an executor)."""
+    """Return whether a thread waits for another one (for an event, a condition, the work of an executor)."""
     frame = sys._current_frames().get(thread.ident or 0)
     if frame is None:
         return False

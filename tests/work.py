@@ -1,4 +1,4 @@
-"""How much work something is: lines counted, not time measured; what has no lines at least comes to an end."""
+"""Measures of work: executed lines instead of time; code without lines must at least end."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.xacro import Limits
 
 
 def lines_run(function: Callable[[], object]) -> int:
-    """How many lines of Python a call runs, each turn of a loop counted; what numpy does inside is none."""
+    """Return the number of executed Python lines in a call; work inside numpy counts as none."""
     count = 0
 
     def trace(_frame: FrameType, event: str, _argument: Any) -> Any:
@@ -32,9 +32,9 @@ def lines_run(function: Callable[[], object]) -> int:
 
 @contextmanager
 def ends() -> Iterator[None]:
-    """What is inside takes less of the processor than an expansion may altogether, where it could take hours.
+    """Assert that a block takes less processor time than the limit of an expansion.
 
-    For single calls in C, which have no lines to count. They take a second at most; the rest is for slow machines.
+    This is for single calls in C, which have no lines to count. They take a second at most, except on slow machines.
     """
     before = time.process_time()
     yield

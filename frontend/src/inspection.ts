@@ -14,7 +14,7 @@ import { number, readVector } from "./state/views/view-controller";
 interface Inspection {
   /** Whether the robot has been drawn with its meshes and first transforms. */
   readonly ready: boolean;
-  /** Whether the last frame shows all data received, so that none is due. */
+  /** Whether the last frame shows all data received, so that no further frame is due. */
   readonly settled: boolean;
   /** The number of the server's messages processed since the connection was opened. */
   readonly received: number;
@@ -28,7 +28,7 @@ interface Inspection {
     enabled: boolean;
     level: StatusLevel;
     status: StatusRow[];
-    /** What the drawing reports of itself: counts, bounds, colors. */
+    /** The drawing's own report: counts, bounds, colors. */
     drawn: object | null;
   }[];
   readonly view: {
@@ -48,14 +48,14 @@ interface Inspection {
   readonly tools: string[];
   /** All selected objects. */
   readonly selection: SelectedItem[];
-  /** The recording or the history shown: times in s since its start; `kept` is its size in bytes. */
-  readonly timeline: { name: string; position: number; length: number; playing: boolean; problem: string; live: boolean; kept: number } | null;
+  /** The recording or the history shown: times in s since its start. `sizeBytes` is the history's size. */
+  readonly timeline: { name: string; position: number; length: number; playing: boolean; problem: string; live: boolean; sizeBytes: number } | null;
   /** The recording in progress, the marked part of the history (s since its start), and why recording failed. */
   readonly recording: { path: string; length: number; saved: number | null; problem: string; files: string[]; mark: number[] | null };
   readonly time: { paused: boolean; mode: string; source: string; sources: string[] };
   /** Joint positions of the Joints panel, rad or m. */
   readonly joints: Record<string, number>;
-  /** The description of the first robot, and what the panels show of it. */
+  /** The description of the first robot, and the link or joint that the panels show. */
   readonly description: {
     revision: number;
     links: number;
@@ -67,12 +67,12 @@ interface Inspection {
     findings: { link: string; code: string }[];
   };
   readonly panels: Record<string, object>;
-  /** What is drawn of invisible properties: masses, inertias, joint axes. */
-  readonly inspected: object | null;
+  /** The drawn marks of invisible properties: masses, inertias, joint axes. */
+  readonly invisibleProperties: object | null;
   readonly selected: { link: string; file: string | null; line: number | null; column: number | null } | null;
   readonly framesDrawn: number;
   /** The rightmost pixel column that robots cover, from the left edge of the canvas. */
-  readonly robotsReach: number;
+  readonly robotsRightEdge: number;
   /** Time of the newest transforms, s. */
   readonly stamp: number;
 }
@@ -148,7 +148,7 @@ export function publishInspection(
       const { timeline, position, isPlaying, problem, isLive, extent } = session.timeline;
       if (!timeline) return null;
       const { name, start, end } = timeline;
-      return { name, position: position - start, length: end - start, playing: isPlaying, problem, live: isLive, kept: extent?.size ?? 0 };
+      return { name, position: position - start, length: end - start, playing: isPlaying, problem, live: isLive, sizeBytes: extent?.size ?? 0 };
     },
     get recording() {
       const { path, length, savedShare, problem, files } = session.recording;
@@ -179,8 +179,8 @@ export function publishInspection(
     get panels() {
       return Object.fromEntries(Object.entries(panels).map(([name, inspect]) => [name, inspect()]));
     },
-    get inspected() {
-      return stage?.inspected ?? null;
+    get invisibleProperties() {
+      return stage?.invisibleProperties ?? null;
     },
     get selected() {
       const link = session.selection.selectedLink?.link;
@@ -194,8 +194,8 @@ export function publishInspection(
     get framesDrawn() {
       return stage?.loop.framesDrawn ?? 0;
     },
-    get robotsReach() {
-      return stage?.freeRoom.robotsReach ?? 0;
+    get robotsRightEdge() {
+      return stage?.uncoveredArea.robotsRightEdge ?? 0;
     },
   };
   Object.defineProperty(window, "linkwright", { value: Object.freeze(inspection), enumerable: true });

@@ -176,7 +176,7 @@ function start(app: HTMLElement): void {
   session.editing.editRequested.on(() => dock.open("editing"));
 
   const stage = createStage(scene.container, session, dock.displayPanels, theme);
-  if (stage) scene.connectScene(stage.freeRoom);
+  if (stage) scene.connectScene(stage.uncoveredArea);
   commands.bindKeys();
   const toolbox = stage && connectTools(stage, session, (event) => {
     if (handles?.onPointer(event)) return null;

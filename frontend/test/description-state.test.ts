@@ -2,7 +2,7 @@ import { Ray, Vector3 } from "three";
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { Description, JointDetails, LinkDetails, PageMessage, ServerMessage } from "../src/protocol";
-import { slideTowards, turnTowards } from "../src/scene/joint-drag";
+import { slideDistance, turnAngle } from "../src/scene/joint-drag";
 import { AngleUnits } from "../src/state/angle-unit";
 import { DescriptionModel } from "../src/state/description-model";
 import { layOut } from "../src/state/diagram-layout";
@@ -89,7 +89,7 @@ describe("the description", () => {
     receive(createChange(1));
     expect(sentMessages).toEqual([]);
     const release = session.description.hold();
-    expect(sentMessages).toEqual([{ type: "ask_description", display: "d1" }]);
+    expect(sentMessages).toEqual([{ type: "request_description", display: "d1" }]);
     receive(createDescription());
     expect(session.description.modelOf("d1")?.links.size).toBe(4);
     release();
@@ -247,7 +247,7 @@ describe("dragging a link", () => {
     const grabbedPoint = new Vector3(1, 0, 0);
     for (const angle of [0.3, -0.7, 1.2]) {
       const ray = rayBetween(eye, new Vector3(Math.cos(angle), Math.sin(angle), 0));
-      expect(turnTowards(ray, z, new Vector3(), grabbedPoint, 0)).toBeCloseTo(angle, 4);
+      expect(turnAngle(ray, z, new Vector3(), grabbedPoint, 0)).toBeCloseTo(angle, 4);
     }
   });
 
@@ -257,11 +257,11 @@ describe("dragging a link", () => {
     for (let i = 1; i <= 60; i++) {
       const pointerAngle = i * 0.2;
       const ray = rayBetween(eye, new Vector3(Math.cos(pointerAngle), Math.sin(pointerAngle), 0));
-      angle = turnTowards(ray, z, new Vector3(), new Vector3(1, 0, 0), angle);
+      angle = turnAngle(ray, z, new Vector3(), new Vector3(1, 0, 0), angle);
     }
     expect(angle).toBeCloseTo(12, 3);
     const side = new Vector3(0, -5, 0);
-    const edgeOnAngle = turnTowards(rayBetween(side, new Vector3(0.5, 0, 0)), z, new Vector3(), new Vector3(0, -1, 0), 0);
+    const edgeOnAngle = turnAngle(rayBetween(side, new Vector3(0.5, 0, 0)), z, new Vector3(), new Vector3(0, -1, 0), 0);
     expect(edgeOnAngle).toBeGreaterThan(0.3);
     expect(edgeOnAngle).toBeLessThan(0.7);
   });
@@ -269,7 +269,7 @@ describe("dragging a link", () => {
   it("moves it along its axis, and not at all where the pointer does not determine a position", () => {
     const x = new Vector3(1, 0, 0);
     const ray = rayBetween(new Vector3(0.4, -3, 2), new Vector3(0.4, 0, 0));
-    expect(slideTowards(ray, x, new Vector3(0.1, 0, 0))).toBeCloseTo(0.3, 6);
-    expect(slideTowards(new Ray(new Vector3(-5, 0, 0.1), x), x, new Vector3())).toBe(0);
+    expect(slideDistance(ray, x, new Vector3(0.1, 0, 0))).toBeCloseTo(0.3, 6);
+    expect(slideDistance(new Ray(new Vector3(-5, 0, 0.1), x), x, new Vector3())).toBe(0);
   });
 });

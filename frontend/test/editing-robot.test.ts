@@ -16,7 +16,7 @@ function createPart(fields: Partial<EditablePart> = {}): EditablePart {
 }
 
 function receiveParts(...parts: EditablePart[]): void {
-  connection.message.emit({ type: "editable_parts", ...LINK, why_not: "", parts });
+  connection.message.emit({ type: "editable_parts", ...LINK, refusal_reason: "", parts });
 }
 
 function listSentTypes(): string[] {
@@ -60,7 +60,7 @@ describe("editing", () => {
     editing.follow(LINK);
     expect(sentMessages).toEqual([]);
     const release = editing.hold();
-    expect(sentMessages).toEqual([{ type: "ask_editable_parts", ...LINK }]);
+    expect(sentMessages).toEqual([{ type: "request_editable_parts", ...LINK }]);
     release();
     editing.follow({ ...LINK, link: "hand" });
     expect(sentMessages).toHaveLength(1);
@@ -72,7 +72,7 @@ describe("editing", () => {
     receiveParts(createPart());
     editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     editing.move({ xyz: [0, 0, 1.2], rpy: [0, 0, 0] });
-    expect(listSentTypes()).toEqual(["ask_editable_parts"]);
+    expect(listSentTypes()).toEqual(["request_editable_parts"]);
     vi.runAllTimers();
     expect(sentMessages.at(-1)).toMatchObject({ type: "preview_edit", part: "joint", name: "shoulder", xyz: [0, 0, 1.2], rpy: null, together: false });
   });
@@ -132,7 +132,7 @@ describe("editing", () => {
   it("moves nothing if writing is not allowed", () => {
     editing.follow(LINK);
     editing.hold();
-    connection.message.emit({ type: "editable_parts", ...LINK, why_not: "elsewhere", parts: [createPart()] });
+    connection.message.emit({ type: "editable_parts", ...LINK, refusal_reason: "elsewhere", parts: [createPart()] });
     editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     expect(editing.draft).toBeNull();
   });

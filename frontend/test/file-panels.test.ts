@@ -64,7 +64,7 @@ function receiveHello(): void {
 }
 
 function createConfiguration(part: Partial<Configuration>): Configuration {
-  return { type: "configuration", path: null, opened: 1, unsaved: false, undo: null, redo: null, own: false, recent: [], ...part };
+  return { type: "configuration", path: null, opened: 1, unsaved: false, undo: null, redo: null, is_own: false, recent: [], ...part };
 }
 
 /** The messages that a page receives when it connects, or when another configuration is opened. */

@@ -14,7 +14,7 @@ function createDrawing(): MarkersDrawing {
 }
 
 function send(drawing: MarkersDrawing, markers: MarkerShape[], removedIds: string[] = []): void {
-  const content = { kind: "markers_changed", everything: false, gone: removedIds, markers };
+  const content = { kind: "markers_changed", everything: false, removed_ids: removedIds, markers };
   drawing.onDataChanged({ display: "display-1", key: "", content } as unknown as Parameters<MarkersDrawing["onDataChanged"]>[0]);
   drawing.update();
 }

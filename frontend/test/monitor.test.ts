@@ -38,9 +38,9 @@ describe("topics", () => {
     topics.watchList(firstPanel, true);
     topics.watchList(secondPanel, true);
     topics.watchList(firstPanel, false);
-    expect(sentMessages).toEqual([{ type: "watch_topics", listed: true, measured: [], opened: [] }]);
+    expect(sentMessages).toEqual([{ type: "watch_topics", wants_list: true, measured_topics: [], opened_topics: [] }]);
     topics.watchList(secondPanel, false);
-    expect(sentMessages.at(-1)).toMatchObject({ listed: false });
+    expect(sentMessages.at(-1)).toMatchObject({ wants_list: false });
   });
 
   it("are dropped when they are no longer measured", () => {
@@ -92,7 +92,7 @@ describe("parameters", () => {
     connection.message.emit({ type: "node_parameters", node: "/a", parameters: [], error: null });
     expect(parameters.parameters?.node).toBe("/a");
     parameters.watch(false);
-    expect(sentMessages.at(-1)).toEqual({ type: "watch_parameters", listed: false, node: null });
+    expect(sentMessages.at(-1)).toEqual({ type: "watch_parameters", wants_list: false, node: null });
   });
 });
 

@@ -16,7 +16,7 @@ function createState(): { state: TerminalsState; sentMessages: unknown[]; receiv
   return { state, sentMessages, receive: (message) => connection.message.emit(message as ServerMessage), news };
 }
 
-const createTerminals = (folder: string): object => ({ type: "terminals", folder, terminals: [], why_not: "" });
+const createTerminals = (folder: string): object => ({ type: "terminals", folder, terminals: [], refusal_reason: "" });
 
 describe("the pages of programs", () => {
   it("are requested once for each connection, where there are terminals", () => {

@@ -88,9 +88,9 @@ describe("the marked part of the history", () => {
 
   it("is removed with the messages that are dropped", () => {
     timeline.setMark({ start: 103, end: 108 });
-    connection.message.emit({ type: "history_extent", start: 105, end: 120, size: 1, most: 2 });
+    connection.message.emit({ type: "history_extent", start: 105, end: 120, size: 1, max_size: 2 });
     expect(timeline.mark).toEqual({ start: 105, end: 108 });
-    connection.message.emit({ type: "history_extent", start: 109, end: 130, size: 1, most: 2 });
+    connection.message.emit({ type: "history_extent", start: 109, end: 130, size: 1, max_size: 2 });
     expect(timeline.mark).toBeNull();
   });
 });

@@ -222,21 +222,21 @@ describe("a text editor", () => {
 
 describe("terminals", () => {
   const receiveTerminals = (run: string, ...items: TerminalItem[]): void =>
-    receive({ type: "hello", protocol: 0, version: "", title: "", run }, { type: "terminals", folder: "/ws", terminals: items, why_not: "" });
+    receive({ type: "hello", protocol: 0, version: "", title: "", run }, { type: "terminals", folder: "/ws", terminals: items, refusal_reason: "" });
   const createTerminal = (id: number, place: TerminalItem["shown"]): TerminalItem => ({ id, shown: place, status: null });
 
   it("that the page showed on a lost connection are not those of another page", () => {
     receiveTerminals("first");
-    receive({ type: "terminals", folder: "/ws", terminals: [createTerminal(1, "here"), createTerminal(2, "elsewhere")], why_not: "" });
+    receive({ type: "terminals", folder: "/ws", terminals: [createTerminal(1, "here"), createTerminal(2, "elsewhere")], refusal_reason: "" });
     receiveTerminals("first", createTerminal(1, "elsewhere"), createTerminal(2, "elsewhere"));
     expect(session.terminals.items.map(({ shown: place }) => place)).toEqual(["nowhere", "elsewhere"]);
-    receive({ type: "terminals", folder: "/ws", terminals: [createTerminal(1, "elsewhere")], why_not: "" });
+    receive({ type: "terminals", folder: "/ws", terminals: [createTerminal(1, "elsewhere")], refusal_reason: "" });
     expect(session.terminals.items.map(({ shown: place }) => place)).toEqual(["elsewhere"]);
   });
 
   it("of a program that was started again are others", () => {
     receiveTerminals("first");
-    receive({ type: "terminals", folder: "/ws", terminals: [createTerminal(1, "here")], why_not: "" });
+    receive({ type: "terminals", folder: "/ws", terminals: [createTerminal(1, "here")], refusal_reason: "" });
     receiveTerminals("second", createTerminal(1, "elsewhere"));
     expect(session.terminals.items.map(({ shown: place }) => place)).toEqual(["elsewhere"]);
   });

@@ -55,7 +55,7 @@ describe("the timeline", () => {
   it("stays at the end of the history while live", () => {
     connection.message.emit({ type: "timeline", name: "", start: 100, end: 110, topics: [], live: true });
     connection.message.emit(createPlayhead({ live: true }));
-    connection.message.emit({ type: "history_extent", start: 105, end: 120, size: 5e6, most: 1e7 });
+    connection.message.emit({ type: "history_extent", start: 105, end: 120, size: 5e6, max_size: 1e7 });
     expect([timeline.isPlaying, timeline.isLive, timeline.position]).toEqual([true, true, 120]);
     timeline.play(false);
     connection.message.emit(createPlayhead({ position: 119 }));
@@ -63,7 +63,7 @@ describe("the timeline", () => {
     expect(formatAge(1)).toBe("−0:01.000");
     expect(formatMoment(52.304)).toBe("0:52.304");
     expect(formatMoment(new Date(2026, 1, 3, 14, 3, 7, 256).getTime() / 1000)).toBe("14:03:07.256");
-    expect(formatExtent({ type: "history_extent", start: 105, end: 120, size: 5e6, most: 1e7 })).toBe("0:15 · 5.0 MB");
+    expect(formatExtent({ type: "history_extent", start: 105, end: 120, size: 5e6, max_size: 1e7 })).toBe("0:15 · 5.0 MB");
     timeline.goLive();
     expect(sentMessages).toEqual([{ type: "play", playing: false }, { type: "go_live" }]);
   });

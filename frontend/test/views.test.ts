@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { FIELD_OF_VIEW, onGround, castRay, type Camera } from "../src/state/views/camera";
 import { controllerOf } from "../src/state/views/catalog";
-import { transformSpan } from "../src/state/views/fit";
+import { transformBounds } from "../src/state/views/fit";
 import type { Drag, ViewController, ViewValues } from "../src/state/views/view-controller";
 import type { Vector } from "../src/state/views/vector";
 
@@ -285,7 +285,7 @@ describe("a fitted view", () => {
   });
 
   it("looks from a moving frame", () => {
-    const { min, max } = transformSpan({ min: [1, 2, 0], max: [3, 3, 1] }, { position: [1, 2, 0], yaw: Math.PI / 2 });
+    const { min, max } = transformBounds({ min: [1, 2, 0], max: [3, 3, 1] }, { position: [1, 2, 0], yaw: Math.PI / 2 });
     expectClose(min, [0, -2, 0]);
     expectClose(max, [1, 0, 1]);
   });

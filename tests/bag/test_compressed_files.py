@@ -1,4 +1,4 @@
-"""Compressed files of recordings, with the folder that says so and without it."""
+"""Compressed files of recordings, with and without the metadata of their folder."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PLUGINS = [StoragePlugin.MCAP, StoragePlugin.SQLITE3]
 
 
 def recorded(folder: Path, plugin: StoragePlugin, mode: CompressionMode, length: int = 20) -> Path:
-    """A folder as `ros2 bag record --compression-mode` makes it, with messages of ``/a`` and ``/b`` in turns."""
+    """Write a folder as `ros2 bag record --compression-mode` does, with messages of ``/a`` and ``/b`` in turn."""
     writer = Writer(folder, version=8, storage_plugin=plugin)
     writer.set_compression(mode, CompressionFormat.ZSTD)
     with writer:

@@ -29,7 +29,7 @@ def writer(request: pytest.FixtureRequest, tmp_path: Path) -> BagWriter:
 
 
 def numbers(path: Path) -> list[int]:
-    """The times of the messages of a recording that is whole."""
+    """Return the times of a complete recording's messages."""
     with BagReader(path) as bag:
         stamps = [stamp for _, stamp, _ in bag.messages()]
         assert not bag.findings

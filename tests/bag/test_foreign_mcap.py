@@ -48,7 +48,7 @@ OTHERS = (
 
 
 def write(path: Path, declared: bytes, kind: str, profile: str = "") -> Path:
-    """A file of five messages on each of three channels.
+    """Write a file of five messages on each of three channels.
 
     Args:
         path: where to.

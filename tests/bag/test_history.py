@@ -1,4 +1,4 @@
-"""The messages of the last minutes in memory: how much is kept, what is known of a time, and that it can be read on."""
+"""The history of the last minutes in memory: its size, the state at a time, and further reading."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class Clock:
         return self.ns
 
 
-def filled(max_size: int = 10**6, size: int = 1000, count: int = 10) -> tuple[History, Clock]:
-    """A history with a message of a topic each second."""
+def filled_history(max_size: int = 10**6, size: int = 1000, count: int = 10) -> tuple[History, Clock]:
+    """Return a history with a message of a topic each second."""
     clock = Clock()
     history = History(max_size, clock)
     for second in range(count):
@@ -47,7 +47,7 @@ def numbers(messages: object) -> list[int]:
 
 
 def test_history_drops_oldest_messages_beyond_byte_limit() -> None:
-    history, _ = filled(max_size=5 * 1200, count=3000)
+    history, _ = filled_history(max_size=5 * 1200, count=3000)
     assert history.size <= 5 * 1200
     messages = list(history.messages(["/a"], 0))
     assert [stamp // SECOND for _, stamp, _ in messages] == [2996, 2997, 2998, 2999], "and the one before is known"
@@ -59,7 +59,7 @@ def test_history_drops_oldest_messages_beyond_byte_limit() -> None:
 
 
 def test_state_at_returns_last_messages_and_dropped_static_transforms() -> None:
-    history, clock = filled(max_size=10**5)
+    history, clock = filled_history(max_size=10**5)
     for child in ("one", "two", "one"):
         history.add("/tf_static", static(child))
     history.add("/map", b"\7")
@@ -75,7 +75,7 @@ def test_state_at_returns_last_messages_and_dropped_static_transforms() -> None:
 
 
 def test_message_stream_continues_after_end_when_messages_arrive() -> None:
-    history, clock = filled(count=3)
+    history, clock = filled_history(count=3)
     stream = history.messages(["/a", "/b"], SECOND)
     assert numbers([next(stream), next(stream)]) == [1, 2]
     assert next(stream, None) is None
@@ -92,8 +92,8 @@ def image(shade: int, size: int = 200_000) -> bytes:
     return bytes([shade]) * size
 
 
-def packed(history: History, max_size: int) -> None:
-    """Wait until what is kept takes no more than so many bytes."""
+def wait_until_packed(history: History, max_size: int) -> None:
+    """Wait until the history takes no more than a number of bytes."""
     wait_until(lambda: history.size <= max_size)
 
 
@@ -103,7 +103,7 @@ def test_repetitive_large_messages_are_compressed_and_read_unchanged() -> None:
     for second in range(100):  # as they are, these would be 20 MB
         clock.ns = second * SECOND
         history.add("/camera", image(second))
-        packed(history, (second + 1) * 1000)
+        wait_until_packed(history, (second + 1) * 1000)
     assert history.start_ns == 0
     assert history.state_at(["/camera"], 50 * SECOND) == [("/camera", 50 * SECOND, image(50))]
     assert [data for _, _, data in history.messages(["/camera"], 98 * SECOND)] == [image(98), image(99)]
@@ -115,10 +115,10 @@ def test_repetitive_large_messages_are_compressed_and_read_unchanged() -> None:
 
 def test_incompressible_messages_are_stored_uncompressed() -> None:
     noise = np.random.default_rng(0).integers(0, 256, 200_000).astype(np.uint8).tobytes()
-    history, _ = filled(count=0, max_size=10**7)
+    history, _ = filled_history(count=0, max_size=10**7)
     history.add("/camera", noise)
     history.add("/camera", image(1))
-    packed(history, 202_000)
+    wait_until_packed(history, 202_000)
     assert history.size > 200_000
     assert history.state_at(["/camera"], 0) == [("/camera", 0, image(1))]
     assert next(history.messages(["/camera"], 0)) == ("/camera", 0, noise)
@@ -134,12 +134,12 @@ def test_messages_dropped_before_compression_are_harmless(monkeypatch: pytest.Mo
         return bytes(compress(data, level))
 
     monkeypatch.setattr(_zstd(), "compress", slow)
-    history, _ = filled(count=0, max_size=500_000)
+    history, _ = filled_history(count=0, max_size=500_000)
     for shade in range(5):
         history.add("/camera", image(shade))
     assert history.size == 2 * 200_200, "one, and the one before it"
     proceed.set()
-    packed(history, 210_000)
+    wait_until_packed(history, 210_000)
     assert [data[0] for _, _, data in history.messages(["/camera"], 0)] == [4]
     history.close()
 
@@ -220,7 +220,7 @@ def test_transforms_of_unmoving_publishers_are_thinned_separately() -> None:
 
 
 def transforms(history: History, clock: Clock, x: float) -> None:
-    """A transform now."""
+    """Return a transform at the current time."""
     data = serialize(
         TFMessage(batch=TransformBatch(("base",), ("robot",), clock.ns, np.array([[x, 0, 0, 0, 0, 0, 1.0]])))
     )
@@ -228,7 +228,7 @@ def transforms(history: History, clock: Clock, x: float) -> None:
 
 
 def tick(history: History, clock: Clock, told_ns: int) -> None:
-    """A message of a simulated clock now."""
+    """Return a message of a simulated clock at the current time."""
     time = SimulatedTime()
     time.clock.sec, time.clock.nanosec = divmod(told_ns, SECOND)
     data = serialize(time)
@@ -236,7 +236,7 @@ def tick(history: History, clock: Clock, told_ns: int) -> None:
 
 
 def simulated_time_at(history: History, second: float) -> float:
-    """The simulated time at a time, both in seconds."""
+    """Return the simulated time at a time, both in seconds."""
     ((_, _, data),) = history.state_at(["/clock"], int(second * SECOND))
     time = deserialize(data, SimulatedTime).clock
     return time.sec + time.nanosec / SECOND

@@ -1,4 +1,4 @@
-"""A recording that is shown at any of its times, on a clock that the test moves."""
+"""Playback of a recording at any time, on a clock that the test moves."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def test_state_at_returns_last_message_of_each_topic_and_transforms(
 
 
 def without_index(whole: bytes, *, message_indexes: bool) -> bytes:
-    """A finished MCAP file without a summary; without the indexes behind its chunks, too, if they are not wanted."""
+    """Write a finished MCAP file without a summary, and without chunk indexes on request."""
     records, place = bytearray(whole[:8]), 8
     while True:
         kind, length = struct.unpack_from("<BQ", whole, place)
@@ -288,7 +288,7 @@ async def test_step_back_without_subscriptions_keeps_position(recording: PlayedR
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_state_at_keeps_transforms_from_before_a_pause(tmp_path: Path, storage: str) -> None:
-    """One a minute: whoever goes to a time between two sees where the robot was."""
+    """With one transform a minute, a time between two shows the robot's last pose."""
     with BagWriter(tmp_path / "bag", storage) as writer:
         writer.add_topic("/tf", TF, [DEFAULT_QOS])
         for stamp in (0, 59, 60, 180):

@@ -16,8 +16,8 @@ START = 1_700_000_000 * SECOND
 Time = get_message("builtin_interfaces/msg/Time")
 
 
-class Scene:
-    """A recording of a message each second, a player of it, who hears it, and who calls its services."""
+class PlayerHarness:
+    """A recording of a message each second, a player, a subscription to its topic, and clients of its services."""
 
     def __init__(self, graph: Graph, bag: BagReader, options: PlayOptions) -> None:
         self.graph = graph
@@ -50,7 +50,7 @@ async def scene(clock, tmp_path: Path):
             writer.write("/chatter", START + number * SECOND, serialize(String(data=str(number))))
     graph = Graph(clock=clock)
     with BagReader(tmp_path / "bag") as bag:
-        yield lambda **options: Scene(graph, bag, PlayOptions(**options))
+        yield lambda **options: PlayerHarness(graph, bag, PlayOptions(**options))
         await graph.close()
 
 
@@ -112,7 +112,7 @@ async def test_loop_over_zero_duration_recording_does_not_block(clock, tmp_path)
             writer.write("/chatter", START + number, serialize(String(data=str(number))))
     graph = Graph(clock=clock)
     with BagReader(tmp_path / "short") as bag:
-        scene = Scene(graph, bag, PlayOptions(loop=True))
+        scene = PlayerHarness(graph, bag, PlayOptions(loop=True))
         await clock.advance(0.01)
         assert 3 < len(scene.heard) < 40
         assert scene.heard[:4] == ["0", "1", "2", "0"]

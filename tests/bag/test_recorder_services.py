@@ -14,8 +14,8 @@ from linkwright.messages import String, deserialize, get_message
 START = 1_700_000_000_000_000_000
 
 
-class Scene:
-    """A recorder, who calls its services, and who talks."""
+class RecorderHarness:
+    """A recorder, clients of its services, and a publisher."""
 
     def __init__(self, graph: Graph, path: Path, snapshot_size: int = 0) -> None:
         self.graph = graph
@@ -53,7 +53,7 @@ class Scene:
 @pytest.fixture
 async def scene(tmp_path: Path):
     graph = Graph(clock=JumpClock(START))
-    yield lambda **options: Scene(graph, tmp_path / "bag", **options)
+    yield lambda **options: RecorderHarness(graph, tmp_path / "bag", **options)
     await graph.close()
 
 

@@ -156,7 +156,7 @@ async def test_service_events_are_recorded_and_played(graph: Graph, clock: JumpC
 
 
 def record(folder: Path, times: list[float]) -> BagReader:
-    """A recording of one message at each of the times, seconds after its start."""
+    """Write a recording of one message at each of these times, in seconds after its start."""
     with BagWriter(folder / "bag") as writer:
         writer.add_topic("/chatter", "std_msgs/msg/String", [DEFAULT_QOS])
         for number, seconds in enumerate(times):
@@ -164,8 +164,8 @@ def record(folder: Path, times: list[float]) -> BagReader:
     return BagReader(folder / "bag")
 
 
-class Listener:
-    """Notes what comes on ``/chatter`` and when, in seconds since the beginning."""
+class ChatterRecorder:
+    """A subscription that records the messages of ``/chatter`` and their times in seconds."""
 
     def __init__(self, graph: Graph, clock: JumpClock, topic: str = "chatter") -> None:
         self.heard: list[tuple[float, str]] = []
@@ -184,7 +184,7 @@ def player_node(graph: Graph) -> Node:
 async def test_player_keeps_intervals_between_messages(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
-    listener = Listener(graph, clock)
+    listener = ChatterRecorder(graph, clock)
     with record(tmp_path, [0, 0.5, 0.5, 2]) as bag:
         player = Player(player_node, bag, PlayOptions())
         player.start()
@@ -199,7 +199,7 @@ async def test_player_keeps_intervals_between_messages(
 async def test_player_applies_rate_delay_offset_and_duration(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
-    listener = Listener(graph, clock)
+    listener = ChatterRecorder(graph, clock)
     with record(tmp_path, [0, 1, 2, 3, 4]) as bag:
         options = PlayOptions(rate=2.0, delay=1.0, start_offset=1.0, duration=2.0)
         player = Player(player_node, bag, options)
@@ -211,7 +211,7 @@ async def test_player_applies_rate_delay_offset_and_duration(
 async def test_player_pause_stops_recording_time(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
-    listener = Listener(graph, clock)
+    listener = ChatterRecorder(graph, clock)
     with record(tmp_path, [0, 1, 2]) as bag:
         player = Player(player_node, bag, PlayOptions())
         player.start()
@@ -230,7 +230,7 @@ async def test_player_pause_stops_recording_time(
 async def test_player_rate_can_change_during_playback(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
-    listener = Listener(graph, clock)
+    listener = ChatterRecorder(graph, clock)
     with record(tmp_path, [0, 1, 2, 3]) as bag:
         player = Player(player_node, bag, PlayOptions())
         player.start()
@@ -245,7 +245,7 @@ async def test_player_rate_can_change_during_playback(
 async def test_looping_player_restarts_until_closed(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
-    listener = Listener(graph, clock)
+    listener = ChatterRecorder(graph, clock)
     with record(tmp_path, [0, 1]) as bag:
         player = Player(player_node, bag, PlayOptions(loop=True, delay=0.5))
         player.start()
@@ -280,7 +280,7 @@ SAMPLE = "uint8 CLAY=1\nuint8 kind\nstring<=20 label\n"
 
 
 def record_of_a_foreign_type(path: Path, package: str, storage: StoragePlugin, **texts: str) -> None:
-    """A recording of a type that no package here has, as another program writes it."""
+    """Write a recording of a type that no package here has, as another program does."""
     store = get_typestore(Stores.ROS2_HUMBLE)
     for name, text in texts.items():
         store.register(get_types_from_msg(text.replace("soil_msgs", package), f"{package}/msg/{name}"))
@@ -331,7 +331,7 @@ async def test_malformed_definition_is_reported_and_other_topics_play(
     record_of_a_foreign_type(tmp_path / "bag", "mud_msgs", StoragePlugin.MCAP, Sample=SAMPLE, Probe=PROBE)
     file = next((tmp_path / "bag").glob("*.mcap"))
     file.write_bytes(file.read_bytes().replace(b"float64 depth", b"flaot64 depth"))
-    listener = Listener(graph, clock, "/probe")
+    listener = ChatterRecorder(graph, clock, "/probe")
     with BagReader(file) as bag:
         player = Player(player_node, bag, PlayOptions())
         player.start()
@@ -363,7 +363,7 @@ async def test_player_selects_topics_by_regular_expression(
 
 
 async def test_player_stops_at_given_time(graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path) -> None:
-    listener = Listener(graph, clock)
+    listener = ChatterRecorder(graph, clock)
     with record(tmp_path, [0, 1, 2]) as bag:
         player = Player(player_node, bag, PlayOptions(until_ns=round(2.5 * SECOND), duration=9.0))
         player.start()

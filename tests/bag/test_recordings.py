@@ -1,4 +1,4 @@
-"""Recordings: what is written is read again; damaged, missing and foreign files are told."""
+"""Recordings: round trips, and reports about damaged, missing and foreign files."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ START = 1_700_000_000_000_000_000
 
 
 def write(folder: Path, storage: str = "mcap", count: int = 3, name: str = "bag", **options: bool) -> Path:
-    """A recording of two topics."""
+    """Write a recording of two topics."""
     path = folder / name
     with BagWriter(path, storage, **options) as writer:
         writer.add_topic("/chatter", "std_msgs/msg/String", [DESCRIPTION_QOS])
@@ -153,7 +153,7 @@ def test_single_file_recording_has_no_folder(tmp_path: Path) -> None:
 
 
 def parts(folder: Path, storage: str, names: Sequence[str]) -> list[Path]:
-    """Files without metadata: in each three messages of a topic, that begin a second after those of the one before."""
+    """Write files without metadata, each with three messages of a topic, starting a second after the previous file."""
     files = []
     for number, name in enumerate(names):
         with BagWriter(folder / f"part{number}", storage) as writer:
@@ -386,7 +386,7 @@ def test_playing_qos_matches_recorded_qos_if_publishers_agree() -> None:
 
 
 def test_playing_qos_uses_largest_recorded_history() -> None:
-    """What is kept, and for how long, is no matter of agreement (as in rosbag2)."""
+    """History and depth do not affect compatibility (as in rosbag2)."""
     profiles = [QoSProfile(depth=20), QoSProfile(depth=50, lifespan=Duration(seconds=1.0)), QoSProfile(depth=1)]
     assert profile_for_playing(profiles) == profiles[1]
     everything = QoSProfile(history=HistoryPolicy.KEEP_ALL)
@@ -394,7 +394,7 @@ def test_playing_qos_uses_largest_recorded_history() -> None:
 
 
 def test_playing_qos_defaults_to_depth_ten_if_history_is_unknown() -> None:
-    """Those of Fast DDS do not."""
+    """Fast DDS does not announce history and depth."""
     untold = QoSProfile(history=HistoryPolicy.UNKNOWN, depth=0)
     assert profile_for_playing([from_library(to_library(untold))]) == QoSProfile(depth=10)
 

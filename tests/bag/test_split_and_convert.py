@@ -22,7 +22,7 @@ FORMS = [(storage, form) for storage in STORAGES for form in COMPRESSIONS if (st
 
 
 def write(path: Path, storage: str = "mcap", *, topic: str = "/words", count: int = 40, **options: Any) -> Path:
-    """A recording with a message of 10 kB every tenth of a second."""
+    """Write a recording with a message of 10 kB every tenth of a second."""
     with BagWriter(path, storage, **options) as writer:
         writer.add_topic(topic, "std_msgs/msg/String")
         for number in range(count):

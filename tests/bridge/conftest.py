@@ -21,7 +21,7 @@ collect_ignore_glob = [] if find_spec("zenoh") and find_spec("cyclonedds") else 
 
 @pytest.fixture(autouse=True)
 def variables(monkeypatch: pytest.MonkeyPatch, domain: int, router_port: int) -> None:  # noqa: F811 - fixtures
-    """A router that is looked for at a port of the test's own."""
+    """Set the address of a router at a port of the test's own."""
     for name in (ATTEMPTS, ROUTER_FILE, SESSION_FILE, "RMW_IMPLEMENTATION"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv(OVERRIDES, f'connect/endpoints=["tcp/localhost:{router_port}"]')
@@ -64,25 +64,25 @@ class Bridge:
 
 
 class Networks:
-    """What a test has in both networks: processes over DDS and over Zenoh, and bridges."""
+    """The processes of a test over DDS and over Zenoh, and the bridges between them."""
 
     def __init__(self) -> None:
         self._closables: list[Process | Bridge] = []
 
     def dds(self, name: str) -> Process:
-        """A process over DDS."""
+        """Create a process over DDS."""
         return self._track(Process(name))
 
     def zenoh(self, name: str) -> Process:
-        """A process over Zenoh."""
+        """Create a process over Zenoh."""
         return self._track(Process(name, wire="zenoh"))
 
     def bridge(self, bridge_id: str = "b0", **names: tuple[str, ...]) -> Bridge:
-        """A bridge between both."""
+        """Start a bridge between both networks."""
         return self._track(Bridge(bridge_id, **names))
 
     def make(self, network: str) -> Callable[[str], Process]:
-        """What makes processes in a network."""
+        """Return the function that creates processes in a network."""
         return self.dds if network == "dds" else self.zenoh
 
     def close(self) -> None:

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from linkwright.bridge.bridged_network import BridgedNetwork
 from linkwright.bridge.mirrors import MirroredPublisher
 from linkwright.bridge.outlet import Outlet
-from linkwright.bridge.side import Side
 from linkwright.bridge.streams import publisher_stream
 from linkwright.graph import Graph
 from linkwright.graph.actions.client import ActionClient
@@ -233,7 +233,7 @@ def test_action_goals_and_feedback_are_bridged(networks, server, client):
     messages = []
 
     def act():
-        """Carry out a goal; what is said at once may come before its way across is known, and is not kept for it."""
+        """Execute a goal; feedback that is published before the bridge has a mirror for it is lost."""
         feedback = []
         messages.append(feedback)
         sent = asking.send_goal_async(
@@ -299,11 +299,11 @@ def test_lost_endpoint_triggers_new_discovery():
         def watch_lost(self, lost):
             self.lost = lost
 
-        def look_around(self):
+        def start_discovery(self):
             pass
 
     transport, graph = Transport(), Graph(threads=True)
-    Side("DDS", graph, transport, "b0", needs_hashes=False).watch(lambda: messages.append("look"))
+    BridgedNetwork("DDS", graph, transport, "b0", needs_hashes=False).watch(lambda: messages.append("look"))
     node = NodeIdentity("killed", "/")
     transport.lost(
         EndpointInfo(EndpointKind.PUBLISHER, node, "/rosout", "rcl_interfaces/msg/Log", QoSProfile(1), bytes(16))
@@ -396,7 +396,7 @@ def test_messages_of_unknown_type_are_bridged_as_raw_bytes(networks):
 
 @pytest.mark.parametrize(("expects", "seconds"), [(False, 1.0), (True, 10.0)])
 def test_mirrored_publisher_waits_longer_if_listeners_are_expected(monkeypatch, expects, seconds):
-    """A machine that is very busy matches late, and closes nothing meanwhile that somebody is about to hear."""
+    """A very busy machine matches late, and must not close publishers whose subscribers are about to match."""
     now = [1000.0]
     monkeypatch.setattr("linkwright.bridge.mirrors.time", SimpleNamespace(monotonic=lambda: now[0]))
     graph = Graph()

@@ -21,7 +21,7 @@ def endpoint(kind: EndpointKind, type_name: str, hashed: str, qos: QoSProfile | 
 @pytest.mark.parametrize("message", ["", OTHER_HASH], ids=["told no hash", "told its hash"])
 @pytest.mark.parametrize("type_name", ["std_msgs/msg/String", "strange_msgs/msg/Odd"])
 def test_subscription_awaits_the_stream_that_its_publisher_uses(type_name, message):
-    """Else what it says first would be lost, while the bridge listens to another stream instead."""
+    """Otherwise its first messages would be lost while the bridge listens to another stream."""
     hashed = type_hash(type_name) if type_name.startswith("std_msgs") else OTHER_HASH
     publisher = endpoint(EndpointKind.PUBLISHER, type_name, hashed)
     subscription = endpoint(EndpointKind.SUBSCRIPTION, type_name, message and hashed)

@@ -1,4 +1,4 @@
-"""A small arm of two files, with masses, limits, a rail and a joint that follows; for tests of the page."""
+"""A small arm of two files, with masses, limits, a rail and a mimic joint, for tests of the page."""
 
 from __future__ import annotations
 
@@ -64,12 +64,13 @@ _SEGMENT = """\
 </robot>
 """
 SEGMENT_LINK = (3, 18)
-"""First and last line of the link in the macro's file, and of the joint there."""
+"""The first and last line of the macro's link in its file."""
 SEGMENT_JOINT = (19, 26)
+"""The first and last line of the macro's joint in its file."""
 
 
 def write_arm(folder: Path) -> Path:
-    """The arm's main file; ``segment.xacro`` is beside it."""
+    """Write the arm's files, and return the main one; it includes ``segment.xacro``."""
     (folder / "segment.xacro").write_text(_SEGMENT, encoding="utf-8")
     (folder / "arm.xacro").write_text(_ARM, encoding="utf-8")
     return folder / "arm.xacro"

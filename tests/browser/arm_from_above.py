@@ -1,4 +1,4 @@
-"""The arm seen from above, where every pixel is known in meters, and what is heard of the page's tools."""
+"""The arm seen from above, with a known scale of pixels, and the messages of the page's tools."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.viewer.scene import ARM
 from tests.waiting import wait_until
 
 SCALE = 50.0
-"""Pixels to a meter of the file's TopDownOrtho view: so each pixel is known in meters."""
+"""The scale of the file's TopDownOrtho view in pixels per meter."""
 CONFIG = {
     "Visualization Manager": {
         "Displays": [
@@ -36,21 +36,21 @@ CONFIG = {
     }
 }
 TIP = (3.0, 1.0)
-"""Where the ball of the arm is seen from above, meters."""
+"""The position of the arm's ball as seen from above, in meters."""
 
 
-class Scene:
-    """A page that shows the arm from above, and what is heard of its tools."""
+class ArmPage:
+    """A page that shows the arm from above, and the messages that its tools publish."""
 
     def __init__(self, viewer: Any, page: Any) -> None:
         self.viewer, self.page = viewer, page
-        self.heard: dict[str, list[Any]] = {}
+        self.messages: dict[str, list[Any]] = {}
         for kind, topic in (
             ("PoseWithCovarianceStamped", "/initialpose"),
             ("PoseStamped", "/goal_pose"),
             ("PointStamped", "/clicked_point"),
         ):
-            messages = self.heard[topic] = []
+            messages = self.messages[topic] = []
             viewer.run(
                 lambda kind=kind, topic=topic, messages=messages: viewer.node.create_subscription(
                     f"geometry_msgs/msg/{kind}", topic, messages.append, 10
@@ -58,14 +58,14 @@ class Scene:
             )
 
     def pixel(self, x: float, y: float) -> tuple[float, float]:
-        """The place on the page of a point of the fixed frame, while the file's view is seen."""
+        """Return the page's pixel of a point of the fixed frame, while the file's view is shown."""
         box = self.page.locator("canvas").first.bounding_box()
         return box["x"] + box["width"] / 2 + x * SCALE, box["y"] + box["height"] / 2 - y * SCALE
 
     def click(self, x: float, y: float, **options: Any) -> None:
-        at = self.pixel(x, y)
-        self.page.mouse.move(*at)
-        self.page.mouse.click(*at, **options)
+        pixel = self.pixel(x, y)
+        self.page.mouse.move(*pixel)
+        self.page.mouse.click(*pixel, **options)
 
     def drag(self, start: tuple[float, float], end: tuple[float, float], button: str = "left") -> None:
         (x0, y0), (x1, y1) = self.pixel(*start), self.pixel(*end)
@@ -76,14 +76,14 @@ class Scene:
         self.page.mouse.up(button=button)
 
     def press(self, key: str) -> str:
-        """Press a key and say which tool is in hand then."""
+        """Press a key, and return the class of the current tool."""
         self.page.keyboard.press(key)
         return state(self.page, "tool.class").rpartition("/")[2]
 
-    def only(self, topic: str) -> Any:
-        """The one message heard on a topic."""
-        wait_until(lambda: self.heard[topic], SECONDS)
-        (message,) = self.heard[topic]
+    def single_message(self, topic: str) -> Any:
+        """Wait for a topic's message, and return it; fail if it has several."""
+        wait_until(lambda: self.messages[topic], SECONDS)
+        (message,) = self.messages[topic]
         return message
 
     def show(self, view: str) -> dict[str, Any]:
@@ -91,21 +91,21 @@ class Scene:
         until(self.page, f"lw.view.type === '{view}'")
         return state(self.page, "view")
 
-    def selected(self) -> list[str]:
+    def selected_keys(self) -> list[str]:
         return [item["key"] for item in state(self.page, "selection")]
 
-    def file(self) -> dict[str, Any]:
+    def saved_settings(self) -> dict[str, Any]:
         text = self.viewer.run(self.viewer.viewer.config.text)
         return yaml.safe_load(text)["Visualization Manager"]
 
 
-def open_scene(live: Any, open_page: Any) -> Scene:
-    """The arm, published and seen from above; the arguments are the fixtures of these names."""
+def open_scene(live: Any, open_page: Any) -> ArmPage:
+    """Publish the arm, and open a page that shows it from above; the arguments are the fixtures of these names."""
     viewer = live(yaml.safe_dump(CONFIG))
     viewer.publish("/robot_description", String(data=ARM), DESCRIPTION_QOS)
     viewer.place("tip", *TIP, 0.0)
     viewer.place("mark", 0.0, 0.0, 0.0, parent="tip")
-    scene = Scene(viewer, open_page(viewer))
+    scene = ArmPage(viewer, open_page(viewer))
     until(scene.page, "lw.tools.length === 8 && lw.frames.tip !== undefined")
     viewer.settle(scene.page)
     return scene

@@ -1,10 +1,10 @@
-"""What axe-core finds in a page: the rules of WCAG 2.1, levels A and AA, that a program can judge.
+"""Findings of axe-core in a page: the machine-checked rules of WCAG 2.1, levels A and AA.
 
-axe-core leaves a contrast undecided where an image is behind the text. So that each is judged, the scene is one
-color meanwhile, the one that is worst for what lies over it; the arrows of choices, and what ``::before`` and
-``::after`` draw, marks and lines beside texts, are left out; and what is undecided even so, such as texts in boxes of
-drawings, is computed here. The letters of the axes belong to the scene: nobody is told of them (``aria-hidden``), and
-their colors mean axes.
+axe-core does not decide a contrast in front of an image. So the scene is replaced by one color, the worst one for the
+texts over it, and the arrows of selects and the contents of ``::before`` and ``::after``, which are lines and marks
+beside texts, are hidden. Contrasts that are still undecided, such as those of texts in drawings, are computed here. The
+labels of the axes belong to the scene: they are hidden from assistive technology (``aria-hidden``), and their colors
+identify the axes.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from pathlib import Path
 from playwright.sync_api import Page
 
 SCRIPT = Path(__file__).parents[2] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
-"""A development package of the page (MPL-2.0); nothing of it is in what is built."""
+"""A development package of the page (MPL-2.0); it is not part of any package of Linkwright."""
 THEMES = {"dark": "#ffffff", "light": "#000000"}
-"""The page's colors, and those of the scene that are farthest from them."""
+"""The page's themes, and the scene's color with the worst contrast for each."""
 
 _PREPARE = """
 const plain = new CSSStyleSheet();
@@ -74,10 +74,10 @@ _RUN = """async ([selector, worst]) => {
 
 
 def violations(page: Page, within: str | None = None) -> list[str]:
-    """What is against the rules, in the page or in one element of it, in its dark and in its light colors.
+    """Return the violations in the page or in one of its elements, in dark and in light colors.
 
     Raises:
-        FileNotFoundError: where the page's development packages are not installed (``npm ci`` in ``frontend/``).
+        FileNotFoundError: the page's development packages are not installed (``npm ci`` in ``frontend/``).
     """
     if not page.evaluate("() => 'contrastOf' in window"):
         page.evaluate(SCRIPT.read_text(encoding="utf-8") + _PREPARE)

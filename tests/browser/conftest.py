@@ -1,4 +1,4 @@
-"""A real Chromium and a real `linkwright` process for the tests of the page."""
+"""Fixtures with a real Chromium and a real `linkwright` process for the tests of the page."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ import pytest
 from playwright.sync_api import Browser, Page, Playwright, sync_playwright
 
 from tests import forked
-from tests.browser.live import LOOK_EVERY, LiveViewer, configuration
-from tests.browser.seen import what_was_seen
+from tests.browser.failure_report import describe_pages
+from tests.browser.live import POLL_PERIOD, LiveViewer, configuration
 from tests.forked import ForkServer, start_process
 from tests.waiting import wait_until
 
 SECONDS = 60.0
-"""How long the tests wait for what must come: long, for a busy machine draws a frame in seconds where it has no GPU."""
+"""The tests' time limit: long, because a busy machine without a GPU may draw a frame in seconds."""
 
 Value = TypeVar("Value")
 
@@ -33,7 +33,7 @@ _FLAGS = (
     "--no-sandbox",
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
-    # Without a GPU, the page around the scene is drawn in a fraction of the time by what is not OpenGL.
+    # Without a GPU, the page around the scene is drawn many times faster without OpenGL.
     "--disable-gpu-compositing",
     "--disable-gpu-rasterization",
     "--disable-background-networking",
@@ -65,46 +65,46 @@ _GROUPED = """
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Let a test that fails tell what its pages showed: the next time it may not fail."""
+    """Add the content of the pages to the report of a failed test, because the failure may not be repeatable."""
     report = yield
     browser = getattr(item, "funcargs", {}).get("browser")
     if report.when == "call" and report.failed and browser is not None:
         name = re.sub(r"\W+", "-", item.name)
-        report.sections.append(("Pages", what_was_seen(browser, item.config.rootpath / ".build" / "pages", name)))
+        report.sections.append(("Pages", describe_pages(browser, item.config.rootpath / ".build" / "pages", name)))
     return report
 
 
 @contextlib.contextmanager
-def launched(playwright: Playwright, *flags: str) -> Iterator[Browser]:
-    """A browser that draws in software, with more flags than the usual ones."""
+def run_browser(playwright: Playwright, *flags: str) -> Iterator[Browser]:
+    """Run a browser that draws in software, with additional flags."""
     path = os.environ.get("LINKWRIGHT_CHROMIUM") or shutil.which("chromium")
     if path is None:
         pytest.fail("no Chromium: `make test` fetches one, or set LINKWRIGHT_CHROMIUM")
-    started = playwright.chromium.launch(executable_path=path, args=[*_FLAGS, *flags])
-    yield started
-    started.close()
+    browser = playwright.chromium.launch(executable_path=path, args=[*_FLAGS, *flags])
+    yield browser
+    browser.close()
 
 
 @pytest.fixture(scope="package")
 def playwright() -> Iterator[Playwright]:
-    """What drives browsers, once for all tests of this folder.
+    """Run Playwright once for all tests of this folder.
 
-    Not for the session: as long as it is there its event loop counts as running, which asyncio tests must not meet.
+    Not for the session: while it runs, its event loop counts as running, which asyncio tests do not allow.
     """
-    with sync_playwright() as started:
-        yield started
+    with sync_playwright() as driver:
+        yield driver
 
 
 @pytest.fixture(scope="module")
 def browser(playwright: Playwright) -> Iterator[Browser]:
-    """One browser for a module, which starts in a tenth of a second: what one leaves behind no other module meets."""
-    with launched(playwright) as started:
-        yield started
+    """Run a browser for each module; it starts in a tenth of a second, and modules do not affect each other."""
+    with run_browser(playwright) as new_browser:
+        yield new_browser
 
 
 @dataclass
 class Program:
-    """A running `linkwright` command; `output` is all it printed, standard error included, so far."""
+    """A running `linkwright` command; `output` is its output so far, including standard error."""
 
     process: forked.Program
     url: str = ""
@@ -112,7 +112,7 @@ class Program:
     _lines: queue.Queue[str | None] = field(default_factory=queue.Queue)
 
     def wait_for(self, pattern: str, seconds: float = SECONDS) -> re.Match[str]:
-        """Read on until a line matches; fails with all the output when none does in time."""
+        """Read until a line matches; fail with all output after the time limit."""
         deadline = time.monotonic() + seconds
         while True:
             with contextlib.suppress(queue.Empty):
@@ -125,7 +125,7 @@ class Program:
                 pytest.fail(f"no line like {pattern!r} within {seconds} s:\n{''.join(self.output)}")
 
     def interrupt(self, seconds: float = SECONDS) -> int:
-        """Ctrl-C, and the exit status."""
+        """Interrupt the command as Ctrl-C does, and return its exit status."""
         self.process.send_signal(signal.SIGINT)
         return self.process.wait(timeout=seconds)
 
@@ -143,39 +143,39 @@ Start = Callable[..., Program]
 
 @pytest.fixture
 def start(tmp_path: Path, fork_server: ForkServer) -> Iterator[Start]:
-    """A function that starts `linkwright WORDS... --no-open` and waits for the viewer's address."""
-    with starting(fork_server.start, tmp_path) as run:
+    """Return a function that starts `linkwright WORDS... --no-open` and waits for the viewer's address."""
+    with program_starter(fork_server.start, tmp_path) as run:
         yield run
 
 
 @pytest.fixture
 def start_fresh(tmp_path: Path) -> Iterator[Start]:
-    """The same with processes that import everything themselves, as those of users do."""
-    with starting(start_process, tmp_path) as run:
+    """Return the same function with processes that import everything themselves, as users' processes do."""
+    with program_starter(start_process, tmp_path) as run:
         yield run
 
 
 @contextlib.contextmanager
-def starting(start_program: Callable[..., forked.Program], folder: Path) -> Iterator[Start]:
-    """What both kinds of starting have in common."""
-    running: list[tuple[Program, threading.Thread]] = []
+def program_starter(start_program: Callable[..., forked.Program], folder: Path) -> Iterator[Start]:
+    """Yield a function that starts a command, and end the commands afterwards."""
+    programs: list[tuple[Program, threading.Thread]] = []
 
-    def run(*words: str, cwd: Path = folder) -> Program:
+    def run(*arguments: str, cwd: Path = folder) -> Program:
         process = start_program(
-            [*words, "--no-open"],
+            [*arguments, "--no-open"],
             cwd=cwd,
-            # Robots of other tests that run at this moment must not come to this page over DDS.
+            # Robots of other tests that run at the same time must not appear in this page over DDS.
             env={**os.environ, "PYTHONUNBUFFERED": "1", "NO_COLOR": "1", "LINKWRIGHT_DDS": "0"},
         )
         program = Program(process)
         reader = threading.Thread(target=program.read, daemon=True)
         reader.start()
-        running.append((program, reader))
+        programs.append((program, reader))
         program.url = program.wait_for(r"^Viewer: (\S+)$")[1]
         return program
 
     yield run
-    for program, reader in running:
+    for program, reader in programs:
         if program.process.poll() is None:
             program.process.terminate()
             program.process.wait(timeout=SECONDS)
@@ -186,23 +186,23 @@ def starting(start_program: Callable[..., forked.Program], folder: Path) -> Iter
 
 @pytest.fixture
 def live() -> Iterator[Callable[..., LiveViewer]]:
-    """A function that starts a viewer in this process with a configuration; see `LiveViewer`."""
-    running: list[LiveViewer] = []
+    """Return a function that starts a viewer in this process with a configuration; see `LiveViewer`."""
+    viewers: list[LiveViewer] = []
 
     def run(config: str, **options: Any) -> LiveViewer:
-        running.append(LiveViewer(config, **options))
-        return running[-1]
+        viewers.append(LiveViewer(config, **options))
+        return viewers[-1]
 
     yield run
-    for viewer in running:
+    for viewer in viewers:
         viewer.close()
 
 
 @pytest.fixture
 def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
-    """A function that opens a program's page, at 1280x800 unless told otherwise, and waits for the robot."""
+    """Return a function that opens a program's page, by default at 1280x800, and waits for the robot."""
     contexts = []
-    complaints: list[str] = []
+    errors: list[str] = []
 
     def open_url(
         program: Program | LiveViewer,
@@ -217,22 +217,22 @@ def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
         context.set_default_timeout(1000 * SECONDS)
         contexts.append(context)
         page = context.new_page()
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
         page.goto(program.url)
         if wait:
-            page.wait_for_function("window.linkwright?.ready === true", polling=1000 * LOOK_EVERY)
+            page.wait_for_function("window.linkwright?.ready === true", polling=1000 * POLL_PERIOD)
         return page
 
     yield open_url
     for context in contexts:
         context.close()
-    assert complaints == [], "errors in the page's console"
+    assert errors == [], "errors in the page's console"
 
 
 @pytest.fixture
-def grouped(live: Callable[..., LiveViewer], open_page: Callable[..., Page]) -> tuple[LiveViewer, Page]:
-    """A viewer with a grid, and axes and an unknown display in a group, and its page."""
+def grouped_displays(live: Callable[..., LiveViewer], open_page: Callable[..., Page]) -> tuple[LiveViewer, Page]:
+    """Return a viewer with a grid, and a group of axes and an unknown display, together with its page."""
     viewer = live(configuration(_GROUPED))
     viewer.place("tip", 1.0, 0.0, 0.0)
     page = open_page(viewer, wait=False)
@@ -241,7 +241,7 @@ def grouped(live: Callable[..., LiveViewer], open_page: Callable[..., Page]) -> 
 
 
 def state(page: Page, name: str) -> Any:
-    """One member of `window.linkwright`."""
+    """Return a member of `window.linkwright`."""
     return page.evaluate(f"() => window.linkwright.{name}")
 
 
@@ -250,29 +250,29 @@ def until(page: Page, condition: str) -> None:
     page.wait_for_function(
         f"() => {{ const lw = window.linkwright; return lw && ({condition}); }}",
         timeout=1000 * SECONDS,
-        polling=1000 * LOOK_EVERY,
+        polling=1000 * POLL_PERIOD,
     )
 
 
 def becomes(read: Callable[[], Value], expected: Value) -> None:
-    """Read again and again until it is what is expected; fails with what was read last."""
+    """Read a value repeatedly until it is the expected one; fail with the last value."""
     limit = time.monotonic() + SECONDS
     while (value := read()) != expected and time.monotonic() < limit:
-        time.sleep(LOOK_EVERY)
+        time.sleep(POLL_PERIOD)
     assert value == expected
 
 
-def two_seconds_pass(page: Page) -> None:
-    """Wait until the page's own clock, of its Time panel, has gone on."""
+def wait_two_seconds(page: Page) -> None:
+    """Wait until the clock of the page's Time panel has advanced by two seconds."""
     elapsed = page.locator(".time-panel .figure").last
-    wait_until(elapsed.inner_text, SECONDS, pause=LOOK_EVERY)
-    started = float(elapsed.inner_text())
-    wait_until(lambda: float(elapsed.inner_text()) >= started + 2, SECONDS, pause=LOOK_EVERY)
+    wait_until(elapsed.inner_text, SECONDS, pause=POLL_PERIOD)
+    start = float(elapsed.inner_text())
+    wait_until(lambda: float(elapsed.inner_text()) >= start + 2, SECONDS, pause=POLL_PERIOD)
 
 
-def frames_drawn_meanwhile(page: Page) -> int:
-    """How many frames are drawn while two seconds pass."""
-    before: int = state(page, "framesDrawn")
-    two_seconds_pass(page)
-    after: int = state(page, "framesDrawn")
-    return after - before
+def count_frames(page: Page) -> int:
+    """Return the number of frames that are drawn in two seconds."""
+    first: int = state(page, "framesDrawn")
+    wait_two_seconds(page)
+    last: int = state(page, "framesDrawn")
+    return last - first

@@ -1,7 +1,7 @@
-"""Firefox as it is installed, driven by WebDriver BiDi, which it speaks itself (https://w3c.github.io/webdriver-bidi/).
+"""An installed Firefox, driven by WebDriver BiDi, which it supports itself (https://w3c.github.io/webdriver-bidi/).
 
-Playwright drives only a Firefox of its own, and geckodriver is not in Debian; why neither is taken, decision 0065 says.
-Without a display Firefox draws no WebGL: on Linux that takes an X server, which Xvfb is.
+Playwright drives only its own build of Firefox, and Debian has no geckodriver; decision 0065 explains the choice.
+Without a display Firefox has no WebGL: on Linux that takes an X server, such as Xvfb.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from typing import Any, TypeVar
 import aiohttp
 from PIL import Image
 
-from tests.browser.live import LOOK_EVERY
+from tests.browser.live import POLL_PERIOD
 from tests.waiting import SECONDS, wait_until
 
 Result = TypeVar("Result")
@@ -34,24 +34,24 @@ _PREFERENCES = {
     "browser.startup.page": 0,
     "datareporting.policy.dataSubmissionEnabled": False,
     "intl.accept_languages": "en-US",
-    "webgl.force-enabled": True,  # drawn by llvmpipe, which Firefox holds for no graphics card
+    "webgl.force-enabled": True,  # llvmpipe draws, which Firefox does not accept as a graphics card
 }
 
 
 def find() -> str | None:
-    """Firefox's program: LINKWRIGHT_FIREFOX, or one on the PATH."""
+    """Return Firefox's program: LINKWRIGHT_FIREFOX, or one on the PATH."""
     names = ("firefox-esr", "firefox")
     return os.environ.get("LINKWRIGHT_FIREFOX") or next(filter(None, map(shutil.which, names)), None)
 
 
 def can_show_windows() -> bool:
-    """Whether there is a display, or a program that stands in for one."""
+    """Return whether there is a display, or a program that replaces one."""
     return "DISPLAY" in os.environ or shutil.which("Xvfb") is not None
 
 
 @contextlib.contextmanager
-def launched(folder: Path, *, headless: bool = False) -> Iterator[Firefox]:
-    """A Firefox with a profile of its own in a folder; headless, it has no WebGL."""
+def launch(folder: Path, *, headless: bool = False) -> Iterator[Firefox]:
+    """Run a Firefox with a new profile in a folder; a headless one has no WebGL."""
     with contextlib.ExitStack() as stack:
         environment = dict(os.environ)
         if not headless and "DISPLAY" not in environment:
@@ -59,35 +59,35 @@ def launched(folder: Path, *, headless: bool = False) -> Iterator[Firefox]:
         text = "".join(f"user_pref({json.dumps(name)}, {json.dumps(value)});\n" for name, value in _PREFERENCES.items())
         (folder / "user.js").write_text(text, encoding="utf-8")
         command = [find() or "firefox", "--no-remote", "--profile", str(folder), "--remote-debugging-port=0"]
-        logged = _running([*command, *(["--headless"] if headless else [])], environment, folder / "firefox.log")
-        address = stack.enter_context(logged)(r"WebDriver BiDi listening on (\S+)\n")
+        process = _run_logged([*command, *(["--headless"] if headless else [])], environment, folder / "firefox.log")
+        address = stack.enter_context(process)(r"WebDriver BiDi listening on (\S+)\n")
         yield stack.enter_context(contextlib.closing(Firefox(address)))
 
 
 @contextlib.contextmanager
 def _display(log: Path) -> Iterator[str]:
-    """The name of a display of Xvfb, which chooses a free number and says it."""
+    """Run Xvfb, which chooses a free display number, and yield the display's name."""
     command = ["Xvfb", "-displayfd", "2", "-screen", "0", "1400x1000x24", "-nolisten", "tcp"]
-    with _running(command, dict(os.environ), log) as logged:
-        yield ":" + logged(r"^(\d+)\n")
+    with _run_logged(command, dict(os.environ), log) as wait_for_line:
+        yield ":" + wait_for_line(r"^(\d+)\n")
 
 
 @contextlib.contextmanager
-def _running(command: list[str], environment: dict[str, str], log: Path) -> Iterator[Callable[[str], str]]:
-    """Runs a program, and gives a function that waits until it says something."""
+def _run_logged(command: list[str], environment: dict[str, str], log: Path) -> Iterator[Callable[[str], str]]:
+    """Run a program, and yield a function that waits until its log matches a pattern."""
 
-    def logged(pattern: str) -> str:
-        def found() -> re.Match[str] | None:
+    def wait_for_line(pattern: str) -> str:
+        def search() -> re.Match[str] | None:
             return re.search(pattern, log.read_text(), re.MULTILINE)
 
-        wait_until(found, what=log.read_text)
-        match = found()
+        wait_until(search, what=log.read_text)
+        match = search()
         assert match is not None
         return match[1]
 
     with log.open("w") as output, subprocess.Popen(command, env=environment, stdout=output, stderr=output) as process:
         try:
-            yield logged
+            yield wait_for_line
         finally:
             process.terminate()
             process.wait(timeout=SECONDS)
@@ -97,13 +97,13 @@ class Firefox:
     """One tab of a running Firefox.
 
     Attributes:
-        errors: what was written to the page's console as an error.
+        errors: the errors in the page's console.
     """
 
     def __init__(self, address: str) -> None:
         self.errors: list[str] = []
         self._number = 0
-        # In a thread of its own: in the test's, the loop of Playwright counts as running.
+        # In another thread, because Playwright's loop counts as running in that of the test.
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
         self._thread.start()
@@ -118,7 +118,7 @@ class Firefox:
         return await self._session.ws_connect(f"{address}/session", max_msg_size=0)
 
     def call(self, method: str, **parameters: Any) -> dict[str, Any]:
-        """Send a command and give its result; errors of the page that come meanwhile are kept."""
+        """Send a command, and return its result; errors of the page in the meantime are kept."""
         return self._run(self._call(method, parameters))
 
     def _run(self, coroutine: Coroutine[Any, Any, Result]) -> Result:
@@ -142,7 +142,7 @@ class Firefox:
         self.call("browsingContext.navigate", context=self._tab, url=url, wait="complete")
 
     def evaluate(self, expression: str) -> Any:
-        """The value of a JavaScript expression, by way of JSON."""
+        """Return the value of a JavaScript expression, transferred as JSON."""
         text = self.call(
             "script.evaluate",
             expression=f"JSON.stringify({expression})",
@@ -155,28 +155,32 @@ class Firefox:
     def until(self, condition: str) -> None:
         """Wait until a JavaScript condition over ``lw`` (window.linkwright) holds."""
         expression = f"((lw) => Boolean(lw && ({condition})))(window.linkwright)"
-        wait_until(lambda: self.evaluate(expression), what=f"{condition}; {self.errors}", pause=LOOK_EVERY)
+        wait_until(lambda: self.evaluate(expression), what=f"{condition}; {self.errors}", pause=POLL_PERIOD)
 
     def press(self, *keys: str) -> None:
-        """Press keys one after another, as WebDriver names them: a letter, or a code such as ``\\ue014`` (right)."""
-        actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
+        """Press keys one after another. WebDriver names them by a letter, or by a code such as ``\\ue014`` (right)."""
+        actions = [{"type": action_type, "value": key} for key in keys for action_type in ("keyDown", "keyUp")]
         source = {"type": "key", "id": "keyboard", "actions": actions}
         self.call("input.performActions", context=self._tab, actions=[source])
 
     def chord(self, modifier: str, key: str) -> None:
         """Press a key while a modifier is held down, named as in `press`."""
-        kinds = (("keyDown", modifier), ("keyDown", key), ("keyUp", key), ("keyUp", modifier))
-        source = {"type": "key", "id": "keyboard", "actions": [{"type": kind, "value": value} for kind, value in kinds]}
+        steps = (("keyDown", modifier), ("keyDown", key), ("keyUp", key), ("keyUp", modifier))
+        source = {
+            "type": "key",
+            "id": "keyboard",
+            "actions": [{"type": action_type, "value": value} for action_type, value in steps],
+        }
         self.call("input.performActions", context=self._tab, actions=[source])
 
     def point(self, x: float, y: float) -> None:
-        """Move the mouse to a place of the window, pixels."""
+        """Move the mouse to a position in the window, in pixels."""
         move = {"type": "pointerMove", "x": round(x), "y": round(y), "duration": 20}
         source = {"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": [move]}
         self.call("input.performActions", context=self._tab, actions=[source])
 
     def drag(self, x: float, y: float, right: float, down: float) -> None:
-        """Press the mouse at a place of the window, move it in five steps, and let go; pixels."""
+        """Drag the mouse from a position in the window in five steps, in pixels."""
         moves = [
             {"type": "pointerMove", "x": round(x + right * step / 5), "y": round(y + down * step / 5), "duration": 20}
             for step in range(6)
@@ -187,7 +191,7 @@ class Firefox:
         self.call("input.performActions", context=self._tab, actions=[source])
 
     def screenshot(self, selector: str) -> Image.Image:
-        """What is on the screen where the first element of a selector is."""
+        """Return a screenshot of the first element of a selector."""
         box = self.evaluate(f"document.querySelector({json.dumps(selector)}).getBoundingClientRect()")
         clip = {"type": "box", **{name: box[name] for name in ("x", "y", "width", "height")}}
         capture = self.call("browsingContext.captureScreenshot", context=self._tab, clip=clip)

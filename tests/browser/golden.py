@@ -1,4 +1,4 @@
-"""Small meshes with known bounds and colors, and robots made of them: what a page, and an export, must draw."""
+"""Small meshes with known bounds and colors, and robots with them: the expected drawing of a page and an export."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ STANDING = ((0.0, 0.0, 0.0), SIZE)
 GREEN = '<material name="green"><color rgba="0 0.8 0.2 1"/></material>'
 HALF = '<material name="half"><color rgba="0 0.8 0.2 0.5"/></material>'
 
-# name: file name, content, material and scale in the URDF -> bounds (least, most), color, opacity
+# name: file name, content, material and scale in the URDF -> bounds (minimum, maximum), color, opacity
 GOLDEN: dict[str, tuple[str, bytes, str, str, tuple[tuple[float, ...], tuple[float, ...]], str, float]] = {
     "stl_text": ("text.stl", stl_text(), GREEN, "", STANDING, "#00cc33", 1.0),
     "stl_binary": ("binary.stl", stl_binary(), HALF, "", STANDING, "#00cc33", 0.5),
@@ -91,12 +91,12 @@ def link(name: str, visual: str) -> str:
 
 
 def mesh(path: Path, material: str, scale: str = "") -> str:
-    scaled = f' scale="{scale}"' if scale else ""
-    return f'<visual><geometry><mesh filename="{path.as_uri()}"{scaled}/></geometry>{material}</visual>'
+    scale_attribute = f' scale="{scale}"' if scale else ""
+    return f'<visual><geometry><mesh filename="{path.as_uri()}"{scale_attribute}/></geometry>{material}</visual>'
 
 
 def golden_links(folder: Path) -> str:
-    """A link for each mesh of the golden set, whose files are written into a folder."""
+    """Return a link for each mesh of the golden set, and write their files to a folder."""
     links = []
     for name, (file, content, material, scale, *_) in GOLDEN.items():
         path = folder / name / file

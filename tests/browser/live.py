@@ -1,4 +1,4 @@
-"""A viewer in the test's own process, so that a test says at each moment what is published to it."""
+"""A viewer in the test's own process, so that a test controls every published message."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from tests.waiting import wait_until
 
 Result = TypeVar("Result")
 
-LOOK_EVERY = 0.05
-"""Seconds between two looks into a browser, which take milliseconds of four processes."""
+POLL_PERIOD = 0.05
+"""The pause in seconds between two checks of a browser, each of which costs four processes milliseconds."""
 
 FILE = """\
 Visualization Manager:
@@ -40,9 +40,9 @@ Visualization Manager:
 
 
 def configuration(displays: str, *, distance: float = 10.0, pitch: float = 0.6, yaw: float = 0.8) -> str:
-    """A .rviz file with an Orbit view around the origin of the frame ``base``; `displays` are its entries as YAML."""
-    indented = "".join(f"    {line}\n" for line in displays.strip("\n").splitlines())
-    return FILE.format(displays=indented.rstrip("\n"), distance=distance, pitch=pitch, yaw=yaw)
+    """Return a .rviz file with an Orbit view around the frame ``base``; `displays` are its entries as YAML."""
+    entries = "".join(f"    {line}\n" for line in displays.strip("\n").splitlines())
+    return FILE.format(displays=entries.rstrip("\n"), distance=distance, pitch=pitch, yaw=yaw)
 
 
 class LiveViewer:
@@ -68,7 +68,7 @@ class LiveViewer:
         self.run(self._start)
 
     def run(self, function: Callable[[], Result]) -> Result:
-        """Run a function, or a coroutine function, in the viewer's loop, and give its result."""
+        """Run a function or coroutine function in the viewer's loop, and return its result."""
 
         async def call() -> Any:
             result = function()
@@ -77,7 +77,7 @@ class LiveViewer:
         return asyncio.run_coroutine_threadsafe(call(), self._loop).result(timeout=60)
 
     def publish(self, topic: str, message: Any, qos: Any = 10) -> None:
-        """Publish a message; the publisher stays."""
+        """Publish a message, and keep the publisher."""
 
         def send() -> None:
             if topic not in self._publishers:
@@ -87,35 +87,35 @@ class LiveViewer:
         self.run(send)
 
     def place(self, child: str, *pose: float, parent: str = "base") -> None:
-        """Say where a frame always is: x y z, or x y z qx qy qz qw."""
-        full = (*pose, 0.0, 0.0, 0.0, 1.0) if len(pose) == 3 else pose
+        """Publish a static transform: x y z, or x y z qx qy qz qw."""
+        full_pose = (*pose, 0.0, 0.0, 0.0, 1.0) if len(pose) == 3 else pose
         transform = get_message("geometry_msgs/msg/TransformStamped")()
         transform.header.frame_id, transform.child_frame_id = parent, child
-        for part, names, numbers in (
-            (transform.transform.translation, "xyz", full[:3]),
-            (transform.transform.rotation, "xyzw", full[3:]),
+        for target, names, values in (
+            (transform.transform.translation, "xyz", full_pose[:3]),
+            (transform.transform.rotation, "xyzw", full_pose[3:]),
         ):
-            for name, number in zip(names, numbers, strict=True):
-                setattr(part, name, float(number))
+            for name, value in zip(names, values, strict=True):
+                setattr(target, name, float(value))
         self.publish("/tf_static", TFMessage(transforms=[transform]), STATIC_TF_PUBLISHER_QOS)
 
     def settle(self, page: Any) -> None:
-        """Wait until the one open page has all that the viewer has for it, and has drawn it."""
+        """Wait until the only open page has received and drawn everything."""
 
-        def sent() -> int | None:
-            (to_page,) = self.viewer._audience._pages
-            waiting = to_page._opening or to_page.outbox or to_page._reduced
-            return None if waiting else to_page.line._number
+        def last_number() -> int | None:
+            (viewer_page,) = self.viewer._audience._pages
+            is_sending = viewer_page._opening or viewer_page.outbox or viewer_page._reduced
+            return None if is_sending else viewer_page.line._number
 
-        def settled() -> bool:
-            number = self.run(sent)
-            read = "([number]) => window.linkwright?.received === number && window.linkwright.settled"
-            return number is not None and page.evaluate(read, [number]) and self.run(sent) == number
+        def is_settled() -> bool:
+            number = self.run(last_number)
+            expression = "([number]) => window.linkwright?.received === number && window.linkwright.settled"
+            return number is not None and page.evaluate(expression, [number]) and self.run(last_number) == number
 
-        wait_until(settled, 60, pause=LOOK_EVERY)
+        wait_until(is_settled, 60, pause=POLL_PERIOD)
 
     def status(self, name: str) -> dict[str, tuple[str, str]]:
-        """The status rows of a display: name -> level, text."""
+        """Return the status rows of a display: name -> level, text."""
 
         def read() -> dict[str, tuple[str, str]]:
             display = next(display for display in self.viewer.displays if display.config.name == name)
@@ -124,7 +124,7 @@ class LiveViewer:
         return self.run(read)
 
     def close(self) -> None:
-        """End the viewer and the thread."""
+        """Close the viewer, and end the thread."""
 
         async def end() -> None:
             await self.viewer.close()

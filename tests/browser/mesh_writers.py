@@ -1,4 +1,4 @@
-"""Mesh files of every kind, written by hand: a box of 0.1 x 0.2 x 0.3 m with a corner at the origin."""
+"""Mesh files of all formats, written by hand: a box of 0.1 x 0.2 x 0.3 m with a corner at the origin."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TRIANGLES = (
 
 
 def corners(scale: float = 1.0) -> list[tuple[float, float, float]]:
-    """x fastest."""
+    """Return the corners; x changes fastest."""
     return [
         (SIZE[0] * scale * (i & 1), SIZE[1] * scale * (i >> 1 & 1), SIZE[2] * scale * (i >> 2 & 1)) for i in range(8)
     ]
@@ -42,11 +42,13 @@ def stl_text() -> bytes:
 
 
 def stl_binary(*, color: bool = False) -> bytes:
-    """With `color`, as Materialise Magics writes colors; RViz knows none."""
+    """Return a binary STL; `color` adds the colors of Materialise Magics, which RViz ignores."""
     header = b"COLOR=" + bytes((0, 255, 0, 255)) if color else b""
     points = corners()
     facets = b"".join(
-        struct.pack("<12fH", 0, 0, 0, *(part for corner in triangle for part in points[corner]), 0x801F if color else 0)
+        struct.pack(
+            "<12fH", 0, 0, 0, *(value for corner in triangle for value in points[corner]), 0x801F if color else 0
+        )
         for triangle in TRIANGLES
     )
     return header.ljust(80, b"\0") + struct.pack("<I", len(TRIANGLES)) + facets
@@ -68,20 +70,20 @@ def dae(
     scale: float | None = None,
     extra: str = "",
 ) -> bytes:
-    """A COLLADA file.
+    """Return a COLLADA file.
 
     Args:
         up: its up axis.
-        unit: meters; the box has its size whatever it is, unless `scale` is given.
+        unit: its unit in meters; the box keeps its size, unless `scale` is given.
         node: the nodes around ``GEOMETRY``.
-        diffuse: what its material says, which it has not without.
-        scale: what the corners are multiplied with.
-        extra: more of its material.
+        diffuse: the content of `<diffuse>`; without it, there is no material.
+        scale: the factor of the corners.
+        extra: more elements of the material.
     """
-    points = " ".join(str(part) for point in corners(1 / unit if scale is None else scale) for part in point)
+    points = " ".join(str(value) for point in corners(1 / unit if scale is None else scale) for value in point)
     indices = " ".join(str(corner) for triangle in TRIANGLES for corner in triangle)
     effect = f"<effect id='e'><profile_COMMON><technique sid='t'><lambert><diffuse>{diffuse}</diffuse>{extra}</lambert>"
-    look = (
+    material = (
         f"<library_effects>{effect}</technique></profile_COMMON></effect></library_effects>"
         "<library_materials><material id='m' name='m'><instance_effect url='#e'/></material></library_materials>"
     )
@@ -93,7 +95,7 @@ def dae(
     return f"""<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit name="u" meter="{unit}"/><up_axis>{up}</up_axis></asset>
-{look if diffuse else ""}
+{material if diffuse else ""}
 <library_geometries><geometry id="g"><mesh>
 <source id="p"><float_array id="a" count="24">{points}</float_array><technique_common>
 <accessor source="#a" count="8" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
@@ -140,10 +142,10 @@ def glb(*, color: tuple[float, ...] | None = None, rotation: tuple[float, ...] |
 
 
 def png(*color: int) -> bytes:
-    """An image of one pixel."""
+    """Return an image of one pixel."""
 
-    def chunk(kind: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    def chunk(chunk_type: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + chunk_type + data + struct.pack(">I", zlib.crc32(chunk_type + data))
 
     header = struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0)
     return (

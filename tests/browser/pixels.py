@@ -1,4 +1,4 @@
-"""Colors on the screen, read from screenshots."""
+"""Colors on the screen, from screenshots."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from PIL import Image
 Color = tuple[int, int, int]
 
 
-def colors_at(page: Any, *places: tuple[float, float]) -> list[Color]:
-    """The colors of the page at some places, pixels from its upper left corner, at one moment."""
-    xs, ys = ([math.floor(place[axis]) for place in places] for axis in (0, 1))
+def colors_at(page: Any, *pixels: tuple[float, float]) -> list[Color]:
+    """Return the page's colors at some pixels, all from one screenshot."""
+    xs, ys = ([math.floor(pixel[axis]) for pixel in pixels] for axis in (0, 1))
     x, y = min(xs), min(ys)
     clip = {"x": x, "y": y, "width": max(xs) - x + 1, "height": max(ys) - y + 1}
     with Image.open(io.BytesIO(page.screenshot(clip=clip))) as image:

@@ -1,4 +1,4 @@
-"""Everything that the page can show is without a finding of axe-core, in dark and in light colors."""
+"""All views of the page pass axe-core, in dark and in light colors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.browser.arm import write_arm
 from tests.browser.axe import violations
 from tests.browser.conftest import SECONDS, becomes, state, until
 from tests.browser.live import LiveViewer, configuration
-from tests.browser.test_modeling import modeled
+from tests.browser.test_modeling import open_modeling
 from tests.browser.test_overlays import unfold
 
 pytestmark = pytest.mark.browser
@@ -31,8 +31,8 @@ DISPLAYS = """
 OVERLAYS = ".overlay"
 
 
-def opened(page: Page, name: str) -> str:
-    """Opens a panel, or brings it to the front, and gives the selector of the group that it is in."""
+def open_panel(page: Page, name: str) -> str:
+    """Open a panel or bring it to the front, and return the selector of its group."""
     tab = page.locator(".dv-tab", has_text=name)
     if tab.count() == 0:
         page.get_by_role("button", name="Panels", exact=True).click()
@@ -42,20 +42,20 @@ def opened(page: Page, name: str) -> str:
     return f".dv-groupview:has([data-tab-panel-id='{tab.first.get_attribute('data-tab-panel-id')}'])"
 
 
-def found_in_panels(page: Page, *names: str) -> list[str]:
-    return [f"{name}: {violation}" for name in names for violation in violations(page, opened(page, name))]
+def violations_in_panels(page: Page, *names: str) -> list[str]:
+    return [f"{name}: {violation}" for name in names for violation in violations(page, open_panel(page, name))]
 
 
-def found_in_menu(page: Page) -> list[str]:
-    """What is found in the menu that was opened, which goes then."""
+def violations_in_menu(page: Page) -> list[str]:
+    """Return the violations in the open menu, and close it."""
     page.get_by_role("menu").wait_for()
     found_violations = violations(page, ".menu")
     page.keyboard.press("Escape")
     return found_violations
 
 
-def found_in_dialog(page: Page, keys: str) -> list[str]:
-    """What is found in the dialog that keys open."""
+def violations_in_dialog(page: Page, keys: str) -> list[str]:
+    """Return the violations in the dialog that some keys open."""
     page.keyboard.press(keys)
     page.locator("dialog[open]").wait_for()
     found_violations = violations(page, "dialog")
@@ -79,15 +79,15 @@ def test_robot_page_and_description_panels_pass_axe(start, open_page, tmp_path: 
     assert violations(page) == []
     for name in ("File", "Panels", "Share", "Colors"):
         page.get_by_role("button", name=name, exact=True).click()
-        assert found_in_menu(page) == []
+        assert violations_in_menu(page) == []
     for keys in ("?", "Control+o", "Control+Shift+s"):
-        assert found_in_dialog(page, keys) == []
-    own = ("Joints", "Links", "Diagram", "Source", "Joint Table", "Edit robot")
-    assert found_in_panels(page, "Views", "Tool Properties", "Selection", "Transformation", *own) == []
+        assert violations_in_dialog(page, keys) == []
+    panels = ("Joints", "Links", "Diagram", "Source", "Joint Table", "Edit robot")
+    assert violations_in_panels(page, "Views", "Tool Properties", "Selection", "Transformation", *panels) == []
     file.write_text(file.read_text().replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()
     assert violations(page, OVERLAYS) == []
-    assert found_in_panels(page, "Diagnostics") == []
+    assert violations_in_panels(page, "Diagnostics") == []
 
 
 RING = """() => {
@@ -101,15 +101,15 @@ RING = """() => {
 
 def test_keyboard_focus_has_visible_ring(start, open_page, tmp_path: Path):
     page = open_page(start("view", str(write_arm(tmp_path))))
-    reached: list[str] = []
+    focused_elements: list[str] = []
     for _ in range(150):
         page.keyboard.press("Tab")
         name, has_ring, is_end = page.evaluate(RING)
         if is_end:
             break
         assert has_ring, name
-        reached.append(name)
-    assert len(reached) > 40, reached
+        focused_elements.append(name)
+    assert len(focused_elements) > 40, focused_elements
 
 
 def test_displays_menu_and_dialogs_pass_axe(live: Callable[..., LiveViewer], open_page):
@@ -118,18 +118,18 @@ def test_displays_menu_and_dialogs_pass_axe(live: Callable[..., LiveViewer], ope
     row = page.locator("[data-key='display-1'] .row-title")
     row.click()
     for keys in ("Alt+a", "F2"):
-        assert found_in_dialog(page, keys) == []
+        assert violations_in_dialog(page, keys) == []
     row.dblclick()
     assert violations(page) == []
     row.click(button="right")
-    assert found_in_menu(page) == []
+    assert violations_in_menu(page) == []
 
 
-def heard(say: Callable[[], None], answer: Locator) -> None:
-    """Say something until the page shows it: it may listen a moment later than it is asked to."""
+def publish_until_shown(publish: Callable[[], None], answer: Locator) -> None:
+    """Publish a text until the page shows it; the page may subscribe a moment later."""
 
     def is_shown() -> bool:
-        say()
+        publish()
         return answer.count() > 0
 
     becomes(is_shown, True)
@@ -150,41 +150,41 @@ def test_live_panels_pass_axe(live: Callable[..., LiveViewer], open_page):
 
     logger = viewer.run(join)
     page = open_page(viewer, wait=False)
-    opened(page, "Plots")
+    open_panel(page, "Plots")
     page.get_by_role("button", name="Add a series").first.click()
-    assert found_in_panels(page, "Plots") == []
+    assert violations_in_panels(page, "Plots") == []
     for text in ("/joint_states.position[0]", "/joint_states.wrong"):
         page.get_by_role("combobox", name="Topic and field").fill(text)
         page.keyboard.press("Enter")
         say_joints()
         page.get_by_role("button", name="Add a series").first.click()
-    heard(say_joints, page.get_by_text("has no field"))
-    assert found_in_panels(page, "Plots") == []
-    opened(page, "Topics")
+    publish_until_shown(say_joints, page.get_by_text("has no field"))
+    assert violations_in_panels(page, "Plots") == []
+    open_panel(page, "Topics")
     page.get_by_role("button", name="Last message of /joint_states").click()
-    heard(say_joints, page.locator(".topic-message:visible").get_by_text("position"))
-    assert found_in_panels(page, "Topics") == []
-    opened(page, "Node graph")
+    publish_until_shown(say_joints, page.locator(".topic-message:visible").get_by_text("position"))
+    assert violations_in_panels(page, "Topics") == []
+    open_panel(page, "Node graph")
     page.locator(".vertex[data-id='node:/arm']").click()
-    assert found_in_panels(page, "Node graph") == []
-    opened(page, "Parameters")
+    assert violations_in_panels(page, "Node graph") == []
+    open_panel(page, "Parameters")
     page.get_by_role("option", name="/arm").click()
     page.get_by_role("textbox", name="speed").fill("fast")
     page.keyboard.press("Enter")
-    assert found_in_panels(page, "Parameters") == []
-    viewer.run(lambda: logger.error("the arm is hot"))  # what is older than 10 s is told to nobody who asks then
-    opened(page, "Log")
+    assert violations_in_panels(page, "Parameters") == []
+    viewer.run(lambda: logger.error("the arm is hot"))  # a late subscriber gets no records older than 10 s
+    open_panel(page, "Log")
     page.locator(".virtual-list").get_by_text("the arm is hot").click()
-    assert found_in_panels(page, "Log") == []
-    opened(page, "Voice")
+    assert violations_in_panels(page, "Log") == []
+    open_panel(page, "Voice")
     page.locator(".word-box summary").click()
     answer = get_message("std_msgs/msg/String")(data="Turning left.")
-    heard(lambda: viewer.publish("/voice/response", answer), page.locator(".voice-said.response"))
-    assert found_in_panels(page, "Voice", "Teleop") == []
+    publish_until_shown(lambda: viewer.publish("/voice/response", answer), page.locator(".voice-said.response"))
+    assert violations_in_panels(page, "Voice", "Teleop") == []
 
 
 def test_world_modeling_passes_axe(start, open_page, tmp_path: Path):
-    page, _ = modeled(start, open_page, tmp_path)
+    page, _ = open_modeling(start, open_page, tmp_path)
     page.get_by_role("option", name="crate").click()
     page.locator("[data-key='pose/0'] input").wait_for()
     assert violations(page) == []
@@ -209,12 +209,14 @@ def test_token_form_and_page_without_webgl_pass_axe(live: Callable[..., LiveView
 
 
 def test_exported_page_passes_axe(browser: Browser, tmp_path: Path):
-    out = tmp_path / "arm.html"
-    subprocess.run([sys.executable, "-m", "linkwright", "export", str(out), str(write_arm(tmp_path))], check=True)
+    exported_file = tmp_path / "arm.html"
+    subprocess.run(
+        [sys.executable, "-m", "linkwright", "export", str(exported_file), str(write_arm(tmp_path))], check=True
+    )
     with browser.new_context(locale="en-US", bypass_csp=True) as context:
         context.set_default_timeout(1000 * SECONDS)
         page = context.new_page()
-        page.goto(out.as_uri())
+        page.goto(exported_file.as_uri())
         page.get_by_role("slider").first.wait_for()
         assert violations(page) == []
 
@@ -224,7 +226,7 @@ def test_recording_menu_and_playback_pass_axe(start, open_page, tmp_path: Path):
     until(page, "lw.timeline?.live && lw.timeline.length > 2")
     record = page.get_by_role("button", name="Record", exact=True)
     record.click()
-    assert found_in_menu(page) == []
+    assert violations_in_menu(page) == []
     record.click()
     page.get_by_role("menuitem", name="Record chosen topics…").click()
     page.locator("dialog[open] [type=checkbox]").first.wait_for()
@@ -254,9 +256,9 @@ def test_robot_editing_and_comparison_pass_axe(start, open_page, tmp_path: Path)
         page.locator("[data-number=xyz2]").press("Enter")
         if text == "0.77":
             page.locator(".edit-diff, .edit-refusal").first.wait_for()
-        assert found_in_panels(page, "Edit robot") == []
+        assert violations_in_panels(page, "Edit robot") == []
     new = tmp_path / "new.xacro"
     new.write_text(file.read_text().replace('name="fore"', 'name="lower"').replace('link="fore"', 'link="lower"'))
-    both = open_page(start("view", str(file), str(new)), wait=False)
-    both.locator(".difference-group").first.wait_for()
-    assert violations(both) == []
+    comparison_page = open_page(start("view", str(file), str(new)), wait=False)
+    comparison_page.locator(".difference-group").first.wait_for()
+    assert violations(comparison_page) == []

@@ -1,4 +1,4 @@
-"""A description that needs arguments: the page asks for them, and shows the robot once they are given."""
+"""A description with required arguments: the page asks for them, and then shows the robot."""
 
 from __future__ import annotations
 

@@ -55,11 +55,11 @@ def test_ctrl_s_saves_source_from_any_focus(start, open_page, workspace):
     page = open_classroom(start, open_page, workspace)
     page.get_by_role("button", name="robot.urdf").click()
     until(page, "lw.panels.source.editor?.file?.endsWith('robot.urdf')")
-    for place in (".lesson-body", ".canvas-box", ".file-tree-list"):
+    for selector in (".lesson-body", ".canvas-box", ".file-tree-list"):
         page.locator(".cm-content").click()
         page.keyboard.insert_text("<!-- -->")
         until(page, "lw.panels.source.editor.unsaved.length === 1")
-        page.locator(place).click()
+        page.locator(selector).click()
         page.keyboard.press("Control+s")
         until(page, "lw.panels.source.editor.unsaved.length === 0")
         page.keyboard.press("Control+s")  # once more does no harm
@@ -72,14 +72,14 @@ def test_ctrl_s_saves_source_from_any_focus(start, open_page, workspace):
 
 @pytest.mark.parametrize("language", ["en", "zh"])
 def test_learner_completes_two_steps(start, open_page, workspace, language):
-    words = WORDS[language]
+    texts = WORDS[language]
     page = open_classroom(start, open_page, workspace)
     if language == "zh":
         page.get_by_role("button", name="中文").click()
         page.wait_for_selector("text=一个方块")
-    assert page.locator(".lesson-body h2").inner_text() == words["box"]
+    assert page.locator(".lesson-body h2").inner_text() == texts["box"]
     until(page, f"{CHECKS}?.checks.some(check => !check.is_passed)")
-    page.get_by_role("button", name=words["hint"]).click()
+    page.get_by_role("button", name=texts["hint"]).click()
     page.wait_for_selector(".lesson-hint")
     page.get_by_role("button", name="robot.urdf").click()
     until(page, "lw.panels.source.editor?.file?.endsWith('robot.urdf')")
@@ -90,11 +90,11 @@ def test_learner_completes_two_steps(start, open_page, workspace, language):
     page.keyboard.press("Control+s")
     until(page, is_passed("one-link"))
     until(page, "lw.ready && lw.robots?.length !== 0")
-    page.get_by_role("button", name=words["next"]).last.click()
+    page.get_by_role("button", name=texts["next"]).last.click()
     until(page, "lw.panels.lesson.step === '01-one-link/mass'")
-    page.locator(".lesson-foot button", has_text=words["solution"]).click()
-    page.locator("dialog button", has_text=words["solution"]).click()
-    page.wait_for_selector(f".lesson-hint:has-text('{words['right']}')")
+    page.locator(".lesson-foot button", has_text=texts["solution"]).click()
+    page.locator("dialog button", has_text=texts["solution"]).click()
+    page.wait_for_selector(f".lesson-hint:has-text('{texts['right']}')")
     page.locator(".lesson-answer").fill("12.5")
     page.locator(".lesson-answer").press("Enter")
     until(page, is_passed("mass"))
@@ -161,9 +161,9 @@ def test_lesson_texts_fit_and_only_commands_have_copy_button(start, open_page, w
     page = open_page(start("learn", str(workspace)), wait=False, size=(1024, 700))
     until(page, f"{CHECKS}?.checked_at")
     assert page.locator(".source-heading").first.is_hidden()
-    place = page.locator(".lesson-place")
-    assert "0 of 80 steps passed" in place.inner_text()
-    assert place.evaluate("element => element.scrollWidth <= element.clientWidth")
+    position = page.locator(".lesson-place")
+    assert "0 of 80 steps passed" in position.inner_text()
+    assert position.evaluate("element => element.scrollWidth <= element.clientWidth")
     page.get_by_role("button", name="Steps").click()
     page.locator(".outline-step", has_text="A package for nodes").click()
     until(page, "lw.panels.lesson.step === '05-nodes/package'")

@@ -1,4 +1,4 @@
-"""In windows of three sizes and both languages: texts of all controls are whole, and the scene has its half."""
+"""Windows of three sizes in both languages: no control's text is clipped, and the scene has half of the window."""
 
 from __future__ import annotations
 
@@ -127,9 +127,9 @@ def test_row_of_clicked_link_is_visible_above_help(start: Start, browser: Browse
     joint = '<joint name="j{0}" type="fixed"><parent link="base_link"/><child link="l{0}"/></joint><link name="l{0}"/>'
     base = '<link name="base_link"/>'
     last = '<link name="z"><visual><geometry><box size="1 1 1"/></geometry></visual></link>'
-    tied = '<joint name="tied" type="fixed"><parent link="base_link"/><child link="z"/></joint>'
+    last_joint = '<joint name="tied" type="fixed"><parent link="base_link"/><child link="z"/></joint>'
     (tmp_path / "many.urdf").write_text(
-        f'<robot name="m">{base}{"".join(map(joint.format, range(30)))}{last}{tied}</robot>'
+        f'<robot name="m">{base}{"".join(map(joint.format, range(30)))}{last}{last_joint}</robot>'
     )
     program = start("view", "many.urdf")
     page = browser.new_page(viewport={"width": 1280, "height": 800}, locale="en-US")
@@ -139,12 +139,12 @@ def test_row_of_clicked_link_is_visible_above_help(start: Start, browser: Browse
     assert box is not None
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     page.locator(".displays-panel .help").wait_for()
-    seen = """() => {
+    is_visible = """() => {
       const row = document.querySelector(".displays-panel .row.selected")?.getBoundingClientRect();
       const help = document.querySelector(".displays-panel .help").getBoundingClientRect();
       return row !== undefined && row.height > 0 && row.bottom <= help.top + 1;
     }"""
-    becomes(lambda: page.evaluate(seen), True)
+    becomes(lambda: page.evaluate(is_visible), True)
     assert page.locator(".displays-panel .row.selected").inner_text().startswith("z")
     page.close()
 

@@ -43,7 +43,7 @@ BLUE, YELLOW, RED, GRAY = "#56b4e9", "#f0c020", "#cc3377", "#c4ccd6"
 
 @pytest.fixture
 def files(tmp_path: Path) -> tuple[Path, Path]:
-    """The old file and the new one."""
+    """Return the old file and the new one."""
     folder = tmp_path / "models"
     folder.mkdir()
     old, new = folder / "old.urdf", folder / "new.urdf"
@@ -53,7 +53,7 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
 
 
 def looks(page: Page, index: int) -> dict[str, tuple[str, float]]:
-    """Color and opacity of each link of the first or second robot."""
+    """Return color and opacity of each link of the first or second robot."""
     robots = [display["drawn"] for display in state(page, "displays") if display["class"].endswith("RobotModel")]
     visuals = {name: text["visuals"] for name, text in robots[index]["links"].items()}
     return {
@@ -88,7 +88,7 @@ def test_both_robots_are_drawn_with_difference_colors(start, open_page, files):
 
 
 def pixels(page: Page) -> list[tuple[int, int, int]]:
-    """Colors of the scene at places in rows and columns."""
+    """Return colors of the scene on a grid of pixels."""
     until(page, "lw.settled")
     box = page.locator(".canvas-box canvas").first.bounding_box()
     assert box is not None
@@ -101,12 +101,12 @@ def pixels(page: Page) -> list[tuple[int, int, int]]:
 
 
 def show(page: Page, title: str, *, on: bool) -> None:
-    """Switch a robot on or off."""
+    """Toggle a robot."""
     box = page.get_by_title(title, exact=False).get_by_role("checkbox")
     count = "lw.displays.filter((display) => display.class.endsWith('RobotModel') && display.enabled).length"
-    before = page.evaluate(f"() => {{ const lw = window.linkwright; return {count}; }}")
+    count_before = page.evaluate(f"() => {{ const lw = window.linkwright; return {count}; }}")
     box.set_checked(on)
-    until(page, f"{count} === {before + (1 if on else -1)}")
+    until(page, f"{count} === {count_before + (1 if on else -1)}")
 
 
 def test_identical_old_robot_is_hidden(start, open_page, files):
@@ -146,11 +146,11 @@ def test_difference_selects_link_and_opens_both_sources(start, open_page, files)
     page = open_page(start("view", *map(str, files)))
     group(page, "lidar").locator("button.difference-name").click()
     page.locator(".selection-card strong", has_text="lidar").wait_for()
-    near = state(page, "view.distance")
+    distance = state(page, "view.distance")
     page.keyboard.press("Escape")
     group(page, "camera").locator("button.difference-name").click()
     page.locator(".selection-card strong", has_text="camera").wait_for()
-    assert state(page, "view.distance") == pytest.approx(near, rel=0.05), "both spheres are of one size"
+    assert state(page, "view.distance") == pytest.approx(distance, rel=0.05), "both spheres are of one size"
     group(page, "turn", "Joint").locator(".difference-values").click()
     page.locator(".selection-card strong", has_text="arm").wait_for()
     assert "0 0 0.6" in group(page, "turn", "Joint").inner_text()
@@ -184,8 +184,8 @@ def test_git_commit_is_compared_as_old_version(start, open_page, files):
     folder = new.parent
     identity = ["-c", "user.name=t", "-c", "user.email=t@example.org"]
     new.write_text(OLD, encoding="utf-8")
-    for words in (["init", "-q"], ["add", "new.urdf"], [*identity, "commit", "-qm", "one"]):
-        subprocess.run(["git", *words], cwd=folder, check=True)
+    for arguments in (["init", "-q"], ["add", "new.urdf"], [*identity, "commit", "-qm", "one"]):
+        subprocess.run(["git", *arguments], cwd=folder, check=True)
     new.write_text(NEW, encoding="utf-8")
     page = open_page(start("view", str(new), "--against", "HEAD"))
     page.get_by_text("5 differences").wait_for()
@@ -207,7 +207,7 @@ def test_comparison_list_is_in_front_in_small_window(start, open_page, files):
     assert first is not None
     assert first["y"] + first["height"] <= panel["y"] + panel["height"]
     groups = [group.bounding_box() for group in page.locator(".difference-group").all()]
-    assert max(group["x"] + group["width"] for group in groups) > 700, "they stand in columns"
+    assert max(group["x"] + group["width"] for group in groups) > 700, "the groups are in columns"
 
 
 def test_comparison_panel_passes_axe(start, open_page, files):
@@ -219,10 +219,10 @@ def test_comparison_panel_passes_axe(start, open_page, files):
 
 def test_exported_review_shows_both_robots_list_and_joint_sliders(open_file, files, tmp_path):  # noqa: F811 - the fixture
     old, new = files
-    out = tmp_path / "review.html"
-    export(out, old, str(new))
-    assert str(tmp_path) not in out.read_text(encoding="utf-8")
-    page = open_file(out)
+    exported_file = tmp_path / "review.html"
+    export(exported_file, old, str(new))
+    assert str(tmp_path) not in exported_file.read_text(encoding="utf-8")
+    page = open_file(exported_file)
     assert page.locator(".comparison-count").inner_text() == "5 differences"
     becomes(lambda: looks(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
     assert looks(page, 0)["lidar"] == (BLUE, 1)

@@ -1,4 +1,4 @@
-"""The File menu, displays of a page's own, and the page as a whole: keyboard and colors."""
+"""The File menu, the displays of a single page, keyboard navigation and themes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ACTIVE = "document.activeElement"
 
 
 @pytest.fixture(autouse=True)
-def _state_of_the_user(tmp_path, monkeypatch):
+def _user_state(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
 
 
@@ -27,8 +27,8 @@ def row(page, identity: str):
     return page.locator(f"[data-key='{identity}'] .row-title")
 
 
-def test_configuration_file_is_saved_and_opened(grouped, tmp_path: Path):
-    _, page = grouped
+def test_configuration_file_is_saved_and_opened(grouped_displays, tmp_path: Path):
+    _, page = grouped_displays
     path = tmp_path / "mine.rviz"
     page.keyboard.press("Control+s")  # it has no file yet
     page.get_by_label("File name").fill(str(path))
@@ -57,8 +57,8 @@ def test_configuration_file_is_saved_and_opened(grouped, tmp_path: Path):
     assert page.get_by_role("menuitem", name="mine.rviz").get_attribute("title") == str(path)
 
 
-def test_configuration_file_is_downloaded_and_uploaded(grouped, tmp_path: Path):
-    viewer, page = grouped
+def test_configuration_file_is_downloaded_and_uploaded(grouped_displays, tmp_path: Path):
+    viewer, page = grouped_displays
     text = viewer.viewer.config.text()
     with page.expect_download() as downloads:
         page.get_by_role("button", name="File", exact=True).click()
@@ -74,33 +74,33 @@ def test_configuration_file_is_downloaded_and_uploaded(grouped, tmp_path: Path):
     until(page, "lw.displays[3].name === 'Sonar'")
 
 
-def test_page_can_use_its_own_displays(grouped, open_page):
-    viewer, page = grouped
-    other = open_page(viewer, wait=False)
-    other.wait_for_selector("[data-key='display-4']")
-    other.get_by_role("button", name="Own", exact=True).click()
-    other.wait_for_url("**displays=own**")
-    other.wait_for_selector("[data-key='display-8']")
-    row(other, "display-5").click()
-    other.keyboard.press("Delete")
-    until(other, "lw.displays.length === 3")
+def test_page_can_use_its_own_displays(grouped_displays, open_page):
+    viewer, page = grouped_displays
+    other_page = open_page(viewer, wait=False)
+    other_page.wait_for_selector("[data-key='display-4']")
+    other_page.get_by_role("button", name="Own", exact=True).click()
+    other_page.wait_for_url("**displays=own**")
+    other_page.wait_for_selector("[data-key='display-8']")
+    row(other_page, "display-5").click()
+    other_page.keyboard.press("Delete")
+    until(other_page, "lw.displays.length === 3")
     assert len(names(page)) == 4
-    other.reload()
-    other.wait_for_selector("[data-key='display-8']")
-    assert len(names(other)) == 3
-    other.get_by_role("button", name="Shared", exact=True).click()
-    other.wait_for_selector("[data-key='display-1']")
-    assert len(names(other)) == 4
+    other_page.reload()
+    other_page.wait_for_selector("[data-key='display-8']")
+    assert len(names(other_page)) == 3
+    other_page.get_by_role("button", name="Shared", exact=True).click()
+    other_page.wait_for_selector("[data-key='display-1']")
+    assert len(names(other_page)) == 4
 
 
-def test_keyboard_reaches_all_controls_and_dialogs_trap_focus(grouped):
-    _, page = grouped
-    reached = set()
+def test_keyboard_reaches_all_controls_and_dialogs_trap_focus(grouped_displays):
+    _, page = grouped_displays
+    focused = set()
     page.locator("body").click(position={"x": 640, "y": 8})
     for _ in range(40):
         page.keyboard.press("Tab")
-        reached.add(page.evaluate(f"({ACTIVE}.getAttribute('aria-label') || {ACTIVE}.textContent).trim()"))
-    assert {"File", "Panels", "Add", "Filter displays and properties"} <= reached
+        focused.add(page.evaluate(f"({ACTIVE}.getAttribute('aria-label') || {ACTIVE}.textContent).trim()"))
+    assert {"File", "Panels", "Add", "Filter displays and properties"} <= focused
     page.get_by_role("button", name="File", exact=True).focus()
     page.keyboard.press("ArrowRight")
     page.keyboard.press("ArrowDown")
@@ -117,8 +117,8 @@ def test_keyboard_reaches_all_controls_and_dialogs_trap_focus(grouped):
     page.wait_for_selector(".add-dialog", state="detached")
 
 
-def test_theme_choice_is_remembered(grouped):
-    _, page = grouped
+def test_theme_choice_is_remembered(grouped_displays):
+    _, page = grouped_displays
     page.emulate_media(color_scheme="dark")
     page.wait_for_function("() => document.documentElement.dataset.theme === 'dark'")
     background = "getComputedStyle(document.body).backgroundColor"

@@ -1,4 +1,4 @@
-"""The panels of the description: tree, diagram, source and joint table are about one and the same element."""
+"""The panels of the description: tree, diagram, source and joint table show the same element."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_clicked_link_is_selected_and_marked_in_both_sources(page, arm):
     until(page, "lw.panels.source.origin.file.endsWith('segment.xacro') && lw.panels.source.origin.marks.length === 1")
     assert marks(page, "origin") == [SEGMENT_JOINT]
 
-    # A line of a macro stands for the elements of all calls, one click after another.
+    # A line of a macro belongs to an element of each call; each click selects the next one.
     line = page.locator('.source-pane >> nth=0 >> .source-line[data-line="20"]')
     line.click()
     until(page, "lw.description.focus.name === 'fore_joint' && lw.selected.link === 'fore'")
@@ -94,10 +94,10 @@ def test_diagram_and_joint_table_show_and_select_all_elements(page):
     until(page, "lw.description.focus.name === 'slide_joint'")
     page.locator('.node[data-link="base"] .name').click()
     until(page, "lw.selected.link === 'base'")
-    before = state(page, "panels.diagram.scale")
+    scale = state(page, "panels.diagram.scale")
     page.locator(".diagram").hover()
     page.mouse.wheel(0, -480)
-    until(page, f"Math.abs(lw.panels.diagram.scale / {before} - 2) < 0.01")
+    until(page, f"Math.abs(lw.panels.diagram.scale / {scale} - 2) < 0.01")
 
     open_panel(page, "Joint Table")
     row = page.locator('tr[data-joint="fore_joint"] td')
@@ -114,7 +114,7 @@ def test_diagram_and_joint_table_show_and_select_all_elements(page):
 
 
 def test_edited_link_flashes_and_finding_leads_to_source(page, arm):
-    page.locator('.link-row[data-link="fore"]').wait_for()  # what lights up is there
+    page.locator('.link-row[data-link="fore"]').wait_for()  # wait for the highlighted row
     revision = state(page, "description.revision")
     page.evaluate("""() => {
         window.lit = new Set();
@@ -144,7 +144,7 @@ def test_robot_broken_at_start_is_shown_without_tf_once_fixed(start, open_page, 
     file.write_text(good.replace("</robot>", "<link/></robot>"))
     page = open_page(start("view", str(file)), wait=False)
     page.locator(".banner").wait_for()
-    page.locator(".waiting").wait_for(state="hidden")  # one thing is said, and the banner says it
+    page.locator(".waiting").wait_for(state="hidden")  # only the banner shows the reason
     file.write_text(good)
     until(page, "lw.robot?.visuals > 0 && lw.ready")
     page.locator(".banner").wait_for(state="hidden")

@@ -1,4 +1,4 @@
-"""The Displays panel: displays that come, go and move, and how that is undone."""
+"""The Displays panel: adding, removing and moving displays, and undo."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ def row(page, identity: str):
     return page.locator(f"[data-key='{identity}'] .row-title")
 
 
-def saved(viewer) -> list[dict]:
+def saved_displays(viewer) -> list[dict]:
     return yaml.safe_load(viewer.viewer.config.text())["Visualization Manager"]["Displays"]
 
 
-def test_display_added_by_type_can_be_undone(grouped):
-    viewer, page = grouped
+def test_display_added_by_type_can_be_undone(grouped_displays):
+    viewer, page = grouped_displays
     row(page, "display-2").click()
     page.keyboard.press("Alt+a")
     page.keyboard.type("points of a cloud")
@@ -49,15 +49,15 @@ def test_display_added_by_type_can_be_undone(grouped):
     until(page, "lw.displays.length === 5")
     assert names(page) == ["Grid", "Marks", "Axes", "Radar", "Cloud"]
     page.wait_for_function("document.title.startsWith('● ')")
-    assert saved(viewer)[1]["Displays"][2]["Name"] == "Cloud"
+    assert saved_displays(viewer)[1]["Displays"][2]["Name"] == "Cloud"
     page.keyboard.press("Control+z")
     until(page, "lw.displays.length === 4")
     page.keyboard.press("Control+Shift+z")
     until(page, "lw.displays.length === 5")
 
 
-def test_display_is_added_by_topic(grouped):
-    viewer, page = grouped
+def test_display_is_added_by_topic(grouped_displays):
+    viewer, page = grouped_displays
     viewer.publish("/found", PointStamped())
     viewer.publish("/other/robot_description", String())
     page.get_by_role("button", name="Add", exact=True).click()
@@ -67,11 +67,11 @@ def test_display_is_added_by_topic(grouped):
     page.locator(".choice-row", has_text="PointStamped").click()
     page.get_by_role("dialog").get_by_role("button", name="Add", exact=True).click()
     until(page, "lw.displays.length === 5")
-    assert saved(viewer)[2]["Topic"]["Value"] == "/found"
+    assert saved_displays(viewer)[2]["Topic"]["Value"] == "/found"
 
 
-def test_displays_are_renamed_duplicated_and_removed_by_keys(grouped):
-    viewer, page = grouped
+def test_displays_are_renamed_duplicated_and_removed_by_keys(grouped_displays):
+    viewer, page = grouped_displays
     row(page, "display-3").click()
     page.keyboard.press("F2")
     page.keyboard.type("Origin")
@@ -91,8 +91,8 @@ def test_displays_are_renamed_duplicated_and_removed_by_keys(grouped):
     assert not viewer.viewer.manager.history.has_unsaved_edits
 
 
-def test_display_keys_are_ignored_on_property_rows(grouped):
-    _, page = grouped
+def test_display_keys_are_ignored_on_property_rows(grouped_displays):
+    _, page = grouped_displays
     row(page, "display-1").click()
     page.keyboard.press("ArrowRight")
     row(page, "display-1/Alpha").click(position={"x": 30, "y": 8})
@@ -105,8 +105,8 @@ def test_display_keys_are_ignored_on_property_rows(grouped):
     page.wait_for_function("() => document.activeElement?.matches('[role=treeitem]')")
 
 
-def test_disabled_group_disables_its_displays(grouped):
-    _, page = grouped
+def test_disabled_group_disables_its_displays(grouped_displays):
+    _, page = grouped_displays
     page.locator("[data-key='display-2'] .check").click()
     until(page, "lw.displays.every((display) => display.enabled === (display.name === 'Grid'))")
     assert page.locator("[data-key='display-3'] .check").is_checked()
@@ -114,11 +114,11 @@ def test_disabled_group_disables_its_displays(grouped):
     until(page, "lw.displays.every((display) => display.enabled)")
 
 
-def test_displays_are_reordered_by_drag_and_keys(grouped):
-    viewer, page = grouped
+def test_displays_are_reordered_by_drag_and_keys(grouped_displays):
+    viewer, page = grouped_displays
     page.locator("[data-key='display-1'] .row-title").drag_to(page.locator("[data-key='display-2']"))
     until(page, "lw.displays[0].name === 'Marks'")
-    assert [display["Name"] for display in saved(viewer)[0]["Displays"]] == ["Grid", "Axes", "Radar"]
+    assert [display["Name"] for display in saved_displays(viewer)[0]["Displays"]] == ["Grid", "Axes", "Radar"]
     row(page, "display-1").click()
     page.keyboard.press("Alt+ArrowDown")
     until(page, "lw.displays[1].name === 'Axes'")
@@ -127,8 +127,8 @@ def test_displays_are_reordered_by_drag_and_keys(grouped):
     until(page, "lw.displays[0].name === 'Grid'")
 
 
-def test_filter_finds_properties(grouped):
-    _, page = grouped
+def test_filter_finds_properties(grouped_displays):
+    _, page = grouped_displays
     page.get_by_label("Filter displays and properties").fill("cell size")
     page.wait_for_function("() => document.querySelectorAll('.displays-panel .row').length === 2")
     assert page.locator(".displays-panel .row-title").all_inner_texts() == ["Grid", "Cell Size"]
@@ -136,8 +136,8 @@ def test_filter_finds_properties(grouped):
     page.get_by_text("No name of a display or property contains this text.").wait_for()
 
 
-def test_context_menu_renames_and_groups_display(grouped):
-    _, page = grouped
+def test_context_menu_renames_and_groups_display(grouped_displays):
+    _, page = grouped_displays
     row(page, "display-3").click(button="right")
     page.keyboard.press("r")
     assert "Rename" in page.evaluate("document.activeElement.textContent")
@@ -150,23 +150,23 @@ def test_context_menu_renames_and_groups_display(grouped):
 
 
 def test_reason_for_empty_display_is_shown_in_row_and_diagnostics(live, open_page):
-    """On its name, below the list when it is selected, and in the diagnostics, from where its row is found."""
+    """In its tooltip, below the list when it is selected, and in the diagnostics, which link to its row."""
     viewer = live(configuration(_SILENT))
     page = open_page(viewer, wait=False)
-    why = "Topic: No messages received: the topic has no publisher"
+    reason = "Topic: No messages received: the topic has no publisher"
     card = page.locator(".diagnostic", has_text="Clicks")
     card.wait_for()
-    assert why in card.inner_text()
+    assert reason in card.inner_text()
     assert page.get_by_text("No problems found.").is_hidden()
-    assert page.locator("[data-key='display-1'] .row-title").get_attribute("title").splitlines() == ["Clicks", why]
+    assert page.locator("[data-key='display-1'] .row-title").get_attribute("title").splitlines() == ["Clicks", reason]
     page.evaluate("window.shownFirst = document.querySelector('.diagnostic .text-link')")
     viewer.run(lambda: viewer.node.create_publisher(PointStamped, "/clicked_point", 1))
     card.get_by_text("no message arrived yet").wait_for()
-    assert page.evaluate("window.shownFirst.isConnected"), "what is about to be clicked is not replaced"
-    why = card.locator("li").inner_text()
+    assert page.evaluate("window.shownFirst.isConnected"), "the element to click is not replaced"
+    reason = card.locator("li").inner_text()
     card.get_by_role("button", name="Clicks").click()
     page.locator(".help .trouble").wait_for()
-    assert page.locator(".help .trouble").inner_text() == why
+    assert page.locator(".help .trouble").inner_text() == reason
     assert page.locator("[role=treeitem][aria-selected=true]").get_attribute("data-key") == "display-1"
     viewer.place("tip", 0.0, 0.0, 0.0)
     message = PointStamped()

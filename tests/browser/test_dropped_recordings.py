@@ -1,4 +1,4 @@
-"""Recordings dropped on the page, used in a real browser: they open with their own timeline, or it is said why not."""
+"""Recordings dropped on the page in a real browser: they open with their own timeline, or a reason is shown."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.bag import BagWriter
 from linkwright.graph import DEFAULT_QOS
 from linkwright.messages import get_message, serialize
 from tests.browser.conftest import Program, state, until
-from tests.browser.test_timeline import LENGTH, SECOND, START, recorded, seek, shows
+from tests.browser.test_timeline import LENGTH, SECOND, START, seek, wait_for_second, write_recording
 
 pytestmark = pytest.mark.browser
 
@@ -21,25 +21,25 @@ MODEL = '<robot name="arm"><link name="base"/></robot>'
 
 @pytest.fixture
 def page(start, open_page, tmp_path: Path) -> Page:
-    """A page that shows a robot."""
+    """Open a page that shows a robot."""
     (tmp_path / "arm.urdf").write_text(MODEL)
     program: Program = start("view", "arm.urdf")
-    shown: Page = open_page(program, wait=False)
-    until(shown, "lw.timeline?.live && lw.robot")
-    return shown
+    robot_page: Page = open_page(program, wait=False)
+    until(robot_page, "lw.timeline?.live && lw.robot")
+    return robot_page
 
 
 def drop(page: Page, *paths: Path) -> None:
-    """Drag files from the desktop onto the page, and let go."""
+    """Drop files from the desktop on the page."""
     session = page.context.new_cdp_session(page)
     data = {"items": [], "files": [str(path) for path in paths], "dragOperationsMask": 1}
-    for kind in ("dragEnter", "dragOver", "drop"):
-        session.send("Input.dispatchDragEvent", {"type": kind, "x": 500, "y": 400, "data": data})
+    for event_type in ("dragEnter", "dragOver", "drop"):
+        session.send("Input.dispatchDragEvent", {"type": event_type, "x": 500, "y": 400, "data": data})
     session.detach()
 
 
-def plays(page: Page, name: str) -> None:
-    """Wait until a recording is shown, and have it stand still."""
+def wait_and_pause(page: Page, name: str) -> None:
+    """Wait until a recording is shown, and pause it."""
     until(
         page,
         f"lw.timeline?.name === {name!r} && lw.frames.tip && lw.displays.some(({{ drawn }}) => drawn?.width === 4)",
@@ -50,15 +50,15 @@ def plays(page: Page, name: str) -> None:
 
 
 def test_dropped_mcap_file_plays_and_back_returns_to_robot(page: Page, tmp_path: Path):
-    file = recorded(tmp_path)
+    file = write_recording(tmp_path)
     drop(page, file)
-    plays(page, file.name)
+    wait_and_pause(page, file.name)
     assert state(page, "timeline")["length"] == LENGTH
     for seconds in (20.55, 4.55):
         seek(page, seconds)
-        shows(page, int(seconds))
+        wait_for_second(page, int(seconds))
     page.reload()
-    plays(page, file.name)
+    wait_and_pause(page, file.name)
     page.go_back()
     until(page, "lw.timeline?.live && lw.robot")
 
@@ -72,18 +72,18 @@ def test_dropped_sqlite_folder_plays_and_next_recording_replaces_it(page: Page, 
             writer.write("/number", (START + second) * SECOND, serialize(number(data=float(second))))
     drop(page, folder)
     until(page, "lw.timeline?.name === 'numbers_0.db3' && lw.timeline.length === 4")
-    file = recorded(tmp_path)
+    file = write_recording(tmp_path)
     drop(page, file)
-    plays(page, file.name)
+    wait_and_pause(page, file.name)
 
 
 def test_recording_is_opened_from_file_menu(page: Page, tmp_path: Path):
-    file = recorded(tmp_path)
+    file = write_recording(tmp_path)
     page.get_by_role("button", name="File", exact=True).click()
-    with page.expect_file_chooser() as choosing:
+    with page.expect_file_chooser() as file_chooser:
         page.get_by_role("menuitem", name="Open a recording…").click()
-    choosing.value.set_files(str(file))
-    plays(page, file.name)
+    file_chooser.value.set_files(str(file))
+    wait_and_pause(page, file.name)
 
 
 def test_invalid_recording_is_reported_and_page_stays(page: Page, tmp_path: Path):
@@ -94,24 +94,24 @@ def test_invalid_recording_is_reported_and_page_stays(page: Page, tmp_path: Path
     false = tmp_path / "false.mcap"
     false.write_bytes(b"no recording at all")
     drop(page, false)
-    logged = "'false.mcap' cannot be read as a recording: it does not begin with a MCAP header"
-    expect(dialog).to_contain_text(logged)
+    message = "'false.mcap' cannot be read as a recording: it does not begin with a MCAP header"
+    expect(dialog).to_contain_text(message)
     dialog.get_by_role("button", name="OK").click()
     until(page, "lw.timeline?.live && lw.robot")
 
 
 def test_upload_is_canceled(page: Page, tmp_path: Path):
     def wait(route) -> None:
-        held.append(route)
+        held_requests.append(route)
 
-    held: list[object] = []
+    held_requests: list[object] = []
     page.route("**/recordings/*/0*", wait)
-    drop(page, recorded(tmp_path))
+    drop(page, write_recording(tmp_path))
     dialog = page.get_by_role("dialog")
     expect(dialog.get_by_role("progressbar")).to_be_visible()
     dialog.get_by_role("button", name="Cancel").click()
     expect(dialog).to_have_count(0)
     page.unroute_all()
-    file = shutil.copy(recorded(tmp_path / "again"), tmp_path / "other.mcap")
+    file = shutil.copy(write_recording(tmp_path / "again"), tmp_path / "other.mcap")
     drop(page, Path(file))
-    plays(page, "other.mcap")
+    wait_and_pause(page, "other.mcap")

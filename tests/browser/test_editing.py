@@ -1,4 +1,4 @@
-"""A robot is edited in the page: by numbers and by handles, into the source, and back."""
+"""Editing of a robot in the page, with numbers and handles: changes of the source, in both directions."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ def file(tmp_path: Path) -> Path:
     return path
 
 
-def edited(page, link: str) -> None:
-    """Have a link edited, by way of its card."""
+def start_editing(page, link: str) -> None:
+    """Start editing a link from its card."""
     page.get_by_role("tab", name="Links").click()
     page.get_by_text(link, exact=True).first.click()
     page.get_by_role("button", name="Move and rotate the joint").click()
@@ -60,7 +60,7 @@ def type_in(page, name: str, text: str) -> None:
 
 def test_number_edit_is_previewed_written_and_undone(start, open_page, file):
     page = open_page(start("view", str(file)))
-    edited(page, "mast")
+    start_editing(page, "mast")
     becomes(lambda: number(page, "xyz2").input_value(), "0.5")
     until(page, f"Math.abs({MAST}.min[2] - 0.5) < 1e-6")
     type_in(page, "xyz2", "0.8")
@@ -82,7 +82,7 @@ def test_number_edit_is_previewed_written_and_undone(start, open_page, file):
 
 def test_visual_is_rotated_in_degrees_and_reset(start, open_page, file):
     page = open_page(start("view", str(file)))
-    edited(page, "mast")
+    start_editing(page, "mast")
     page.get_by_role("button", name="Visual box").click()
     page.locator(".editing-tools").get_by_role("button", name="deg").click()
     type_in(page, "rpy1", "90")
@@ -96,7 +96,7 @@ def test_visual_is_rotated_in_degrees_and_reset(start, open_page, file):
 
 def test_handle_moves_link_along_one_axis(start, open_page, file):
     page = open_page(start("view", str(file)))
-    edited(page, "left")
+    start_editing(page, "left")
     becomes(lambda: number(page, "xyz0").input_value(), "0.6")
     page.get_by_role("button", name="Snap to a grid").click()
     canvas = page.locator("canvas").first.bounding_box()
@@ -117,7 +117,7 @@ def test_handle_moves_link_along_one_axis(start, open_page, file):
 
 def test_edit_of_macro_used_twice_requires_confirmation(start, open_page, file):
     page = open_page(start("view", str(file)))
-    edited(page, "left")
+    start_editing(page, "left")
     type_in(page, "xyz2", "0.1")
     page.get_by_text("would also change joint 'right_joint'", exact=False).wait_for()
     assert page.get_by_role("button", name="Write", exact=True).is_disabled()
@@ -130,7 +130,7 @@ def test_edit_of_macro_used_twice_requires_confirmation(start, open_page, file):
 
 def test_file_changed_meanwhile_is_not_overwritten(start, open_page, file):
     page = open_page(start("view", str(file)))
-    edited(page, "mast")
+    start_editing(page, "mast")
     type_in(page, "xyz2", "0.8")
     page.get_by_text('value="0.8"', exact=False).wait_for()
     mine = ROBOT.replace('value="0.5"', 'value="0.7"')
@@ -145,7 +145,7 @@ def test_edit_diff_is_shown_beside_numbers(start, browser, file: Path) -> None:
     page = browser.new_page(viewport={"width": 1024, "height": 768}, locale="en-US")
     page.goto(start("view", str(file)).url)
     page.wait_for_function("window.linkwright?.ready === true")
-    edited(page, "mast")
+    start_editing(page, "mast")
     type_in(page, "xyz0", "0.1")
     page.locator(".edit-diff").first.wait_for()
     text, numbers = page.locator(".edit-text").bounding_box(), page.locator(".editing-numbers").bounding_box()
@@ -164,7 +164,7 @@ def test_diff_of_long_line_shows_changed_values(start, browser, file: Path) -> N
     page = browser.new_page(viewport={"width": 1024, "height": 768}, locale="en-US")
     page.goto(start("view", str(file)).url)
     page.wait_for_function("window.linkwright?.ready === true")
-    edited(page, "mast")
+    start_editing(page, "mast")
     type_in(page, "xyz0", "0.1")
     page.locator(".edit-diff mark").first.wait_for()
     text = page.locator(".edit-text").bounding_box()
@@ -178,7 +178,7 @@ def test_diff_of_long_line_shows_changed_values(start, browser, file: Path) -> N
 
 def test_link_card_is_hidden_while_editing(start, open_page, file: Path) -> None:
     page = open_page(start("view", str(file)))
-    edited(page, "mast")
+    start_editing(page, "mast")
     card = page.locator(".selection-card")
     card.wait_for(state="hidden")
     page.get_by_role("tab", name="Edit robot").hover()
@@ -188,13 +188,13 @@ def test_link_card_is_hidden_while_editing(start, open_page, file: Path) -> None
 
 def test_camera_moves_to_handles_that_are_out_of_view(start, open_page, file: Path) -> None:
     joint = '<origin xyz="0 0 4"/><parent link="base"/><child link="far"/>'
-    far = f'<link name="far"/><joint name="far_joint" type="fixed">{joint}</joint>\n</robot>'
-    file.write_text(ROBOT.replace("</robot>", far))
+    far_link = f'<link name="far"/><joint name="far_joint" type="fixed">{joint}</joint>\n</robot>'
+    file.write_text(ROBOT.replace("</robot>", far_link))
     page = open_page(start("view", str(file)))
     yaw = state(page, "view.yaw")
-    edited(page, "mast")
+    start_editing(page, "mast")
     until(page, "lw.panels.editing.handles !== undefined")
-    assert state(page, "view.yaw") == yaw, "what is in sight needs no other view"
+    assert state(page, "view.yaw") == yaw, "the view stays if the handles are visible"
     page.get_by_role("tab", name="Links").click()
     page.get_by_text("far", exact=True).first.click()
     becomes(lambda: number(page, "xyz2").input_value(), "4")
@@ -211,7 +211,7 @@ def test_camera_moves_to_handles_that_are_out_of_view(start, open_page, file: Pa
 
 def test_joint_axis_has_only_rotation_handles(start, open_page, file: Path) -> None:
     page = open_page(start("view", str(file)))
-    edited(page, "mast")
+    start_editing(page, "mast")
     tools = page.locator(".editing-tools")
     frames, lengths = tools.get_by_label("The axes that the handles follow"), tools.get_by_label("Grid, m")
     frames.wait_for()
@@ -245,7 +245,7 @@ def test_low_panel_shows_parts_numbers_and_diff_without_scrolling(start, browser
     for element in page.locator(selector).all():
         box = element.bounding_box()
         assert box is not None
-        around = text if element.evaluate("(e) => e.tagName") == "MARK" else panel
-        assert around["y"] <= box["y"] + 1, element.inner_text()
-        assert box["y"] + box["height"] <= around["y"] + around["height"] + 1, element.inner_text()
+        container = text if element.evaluate("(e) => e.tagName") == "MARK" else panel
+        assert container["y"] <= box["y"] + 1, element.inner_text()
+        assert box["y"] + box["height"] <= container["y"] + container["height"] + 1, element.inner_text()
     page.close()

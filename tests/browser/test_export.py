@@ -1,4 +1,4 @@
-"""Exported pages from disk, and what the Share menu gives."""
+"""Exported pages opened from disk, and the entries of the Share menu."""
 
 from __future__ import annotations
 
@@ -33,44 +33,44 @@ ROBOT = configuration(
 
 @pytest.fixture
 def open_file(browser):
-    """A function that opens a file of the disk; whatever it fetches or complains of fails the test."""
+    """Return a function that opens a file from disk; any request or error of the page fails the test."""
     contexts, wrong = [], []
 
-    def open_it(path: Path, locale: str = "en-US"):
+    def open_path(path: Path, locale: str = "en-US"):
         context = browser.new_context(viewport={"width": 1000, "height": 700}, locale=locale, offline=True)
         contexts.append(context)
         page = context.new_page()
         page.on("pageerror", lambda error: wrong.append(str(error)))
         page.on("console", lambda message: wrong.append(message.text) if message.type == "error" else None)
 
-        def requested(request) -> None:
+        def on_request(request) -> None:
             if request.url != path.as_uri() and not request.url.startswith(("data:", "blob:")):
                 wrong.append(request.url)
 
-        page.on("request", requested)
+        page.on("request", on_request)
         page.goto(path.as_uri())
         # Its policy lets no text be evaluated in it, as wait_for_function does.
         becomes(lambda: page.evaluate("() => window.linkwright?.ready === true"), True)
         return page
 
-    yield open_it
+    yield open_path
     for context in contexts:
         context.close()
     assert wrong == []
 
 
-def export(out: Path, model: Path, *values: str) -> None:
-    subprocess.run([sys.executable, "-m", "linkwright", "export", str(out), str(model), *values], check=True)
+def export(target: Path, model: Path, *values: str) -> None:
+    subprocess.run([sys.executable, "-m", "linkwright", "export", str(target), str(model), *values], check=True)
 
 
-def drawn(page) -> dict:
-    """Every visual as it is drawn, by link."""
+def drawn_visuals(page) -> dict:
+    """Return each visual as it is drawn, by link."""
     robot = next(display for display in state(page, "displays") if display["class"].endswith("RobotModel"))["drawn"]
     return {name: text["visuals"] for name, text in robot["links"].items()}
 
 
 def assert_alike(first: dict, second: dict) -> None:
-    """Numbers may differ in their last digits: joints were worked out from transforms."""
+    """Compare two drawings; the last digits may differ, because joint positions are computed from transforms."""
     assert first.keys() == second.keys()
     for name, shapes in first.items():
         for a, b in zip(shapes, second[name], strict=True):
@@ -104,9 +104,9 @@ def test_exported_page_draws_the_same_as_viewer(live, open_page, open_file, tmp_
     for name in ("skin", "inches", "own", "plain"):
         viewer.place(name, 0.0, 0.0, 0.0)
     viewer.publish("/robot_description", String(data=text), DESCRIPTION_QOS)
-    exported = drawn(open_file(tmp_path / "robot.html"))
-    assert exported == drawn(open_page(viewer))
-    assert exported["skin"][0]["materials"][0]["textured"]
+    exported_visuals = drawn_visuals(open_file(tmp_path / "robot.html"))
+    assert exported_visuals == drawn_visuals(open_page(viewer))
+    assert exported_visuals["skin"][0]["materials"][0]["textured"]
 
 
 def test_exported_sliders_move_joints_and_mimic_joints(open_file, tmp_path):
@@ -175,7 +175,7 @@ def test_exported_grid_fits_small_mesh_robot(open_file, tmp_path):
     becomes(lambda: grid(page)["cell"], pytest.approx(0.01))
 
 
-def shown_gripper(live, open_page):
+def open_gripper(live, open_page):
     viewer = live(ROBOT)
     viewer.place("arm", 0.0, 0.0, 0.25, 0.0, 0.0, 0.70710678, 0.70710678)
     viewer.place("left", 0.0, 0.5, 1.0, parent="arm")
@@ -189,7 +189,7 @@ def share(page, entry: str) -> None:
     page.get_by_role("menuitem", name=entry, exact=True).click()
 
 
-def saved(page, entry: str, folder: Path) -> Path:
+def save_from_menu(page, entry: str, folder: Path) -> Path:
     with page.expect_download() as download:
         share(page, entry)
     path = folder / download.value.suggested_filename
@@ -198,29 +198,29 @@ def saved(page, entry: str, folder: Path) -> Path:
 
 
 def test_viewer_exports_current_joints_and_view(live, open_page, open_file, tmp_path):
-    _, page = shown_gripper(live, open_page)
-    path = saved(page, "Export HTML…", tmp_path)
+    _, page = open_gripper(live, open_page)
+    path = save_from_menu(page, "Export HTML…", tmp_path)
     assert path.name == "gripper.html"
-    exported = open_file(path)
+    exported_page = open_file(path)
     # As the joints are, not where a slider would begin
-    assert state(exported, "joints") == pytest.approx({"turn": 0.0, "open": 0.3, "open_too": -0.55}, abs=1e-5)
-    assert state(exported, "view")["distance"] == pytest.approx(state(page, "view")["distance"])
-    assert_alike(drawn(exported), drawn(page))
+    assert state(exported_page, "joints") == pytest.approx({"turn": 0.0, "open": 0.3, "open_too": -0.55}, abs=1e-5)
+    assert state(exported_page, "view")["distance"] == pytest.approx(state(page, "view")["distance"])
+    assert_alike(drawn_visuals(exported_page), drawn_visuals(page))
 
 
 def test_exported_glb_shows_the_same_robot(live, open_page, tmp_path):
-    _, page = shown_gripper(live, open_page)
-    path = saved(page, "Export glb…", tmp_path)
-    before = drawn(page)
+    _, page = open_gripper(live, open_page)
+    path = save_from_menu(page, "Export glb…", tmp_path)
+    visuals = drawn_visuals(page)
     viewer = live(ROBOT)
     robot = f'<robot name="again"><link name="base">{mesh(path, "")}</link></robot>'
     viewer.publish("/robot_description", String(data=robot), DESCRIPTION_QOS)
-    (drawing,) = drawn(open_page(viewer))["base"]
-    bounds = [shape["bounds"] for shapes in before.values() for shape in shapes]
+    (drawn_model,) = drawn_visuals(open_page(viewer))["base"]
+    bounds = [shape["bounds"] for shapes in visuals.values() for shape in shapes]
     for corner, choose in (("min", min), ("max", max)):
         expected = [choose(bound[corner][axis] for bound in bounds) for axis in range(3)]
-        assert drawing["bounds"][corner] == pytest.approx(expected, abs=1e-4)
-    assert len(drawing["materials"]) == 4
+        assert drawn_model["bounds"][corner] == pytest.approx(expected, abs=1e-4)
+    assert len(drawn_model["materials"]) == 4
 
 
 def test_files_outside_package_are_listed_before_export(start, open_page, tmp_path):
@@ -234,7 +234,7 @@ def test_files_outside_package_are_listed_before_export(start, open_page, tmp_pa
         <xacro:include filename="{elsewhere}/part.urdf"/></robot>"""
     )
     page = open_page(start("view", str(share / "robot.xacro")))
-    assert saved(page, "Export glb…", tmp_path).name == "robot.glb"
+    assert save_from_menu(page, "Export glb…", tmp_path).name == "robot.glb"
     dialog = page.get_by_role("dialog", name="The export contains files from outside the packages")
     dialog.wait_for()
     becomes(dialog.get_by_role("listitem").all_inner_texts, ["elsewhere/part.urdf"])
@@ -243,9 +243,9 @@ def test_files_outside_package_are_listed_before_export(start, open_page, tmp_pa
 def test_screenshots_and_videos_are_saved(live, open_page, tmp_path):
     from PIL import Image
 
-    _, page = shown_gripper(live, open_page)
+    _, page = open_gripper(live, open_page)
     canvas = page.locator(".canvas-box canvas").bounding_box()
-    with Image.open(saved(page, "Screenshot, 2 times as large", tmp_path)) as image:
+    with Image.open(save_from_menu(page, "Screenshot, 2 times as large", tmp_path)) as image:
         assert image.format == "PNG"
         assert image.size == pytest.approx((2 * canvas["width"], 2 * canvas["height"]), abs=2)
         colors = {pixel for _, pixel in image.convert("RGB").resize((200, 150)).getcolors(30_000)}
@@ -253,13 +253,13 @@ def test_screenshots_and_videos_are_saved(live, open_page, tmp_path):
     assert page.locator(".canvas-box canvas").bounding_box() == canvas
     share(page, "Record a video")
     until(page, "document.querySelector('.recorder:not([hidden])') !== null")
-    for turn in range(10):
-        before = state(page, "framesDrawn")
-        page.mouse.move(600 + 8 * turn, 400)
+    for step in range(10):
+        frame_count = state(page, "framesDrawn")
+        page.mouse.move(600 + 8 * step, 400)
         page.mouse.down()
-        page.mouse.move(620 + 8 * turn, 410)
+        page.mouse.move(620 + 8 * step, 410)
         page.mouse.up()
-        until(page, f"lw.framesDrawn > {before}")
+        until(page, f"lw.framesDrawn > {frame_count}")
     with page.expect_download() as download:
         page.locator(".recorder button").click()
     path = tmp_path / download.value.suggested_filename

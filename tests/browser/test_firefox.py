@@ -1,4 +1,4 @@
-"""A first look at the page in Firefox: it draws, takes keys, and says what is missing where it has no WebGL."""
+"""The page in Firefox: it draws, takes keys, and shows what is missing without WebGL."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 from tests.browser import firefox
 from tests.browser.arm import write_arm
 from tests.browser.firefox import Firefox
-from tests.browser.live import LOOK_EVERY
+from tests.browser.live import POLL_PERIOD
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
@@ -34,20 +34,20 @@ CRATE = """\
 
 @pytest.fixture
 def launch(tmp_path: Path) -> Iterator[Callable[..., Firefox]]:
-    """A function that starts Firefox; where it cannot, the test is left out, and in CI it fails."""
+    """Return a function that starts Firefox; if that fails, the test is skipped, or fails in CI."""
     with ExitStack() as stack:
 
         def run(*, headless: bool) -> Firefox:
-            missing = "no Firefox" if firefox.find() is None else None
-            if not missing and not headless and not firefox.can_show_windows():
-                missing = "neither a display nor Xvfb, without which Firefox has no WebGL"
-            if missing and "CI" in os.environ:
-                pytest.fail(f"{missing}, which .ci/run installs")
-            if missing:
-                pytest.skip(missing)
+            skip_reason = "no Firefox" if firefox.find() is None else None
+            if not skip_reason and not headless and not firefox.can_show_windows():
+                skip_reason = "neither a display nor Xvfb, without which Firefox has no WebGL"
+            if skip_reason and "CI" in os.environ:
+                pytest.fail(f"{skip_reason}, which .ci/run installs")
+            if skip_reason:
+                pytest.skip(skip_reason)
             profile = tmp_path / "profile"
             profile.mkdir()
-            return stack.enter_context(firefox.launched(profile, headless=headless))
+            return stack.enter_context(firefox.launch(profile, headless=headless))
 
         yield run
 
@@ -64,16 +64,16 @@ def test_firefox_draws_and_moves_robot(start, launch, tmp_path):
         reds = sum(count for count, (r, g, b) in image.getcolors(1 << 24) if r > 80 and r > 3 * max(g, b))
         return reds / (image.width * image.height)
 
-    wait_until(lambda: share_of_red() > 0.05, what=share_of_red, pause=LOOK_EVERY)
+    wait_until(lambda: share_of_red() > 0.05, what=share_of_red, pause=POLL_PERIOD)
     # Tabs are walked by keys.
     browser.evaluate("document.querySelector('[data-tab-panel-id=displays]').focus()")
     browser.press(RIGHT, ENTER)
     browser.until("document.querySelector('[data-tab-panel-id=links][aria-selected=true]')")
     # Sliders too, whose thumbs are seen.
     browser.evaluate("document.querySelector('[data-joint=hinge] .slider').focus()")
-    before = browser.evaluate("window.linkwright.frames.lid.orientation")
+    orientation = browser.evaluate("window.linkwright.frames.lid.orientation")
     browser.press(RIGHT, RIGHT)
-    browser.until(f"JSON.stringify(lw.frames.lid.orientation) !== JSON.stringify({before})")
+    browser.until(f"JSON.stringify(lw.frames.lid.orientation) !== JSON.stringify({orientation})")
     thumb = browser.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--thumb')").strip()
     color = tuple(bytes.fromhex(thumb[1:]))
     colors = {
@@ -128,7 +128,7 @@ def test_firefox_drags_handle(start, launch, tmp_path):
         samples.append(browser.evaluate("window.linkwright.panels.editing.handles.z"))
         return len(samples) > 5 and samples[-1] == samples[-5]
 
-    wait_until(is_still, pause=LOOK_EVERY)
+    wait_until(is_still, pause=POLL_PERIOD)
     handle = samples[-1]
     canvas = browser.evaluate("document.querySelector('.canvas-box canvas').getBoundingClientRect()")
     browser.drag(canvas["x"] + handle["x"], canvas["y"] + handle["y"], 0, -60)

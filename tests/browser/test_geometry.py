@@ -1,4 +1,4 @@
-"""Poses, paths, polygons, ranges, vectors and efforts, drawn in a real browser; TF's and the robot's rows."""
+"""Poses, paths, polygons, ranges, vectors and efforts in a real browser, and the rows of TF and the robot."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ CRANE = """\
 """
 
 
-def published(viewer) -> None:
-    """One message for each display; the frame ``tip`` is one meter above ``base``."""
+def publish_all(viewer) -> None:
+    """Publish a message for each display; the frame ``tip`` is one meter above ``base``."""
     viewer.place("tip", 0.0, 0.0, 1.0)
     viewer.publish("/robot_description", String(data=CRANE), DESCRIPTION_QOS)
     viewer.publish("/pose", message("geometry_msgs/msg/PoseStamped", pose=pose(1)))
@@ -64,20 +64,20 @@ def published(viewer) -> None:
     particles = [particle(pose=pose(0), weight=0.0), particle(pose=pose(1), weight=0.5)]
     viewer.publish("/particle_cloud", message("nav2_msgs/msg/ParticleCloud", particles=particles))
     for x in (0, 1, 2):
-        mark = message("nav_msgs/msg/Odometry")
-        mark.pose.pose = pose(x, -2)
-        viewer.publish("/odom", mark)
-    stamped = [message("geometry_msgs/msg/PoseStamped", pose=pose(x, 3)) for x in range(4)]
-    viewer.publish("/plan", message("nav_msgs/msg/Path", poses=stamped))
+        odometry = message("nav_msgs/msg/Odometry")
+        odometry.pose.pose = pose(x, -2)
+        viewer.publish("/odom", odometry)
+    poses = [message("geometry_msgs/msg/PoseStamped", pose=pose(x, 3)) for x in range(4)]
+    viewer.publish("/plan", message("nav_msgs/msg/Path", poses=poses))
     field = message("geometry_msgs/msg/PolygonStamped")
     corner = get_message("geometry_msgs/msg/Point32")
     field.polygon.points = [corner(x=x, y=y, z=0.0) for x, y in ((-3.0, -3.0), (-1.0, -3.0), (-1.0, -1.0))]
     viewer.publish("/field", field)
     sonar = message("sensor_msgs/msg/Range", range=2.0, min_range=0.1, max_range=4.0, field_of_view=math.pi / 2)
     viewer.publish("/sonar", sonar)
-    speed = message("geometry_msgs/msg/TwistStamped")
-    speed.twist.linear.x, speed.twist.angular.z = 1.0, 0.1
-    viewer.publish("/speed", speed)
+    velocity = message("geometry_msgs/msg/TwistStamped")
+    velocity.twist.linear.x, velocity.twist.angular.z = 1.0, 0.1
+    viewer.publish("/speed", velocity)
     push = message("geometry_msgs/msg/WrenchStamped")
     push.wrench.torque.z = 1.0
     viewer.publish("/push", push)
@@ -87,7 +87,7 @@ def published(viewer) -> None:
     viewer.publish("/click", click)
 
 
-def drawn(page) -> dict[str, dict]:
+def drawings(page) -> dict[str, dict]:
     return {display["name"]: display["drawn"] for display in state(page, "displays")}
 
 
@@ -97,11 +97,11 @@ def size(drawing: dict) -> list[float]:
 
 def test_displays_draw_their_messages_at_the_right_pose(live, open_page):
     viewer = live(DISPLAYS)
-    published(viewer)
+    publish_all(viewer)
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.every((display) => display.drawn?.bounds)")
     viewer.settle(page)
-    drawing = drawn(page)
+    drawing = drawings(page)
     assert drawing["Pose"]["bounds"]["min"] == pytest.approx([1, -0.05, 0.95], abs=1e-3)
     assert drawing["Pose"]["bounds"]["max"] == pytest.approx([2.3, 0.05, 1.05], abs=1e-3)
     assert drawing["Guess"]["bounds"]["max"] == pytest.approx([1.3, 3.001, 2.001], abs=0.02)
@@ -126,7 +126,7 @@ def test_displays_draw_their_messages_at_the_right_pose(live, open_page):
 
 def test_property_changes_and_disabling_act_at_once(live, open_page):
     viewer = live(DISPLAYS)
-    published(viewer)
+    publish_all(viewer)
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.every((display) => display.drawn?.bounds)")
     viewer.settle(page)
@@ -149,7 +149,7 @@ def test_property_changes_and_disabling_act_at_once(live, open_page):
     until(page, "lw.displays.find((display) => display.name === 'Torque').drawn.rings === 0")
     until(page, "lw.displays.find((display) => display.name === 'Way').drawn.axes === 3")
     viewer.settle(page)
-    drawing = drawn(page)
+    drawing = drawings(page)
     assert drawing["Pose"]["bounds"]["max"][0] == pytest.approx(3.3, abs=1e-3)
     assert drawing["Cloud"]["arrows"] == 5
     assert drawing["Plan"]["wide"] is False

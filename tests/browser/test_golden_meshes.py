@@ -1,4 +1,4 @@
-"""Small meshes of every kind, as large and as colored as RViz draws them; read back from the page.
+"""Small meshes of all formats: their sizes and colors in the page are those in RViz.
 
 Every mesh is the same box, 0.1 x 0.2 x 0.3 m with a corner at the origin, written in another way: a wrong axis, unit or
 transform shows in its bounds.
@@ -32,13 +32,13 @@ ROBOT = configuration(
 )
 
 
-def drawn(page, name: str) -> dict:
-    """The first visual of a link as it is drawn."""
+def drawn_visual(page, name: str) -> dict:
+    """Return the first visual of a link as it is drawn."""
     robot = next(display for display in state(page, "displays") if display["name"] == "Robot")["drawn"]
     return robot["links"][name]["visuals"][0]
 
 
-def shown(live, open_page, links: str, names):
+def open_robot(live, open_page, links: str, names):
     viewer = live(ROBOT)
     for name in names:
         viewer.place(name, 0.0, 0.0, 0.0)
@@ -47,10 +47,10 @@ def shown(live, open_page, links: str, names):
 
 
 def test_bounds_and_colors_match_rviz(live, open_page, tmp_path):
-    page = shown(live, open_page, golden_links(tmp_path), GOLDEN)
+    page = open_robot(live, open_page, golden_links(tmp_path), GOLDEN)
     wrong = {}
     for name, (_, _, _, _, (low, high), color, opacity) in GOLDEN.items():
-        drawing = drawn(page, name)
+        drawing = drawn_visual(page, name)
         (look,) = drawing["materials"]
         bounds = drawing["bounds"]
         right = (
@@ -80,8 +80,8 @@ def test_textures_are_drawn(live, open_page, tmp_path):
     (tmp_path / "skin.dae").write_text(text)
     (tmp_path / "plain.stl").write_bytes(stl_binary())
     links = link("dae", mesh(tmp_path / "skin.dae", "")) + link("stl", mesh(tmp_path / "plain.stl", texture))
-    page = shown(live, open_page, links, ("dae", "stl"))
-    assert [drawn(page, name)["materials"][0]["textured"] for name in ("dae", "stl")] == [True, True]
+    page = open_robot(live, open_page, links, ("dae", "stl"))
+    assert [drawn_visual(page, name)["materials"][0]["textured"] for name in ("dae", "stl")] == [True, True]
     assert {row["level"] for row in state(page, "displays")[0]["status"]} == {"ok"}
 
 
@@ -95,14 +95,14 @@ def box(x: float, color: str, size: float = 0.5) -> str:
     )
 
 
-def middle(page) -> Color:
-    """The color in the middle of the scene."""
-    place = page.locator("canvas").first.bounding_box()
-    (color,) = colors_at(page, (place["x"] + place["width"] / 2, place["y"] + place["height"] / 2))
+def center_color(page) -> Color:
+    """Return the color in the center of the scene."""
+    box = page.locator("canvas").first.bounding_box()
+    (color,) = colors_at(page, (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2))
     return color
 
 
-# near, far -> what is seen; the eye is on +x, the background 48
+# near, far -> the visible color; the camera is on +x, the background 48
 LAYERS = (
     ("1 0 0 0.5", "0 0 1 1", (128, 0, 128)),
     ("0 0 1 1", "1 0 0 0.5", (0, 0, 255)),
@@ -117,23 +117,23 @@ def test_transparent_layers_are_blended_by_depth(live, open_page):
     for name in names:
         viewer.place(name, 0.0, 0.0, 0.0)
     page = None
-    for near, far, expected in LAYERS:
+    for near_color, far_color, expected in LAYERS:
         for first in (0, 1):
-            pair = [link("near", box(0.3, near)), link("far", box(-0.3, far, 1.0))]
-            described = robot_of("".join(pair if first == 0 else reversed(pair)))
-            viewer.publish("/robot_description", String(data=described), DESCRIPTION_QOS)
+            pair = [link("near", box(0.3, near_color)), link("far", box(-0.3, far_color, 1.0))]
+            description = robot_of("".join(pair if first == 0 else reversed(pair)))
+            viewer.publish("/robot_description", String(data=description), DESCRIPTION_QOS)
             page = page or open_page(viewer)
-            until(page, alphas(near, far))
+            until(page, alphas(near_color, far_color))
             viewer.settle(page)
-            becomes(lambda page=page: middle(page), pytest.approx(expected, abs=3))
+            becomes(lambda page=page: center_color(page), pytest.approx(expected, abs=3))
 
 
 def alphas(*colors: str) -> str:
-    """Whether the boxes are drawn with these colors."""
-    parts = []
+    """Return the materials of boxes with these colors."""
+    boxes = []
     for name, color in zip(("near", "far"), colors, strict=True):
-        r, g, b, a = (float(part) for part in color.split())
+        r, g, b, a = (float(component) for component in color.split())
         look = f"lw.displays[0].drawn.links?.{name}?.visuals[0]?.materials[0]"
-        code = "#" + "".join(f"{int(part * 255):02x}" for part in (r, g, b))
-        parts.append(f"{look}?.color === '{code}' && {look}?.opacity === {a:g}")
-    return " && ".join(parts)
+        code = "#" + "".join(f"{int(component * 255):02x}" for component in (r, g, b))
+        boxes.append(f"{look}?.color === '{code}' && {look}?.opacity === {a:g}")
+    return " && ".join(boxes)

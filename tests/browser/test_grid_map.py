@@ -21,12 +21,12 @@ def test_grid_map_with_missing_cell_is_drawn(live, open_page, tmp_path):
     heights = 1.5 * np.exp(-(x**2) - y**2)
     heights[3, 3] = np.nan
     viewer.publish("/grid_map", grid(0.2, elevation=heights.tolist()))
-    drawn = "lw.displays[0]?.drawn"
+    drawn_expression = "lw.displays[0]?.drawn"
     # The hole takes two triangles of each of its four squares and leaves the one across.
-    until(page, f"{drawn}?.triangles === 20 * 20 * 2 - 4 && {drawn}?.lines === 2 * 20 * 21 - 4")
-    until(page, f"Math.abs({drawn}?.bounds?.max[2] - 1.5) < 1e-5")
+    until(page, f"{drawn_expression}?.triangles === 20 * 20 * 2 - 4 && {drawn_expression}?.lines === 2 * 20 * 21 - 4")
+    until(page, f"Math.abs({drawn_expression}?.bounds?.max[2] - 1.5) < 1e-5")
     viewer.settle(page)
     page.screenshot(path=tmp_path / "grid-map.png")
     viewer.run(lambda: viewer.viewer.displays[0].set_property(("Color Transformer",), "None"))
     viewer.run(lambda: viewer.viewer.displays[0].set_property(("Show Grid Lines",), False))
-    until(page, f"{drawn}?.triangles === 0 && {drawn}?.lines === 0")
+    until(page, f"{drawn_expression}?.triangles === 0 && {drawn_expression}?.lines === 0")

@@ -1,4 +1,4 @@
-"""What is invisible is drawn where it is: masses, inertias, joint axes, frames, collisions."""
+"""Invisible properties, drawn at their positions: masses, inertias, joint axes, frames, collisions."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def switch(page, *names):
         page.locator(f'[data-inspect="{name}"] input').click()
 
 
-def orange(page):
-    """How many of some places on the arm's base are orange, as collisions are in contrast."""
+def count_orange(page):
+    """Return how many of some pixels on the arm's base are orange, the color of collisions."""
     until(page, "lw.settled")  # a fine frame follows the coarse one
     box = page.locator(".canvas-box canvas").bounding_box()
     free = page.locator(".stack").bounding_box()["x"] - box["x"]  # the card of Inspect is open
@@ -35,18 +35,22 @@ def orange(page):
 
 def test_masses_inertias_and_implausible_values_are_shown(page):
     switch(page, "centers", "boxes", "ellipsoids")
-    until(page, "lw.inspected.boxes === 3 && lw.inspected.ellipsoids === 3 && lw.inspected.totals?.length === 1")
+    until(
+        page,
+        "(({boxes, ellipsoids, totals}) => boxes === 3 && ellipsoids === 3 && totals?.length === 1)"
+        "(lw.invisibleProperties)",
+    )
     # base at 0.05 with 4 kg, upper arm at 0.1 + 0.2 with 2 kg, forearm at 0.5 + 0.15 with 1 kg
     total = (4 * 0.05 + 2 * 0.3 + 1 * 0.65) / 7
-    assert state(page, "inspected.totals[0]") == pytest.approx([0, 0, total], abs=1e-5)
-    assert state(page, "inspected.centers") == 4  # three links, and the whole
+    assert state(page, "invisibleProperties.totals[0]") == pytest.approx([0, 0, total], abs=1e-5)
+    assert state(page, "invisibleProperties.centers") == 4  # three links, and the whole
 
     # The center follows the joints.
     page.locator('[data-joint="fore_joint"] input[type=text]').fill("1.5707963")
     page.keyboard.press("Enter")
     bent = [0.15 / 7, 0, (4 * 0.05 + 2 * 0.3 + 1 * 0.5) / 7]
-    until(page, f"Math.abs(lw.inspected.totals[0][0] - {bent[0]}) < 1e-4")
-    assert state(page, "inspected.totals[0]") == pytest.approx(bent, abs=1e-4)
+    until(page, f"Math.abs(lw.invisibleProperties.totals[0][0] - {bent[0]}) < 1e-4")
+    assert state(page, "invisibleProperties.totals[0]") == pytest.approx(bent, abs=1e-4)
 
     until(page, "lw.description.findings.some(({ link, code }) => link === 'fore' && code.startsWith('LW3'))")
     assert "Mass of the robot: 7 kg" in page.locator(".inspect-facts").inner_text()
@@ -73,25 +77,25 @@ def test_inspect_card_names_missing_parts_and_closes_like_menu(start, open_page,
     page.mouse.down()
     page.mouse.move(box["x"] + 260, box["y"] + 400)
     page.mouse.up()
-    assert card.is_visible(), "who turns the scene wants to see what is inspected"
+    assert card.is_visible(), "the card stays visible while the scene is rotated"
     page.mouse.click(box["x"] + 200, box["y"] + 400)
     assert card.is_hidden()
 
 
 def test_joint_axes_show_limits_and_positions(page):
     switch(page, "joints")
-    until(page, "lw.inspected.joints?.length === 4")
+    until(page, "lw.invisibleProperties.joints?.length === 4")
     page.locator('[data-joint="upper_joint"] input[type=text]').fill("0.7")
     page.keyboard.press("Enter")
     page.locator('[data-joint="slide_joint"] input[type=text]').fill("0.1")
     page.keyboard.press("Enter")
-    until(page, "Math.abs(lw.inspected.joints[0].position - 0.7) < 1e-4")
-    until(page, "Math.abs(lw.inspected.joints[2].position - 0.1) < 1e-4")
-    joints = {joint["name"]: joint for joint in state(page, "inspected.joints")}
+    until(page, "Math.abs(lw.invisibleProperties.joints[0].position - 0.7) < 1e-4")
+    until(page, "Math.abs(lw.invisibleProperties.joints[2].position - 0.1) < 1e-4")
+    joints = {joint["name"]: joint for joint in state(page, "invisibleProperties.joints")}
     assert (joints["upper_joint"]["lower"], joints["upper_joint"]["upper"]) == (-2, 2)
     assert joints["finger_joint"]["position"] == pytest.approx(-0.04, abs=1e-4)
     switch(page, "joints")
-    until(page, "lw.inspected.joints.length === 0 && lw.inspected.vertices === 0")
+    until(page, "lw.invisibleProperties.joints.length === 0 && lw.invisibleProperties.vertices === 0")
 
 
 def test_frames_are_drawn_by_depth_and_collisions_in_contrast(page):
@@ -101,12 +105,12 @@ def test_frames_are_drawn_by_depth_and_collisions_in_contrast(page):
     distance.press("Enter")
     until(page, "lw.view.distance === 3")  # the base is in the middle
     switch(page, "frames")
-    until(page, "String(lw.inspected.frames) === '1,1,1,1,1'")
+    until(page, "String(lw.invisibleProperties.frames) === '1,1,1,1,1'")
     page.locator(".inspect-depth input").fill("2")
-    until(page, "String(lw.inspected.frames) === '1,1,1'")
+    until(page, "String(lw.invisibleProperties.frames) === '1,1,1'")
     switch(page, "frames")
-    becomes(lambda: orange(page), 0)  # the base is RViz's red
+    becomes(lambda: count_orange(page), 0)  # the base is RViz's red
     switch(page, "contrast")
-    becomes(lambda: orange(page) >= 3, True)
+    becomes(lambda: count_orange(page) >= 3, True)
     switch(page, "contrast")
-    becomes(lambda: orange(page), 0)
+    becomes(lambda: count_orange(page), 0)

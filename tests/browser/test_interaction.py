@@ -1,4 +1,4 @@
-"""What a user does with the mouse and keyboard: orbit, toggle, move sliders, click a link."""
+"""Interaction with mouse and keyboard: orbit, toggles, sliders, clicks on links."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from tests.browser.conftest import becomes, frames_drawn_meanwhile, state, until
+from tests.browser.conftest import becomes, count_frames, state, until
 from tests.places import PACKAGE
 
 pytestmark = pytest.mark.browser
@@ -117,7 +117,7 @@ def test_position_beyond_limits_is_clamped(page):
 
 def test_clicked_link_is_selected_with_source_location(page):
     box = scene_box(page)
-    # The lower deck's front, below the scene's middle, where nothing stands before it.
+    # The lower deck's front, below the scene's middle, where nothing hides it.
     page.mouse.click(box["x"] + box["width"] * 0.56, box["y"] + box["height"] * 0.53)
     until(page, "lw.selected !== null")
     selected = state(page, "selected")
@@ -135,8 +135,8 @@ def test_clicked_link_is_selected_with_source_location(page):
 def test_idle_scene_is_not_redrawn(page):
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitemcheckbox", name="Time", exact=True).click()
-    becomes(lambda: frames_drawn_meanwhile(page) <= 2, True)
-    assert frames_drawn_meanwhile(page) <= 2
+    becomes(lambda: count_frames(page) <= 2, True)
+    assert count_frames(page) <= 2
 
 
 def test_selected_link_shows_macro_call_and_values(page):
@@ -144,7 +144,7 @@ def test_selected_link_shows_macro_call_and_values(page):
     row.locator(".row-name").dblclick()
     page.get_by_role("treeitem").filter(has_text="left_wheel_link").first.locator(".row-name").click()
     until(page, "lw.selected?.link === 'left_wheel_link'")
-    # Where it would lie over the robot, only its head is shown at first.
+    # A card that would cover the robot is folded at first.
     page.locator(".selection-card [aria-expanded=false]").click()
     provenance = page.locator(".selection-card .provenance")
     provenance.wait_for()

@@ -1,4 +1,4 @@
-"""The Joints panel: units, poses, sweeps, and links that are dragged in the scene."""
+"""The Joints panel: units, poses, sweeps, and dragging of links in the scene."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 import pytest
 
 from tests.browser.arm import write_arm
-from tests.browser.conftest import becomes, state, two_seconds_pass, until
+from tests.browser.conftest import becomes, state, until, wait_two_seconds
 
 pytestmark = pytest.mark.browser
 
@@ -37,22 +37,22 @@ def test_units_limits_and_mimic_joints_are_shown(page):
 
 def test_long_joint_names_keep_their_ends(start, open_page, tmp_path):
     name = "hand_at_the_end_of_the_left_arm_of_the_upper_body_finger_{}_joint"
-    parts = ['<link name="base"/>']
+    elements = ['<link name="base"/>']
     for number in (1, 2):
         ends = f'<parent link="base"/><child link="finger_{number}"/>'
-        parts.append(
+        elements.append(
             f'<link name="finger_{number}"/><joint name="{name.format(number)}" type="continuous">{ends}</joint>'
         )
-    (tmp_path / "hand.urdf").write_text(f'<robot name="hand">{"".join(parts)}</robot>')
+    (tmp_path / "hand.urdf").write_text(f'<robot name="hand">{"".join(elements)}</robot>')
     page = open_page(start("view", str(tmp_path / "hand.urdf")))
     names = page.locator(".joint-name")
     names.nth(1).wait_for()
     for number, label in enumerate(names.all(), start=1):
         assert label.get_attribute("title") == label.text_content() == name.format(number)
-        beginning, end = (label.locator("span").nth(index) for index in (0, 1))
-        assert end.text_content() == f"finger_{number}_joint"
-        assert beginning.evaluate("(element) => element.scrollWidth > element.clientWidth")
-        assert end.evaluate("(element) => element.scrollWidth <= element.clientWidth + 1")
+        head, tail = (label.locator("span").nth(index) for index in (0, 1))
+        assert tail.text_content() == f"finger_{number}_joint"
+        assert head.evaluate("(element) => element.scrollWidth > element.clientWidth")
+        assert tail.evaluate("(element) => element.scrollWidth <= element.clientWidth + 1")
         assert page.get_by_role("slider", name=name.format(number), exact=True).is_visible()
 
 
@@ -68,11 +68,11 @@ def test_saved_poses_are_recalled_and_survive_reload(page):
     until(page, "lw.ready")
     page.locator('.chip[data-pose="bent"] .chip-name').click()
     until(page, "lw.joints.upper_joint === 0.5")
-    with page.expect_download() as saved:
+    with page.expect_download() as download:
         page.get_by_label("More about poses").click()
         page.get_by_role("menuitem", name="Export as SRDF").click()
-    text = saved.value.path().read_text()
-    assert saved.value.suggested_filename == "arm.srdf"
+    text = download.value.path().read_text()
+    assert download.value.suggested_filename == "arm.srdf"
     assert '<group_state name="bent"' in text
     assert '<joint name="upper_joint" value="0.5"/>' in text
     page.locator('.chip[data-pose="bent"] .chip-remove').click()
@@ -93,9 +93,9 @@ def test_sweep_moves_joints_until_stopped(page):
     page.get_by_role("button", name="Stop the sweep").click()
 
     def stand() -> bool:
-        before = state(page, "joints")
-        two_seconds_pass(page)
-        return state(page, "joints") == before
+        positions = state(page, "joints")
+        wait_two_seconds(page)
+        return state(page, "joints") == positions
 
     becomes(stand, True)
 

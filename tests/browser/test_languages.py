@@ -1,4 +1,4 @@
-"""The language of a page is changed while somebody works with it."""
+"""A change of the page's language during use."""
 
 from __future__ import annotations
 
@@ -37,19 +37,19 @@ def test_language_switch_keeps_view_state_and_reloads_no_mesh(start, open_page):
     page.get_by_role("tab", name="Displays").click()
     page.get_by_role("searchbox", name="Filter displays and properties").fill("link")
     until(page, "lw.selection.length === 1 && lw.description.focus?.kind === 'joint' && lw.settled")
-    shown = page.evaluate(f"() => {{ const lw = window.linkwright; return {_SHOWN}; }}")
-    assert shown["tool"] == "rviz_default_plugins/Select"
+    state_before = page.evaluate(f"() => {{ const lw = window.linkwright; return {_SHOWN}; }}")
+    assert state_before["tool"] == "rviz_default_plugins/Select"
 
     page.get_by_role("button", name="中文").click()
     page.get_by_role("button", name="EN").wait_for()
     until(page, "lw.ready && lw.settled")
-    becomes(lambda: page.evaluate(f"() => {{ const lw = window.linkwright; return {_SHOWN}; }}"), shown)
-    fetched = page.evaluate(
+    becomes(lambda: page.evaluate(f"() => {{ const lw = window.linkwright; return {_SHOWN}; }}"), state_before)
+    mesh_requests = page.evaluate(
         "() => performance.getEntriesByType('resource').filter(({ name }) => name.includes('/mesh/'))"
         ".map(({ transferSize, encodedBodySize }) => transferSize < encodedBodySize)"
     )
-    assert fetched == [True]
-    # A page that is loaded by itself begins anew.
+    assert mesh_requests == [True]
+    # A reload would reset this.
     page.reload()
     until(page, "lw.ready")
     assert state(page, "selection") == []

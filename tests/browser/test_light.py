@@ -1,6 +1,6 @@
-"""The studio shows what lamps light as film would; the light at the camera shows colors as they are written.
+"""Light in the page: the studio compresses bright colors as film does; the camera's light keeps the given colors.
 
-`view` shows robots of any color before a ground that they stand out from, also where the processor draws.
+In `view`, robots of any color stand out from the background, also with software rendering.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Visualization Manager:
 
 
 def grays(start, open_page, tmp_path: Path, light: str) -> list[int]:
-    """How bright the ball is along a line through its middle, from its top to its foot."""
+    """Return the brightness of the ball along a line through its center, from top to bottom."""
     (tmp_path / "ball.urdf").write_text(BALL)
     (tmp_path / f"{light}.rviz").write_text(VIEW.format(light=light))
     page = open_page(start("view", str(tmp_path / "ball.urdf"), "-d", str(tmp_path / f"{light}.rviz")))
@@ -43,7 +43,7 @@ def grays(start, open_page, tmp_path: Path, light: str) -> list[int]:
 
 def test_studio_light_does_not_saturate_lit_surfaces(start, open_page, tmp_path):
     camera, studio = (grays(start, open_page, tmp_path, light) for light in ("Camera", "Studio"))
-    assert max(camera) >= 254, "what faces the camera has its own color"
+    assert max(camera) >= 254, "a face toward the camera has its own color"
     assert 225 < max(studio) < 252
     assert studio.count(max(studio)) < len(studio) / 5, "brightness tells the shape: nothing is cut off at white"
 
@@ -52,11 +52,11 @@ BLACK = BALL.replace("1 1 1 1", "0 0 0 1")
 
 
 def column(page, across: float = 0.5) -> list[int]:
-    """How bright the scene is from its top to its bottom, at a share of its width."""
+    """Return the brightness of the scene from top to bottom, at a share of its width."""
     box = page.locator(".canvas-box canvas").first.bounding_box()
     x = box["x"] + across * box["width"]
-    places = [(x, box["y"] + box["height"] * (0.02 + 0.96 * step / 60)) for step in range(61)]
-    return [sum(color) // 3 for color in colors_at(page, *places)]
+    pixels = [(x, box["y"] + box["height"] * (0.02 + 0.96 * step / 60)) for step in range(61)]
+    return [sum(color) // 3 for color in colors_at(page, *pixels)]
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])

@@ -1,4 +1,4 @@
-"""The live panels: plots, topics, the node graph, parameters, the log and the teleop pad, used in a real browser."""
+"""The live panels in a real browser: plots, topics, node graph, parameters, log and teleop pad."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ GRID = "- Class: rviz_default_plugins/Grid\n  Enabled: true\n  Name: Grid"
 
 @dataclass
 class Robot:
-    """Nodes that publish a current at 1 kHz and joints at 50 Hz, have parameters, log, and take velocities."""
+    """Nodes that publish a current at 1 kHz and joints at 50 Hz, have parameters, log, and receive velocities."""
 
     live: LiveViewer
-    driven: list[tuple[float, float]] = field(default_factory=list)
+    velocities: list[tuple[float, float]] = field(default_factory=list)
 
     async def start(self) -> None:
         graph = self.live.node.graph
@@ -43,27 +43,27 @@ class Robot:
         graph.create_node("planner").create_subscription(JOINT_STATE, "/joint_states", lambda _: None, 10)
         graph.create_node("gripper", namespace="/left").create_subscription(FLOAT, "/left/current", lambda _: None, 10)
         self.base = graph.create_node("base")
-        self.base.create_subscription(TWIST, "/cmd_vel", self._take, 10)
+        self.base.create_subscription(TWIST, "/cmd_vel", self._on_velocity, 10)
         limits = ParameterDescriptor(description="Greatest speed", floating_point_range=[Range(0.0, 2.0)])
         self.base.declare_parameter("speed", 1.5, limits)
         self.base.declare_parameter("wheels", ["left", "right"])
         self._task = asyncio.get_running_loop().create_task(self._publish(arm, current, joints))
 
     async def _publish(self, arm, current, joints) -> None:
-        started, sent = time.monotonic(), 0
+        start, sent = time.monotonic(), 0
         while True:
             await asyncio.sleep(0.02)
-            while sent < (time.monotonic() - started) * 1000:
+            while sent < (time.monotonic() - start) * 1000:
                 current.publish(FLOAT(data=math.sin(sent / 200)))
                 sent += 1
             message = JOINT_STATE(name=["shoulder", "elbow"], position=[0.25, math.sin(sent / 500)])
             message.header.stamp = arm.get_clock().now().to_msg()
             joints.publish(message)
 
-    def _take(self, message) -> None:
-        self.driven.append((message.linear.x, message.angular.z))
+    def _on_velocity(self, message) -> None:
+        self.velocities.append((message.linear.x, message.angular.z))
 
-    def say(self, *texts: str) -> None:
+    def log_texts(self, *texts: str) -> None:
         for text in texts:
             self.live.run(lambda text=text: self.base.get_logger().warning(text))
 
@@ -118,19 +118,19 @@ def test_topic_fields_are_plotted(page: Page, robot: Robot):
     becomes(lambda: len(colors_drawn(page)), 2)
     # A pause holds the window, while samples are taken on.
     page.get_by_role("button", name="Pause").first.click()
-    held = page.evaluate("window.linkwright.panels.monitor.window")
+    window = page.evaluate("window.linkwright.panels.monitor.window")
     count = page.evaluate("window.linkwright.panels.monitor.plots[0].series[1].samples")
     until(page, f"{MONITOR}.plots[0].series[1].samples > {count + 200}")
-    assert page.evaluate("window.linkwright.panels.monitor.window") == held
+    assert page.evaluate("window.linkwright.panels.monitor.window") == window
     # What is seen is what is saved.
     with page.expect_download() as download:
         page.get_by_role("button", name="Save the values of this plot").click()
     rows = list(csv.reader(download.value.path().read_text().splitlines()))
     assert rows[0] == ["time", "/joint_states.position[shoulder]", "/left/current.data"]
     assert len(rows) > 1500
-    assert all(held[0] - 1e-5 <= float(row[0]) <= held[1] + 1e-5 for row in rows[1:])
+    assert all(window[0] - 1e-5 <= float(row[0]) <= window[1] + 1e-5 for row in rows[1:])
     page.get_by_role("button", name="Resume").click()
-    until(page, f"{MONITOR}.window[1] > {held[1]}")
+    until(page, f"{MONITOR}.window[1] > {window[1]}")
     # Each series counts for itself, and closing the panel ends the subscriptions.
     page.get_by_role("button", name="Remove /joint_states.position[shoulder]").click()
     wait_until(lambda: subscribers(robot, "/joint_states") == 1)
@@ -140,9 +140,11 @@ def test_topic_fields_are_plotted(page: Page, robot: Robot):
 
 def test_plot_library_loads_with_first_plot_and_its_style(page: Page):
     until(page, "document.querySelectorAll('main canvas').length > 0")
-    fetched = "performance.getEntriesByType('resource').filter(({ name }) => name.includes('plot-library')).length"
-    assert page.evaluate(fetched) == 0
-    # Were it drawn before its style sheet is there, it would be a heap of boxes for a moment.
+    request_count = (
+        "performance.getEntriesByType('resource').filter(({ name }) => name.includes('plot-library')).length"
+    )
+    assert page.evaluate(request_count) == 0
+    # Without its style sheet, it would be a heap of boxes for a moment.
     page.evaluate(
         """() => new MutationObserver((_, observer) => {
             const drawn = document.querySelector(".u-over");
@@ -154,11 +156,11 @@ def test_plot_library_loads_with_first_plot_and_its_style(page: Page):
     show(page, "Plots")
     page.wait_for_function("window.positioned")
     assert page.evaluate("window.positioned") == "absolute"
-    assert page.evaluate(fetched) == 2
+    assert page.evaluate(request_count) == 2
 
 
 def colors_drawn(page: Page) -> set[str]:
-    """Which of the first two colors of series the canvas of the first plot has."""
+    """Return which of the first two series colors the canvas of the first plot has."""
     return set(
         page.evaluate(
             """() => {
@@ -203,7 +205,7 @@ def test_topics_are_measured_and_opened(page: Page, robot: Robot):
     message.get_by_role("button", name="Plot this field").first.click()
     until(page, f"{MONITOR}.plots[0].series[0].name === '/joint_states.position[0]'")
     until(page, f"{MONITOR}.plots[0].series[0].last === 0.25")
-    # The Topics panel lies behind the plots now, and measures nothing.
+    # The Topics panel is behind the plots now, and measures nothing.
     wait_until(lambda: subscribers(robot, "/left/current") == 1)
 
 
@@ -219,9 +221,9 @@ def test_node_graph_shows_publishers_and_subscribers(page: Page, robot: Robot):
     page.locator(".vertex[data-id='topic:/joint_states']").click()
     details = page.locator(".graph-details")
     becomes(lambda: all(name in details.inner_text() for name in ("sensor_msgs/msg/JointState", "/planner")), True)
-    near = page.locator(".vertex.near")
+    neighbors = page.locator(".vertex.near")
     becomes(
-        lambda: sorted(near.evaluate_all("elements => elements.map((element) => element.dataset.id)")),
+        lambda: sorted(neighbors.evaluate_all("elements => elements.map((element) => element.dataset.id)")),
         ["node:/arm", "node:/planner"],
     )
     # A node that comes is drawn without being asked for.
@@ -232,9 +234,9 @@ def test_node_graph_shows_publishers_and_subscribers(page: Page, robot: Robot):
     page.locator(".vertex[data-id='node:/left/motor']").wait_for()
     page.locator(".graph-drawing").focus()
     drawing = page.locator(".graph-drawing > svg > g")
-    before = drawing.get_attribute("transform")
+    transform = drawing.get_attribute("transform")
     page.keyboard.press("+")
-    becomes(lambda: drawing.get_attribute("transform") != before, True)
+    becomes(lambda: drawing.get_attribute("transform") != transform, True)
 
 
 def test_parameters_are_edited(page: Page, robot: Robot):
@@ -263,7 +265,7 @@ def test_parameters_are_edited(page: Page, robot: Robot):
 def test_log_is_filtered_and_renders_only_visible_rows(page: Page, robot: Robot):
     show(page, "Log")
     until(page, f"{MONITOR}.log !== undefined")
-    robot.say(*(f"line {number}" for number in range(300)))
+    robot.log_texts(*(f"line {number}" for number in range(300)))
     until(page, f"{MONITOR}.log.last === 'line 299'")
     page.locator(".virtual-list").get_by_text("line 299").wait_for()
     assert page.locator(".virtual-list .log-row").count() < 60
@@ -293,38 +295,38 @@ def test_teleop_pad_publishes_while_held(page: Page, robot: Robot):
     pad = page.locator(".pad")
     pad.focus()
     page.keyboard.down("i")
-    wait_until(lambda: len(robot.driven) >= 4)
+    wait_until(lambda: len(robot.velocities) >= 4)
     page.keyboard.down("j")
-    wait_until(lambda: robot.driven[-1] == (0.5, 1.0))
+    wait_until(lambda: robot.velocities[-1] == (0.5, 1.0))
     page.keyboard.up("i")
     page.keyboard.up("j")
-    wait_until(lambda: robot.driven[-1] == (0.0, 0.0))
-    robot.driven.clear()
+    wait_until(lambda: robot.velocities[-1] == (0.0, 0.0))
+    robot.velocities.clear()
     # By hand: the corner at the top right is full speed and a turn to the right.
     box = pad.bounding_box()
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     page.mouse.down()
     page.mouse.move(box["x"] + box["width"], box["y"])
-    wait_until(lambda: (0.5, -1.0) in robot.driven)
+    wait_until(lambda: (0.5, -1.0) in robot.velocities)
     page.mouse.up()
-    wait_until(lambda: robot.driven[-1] == (0.0, 0.0))
-    robot.driven.clear()
+    wait_until(lambda: robot.velocities[-1] == (0.0, 0.0))
+    robot.velocities.clear()
     # By gamepad: the left stick, while LB is held.
     page.evaluate(GAMEPAD)
     page.get_by_role("checkbox", name="Gamepad").check()
     page.get_by_text("Test pad").wait_for()
-    assert robot.driven == []
+    assert robot.velocities == []
     page.evaluate("window.testPad.buttons[4].pressed = true")
-    wait_until(lambda: (0.5, 0.0) in robot.driven)
+    wait_until(lambda: (0.5, 0.0) in robot.velocities)
     page.evaluate("window.testPad.buttons[4].pressed = false")
-    wait_until(lambda: robot.driven[-1] == (0.0, 0.0))
-    robot.driven.clear()
+    wait_until(lambda: robot.velocities[-1] == (0.0, 0.0))
+    robot.velocities.clear()
     # Whoever closes the page in the middle of it stops the robot.
     pad.focus()
     page.keyboard.down("ArrowUp")
-    wait_until(lambda: len(robot.driven) >= 2)
+    wait_until(lambda: len(robot.velocities) >= 2)
     page.close()
-    wait_until(lambda: robot.driven[-1] == (0.0, 0.0))
+    wait_until(lambda: robot.velocities[-1] == (0.0, 0.0))
     wait_until(lambda: robot.live.run(lambda: robot.live.node.graph.count_publishers("/cmd_vel")) == 0)
 
 
@@ -342,22 +344,22 @@ def test_teleop_pad_stops_when_touch_ends_tab_hides_or_page_crashes(page: Page, 
 
     for end in ("touchEnd", "touchCancel"):
         touch("touchStart")
-        wait_until(lambda: robot.driven and robot.driven[-1] == (0.5, 0.0))
+        wait_until(lambda: robot.velocities and robot.velocities[-1] == (0.5, 0.0))
         touch(end)
-        wait_until(lambda: robot.driven[-1] == (0.0, 0.0))
+        wait_until(lambda: robot.velocities[-1] == (0.0, 0.0))
     pad.focus()
     page.keyboard.down("i")
-    wait_until(lambda: robot.driven[-1] == (0.5, 0.0))
+    wait_until(lambda: robot.velocities[-1] == (0.5, 0.0))
     page.evaluate("""() => {
         Object.defineProperty(document, "hidden", { value: true, configurable: true });
         document.dispatchEvent(new Event("visibilitychange"));
         delete document.hidden;
     }""")
-    wait_until(lambda: robot.driven[-1] == (0.0, 0.0))
+    wait_until(lambda: robot.velocities[-1] == (0.0, 0.0))
     page.keyboard.up("i")
     page.keyboard.down("j")
-    wait_until(lambda: robot.driven[-1] == (0.0, 1.0))
-    # A page that is gone says nothing more: the server stops the robot.
+    wait_until(lambda: robot.velocities[-1] == (0.0, 1.0))
+    # A crashed page sends nothing: the server stops the robot.
     with pytest.raises(Error, match="crash"):
         page.goto("chrome://crash")
-    wait_until(lambda: robot.driven[-1] == (0.0, 0.0))
+    wait_until(lambda: robot.velocities[-1] == (0.0, 0.0))

@@ -1,4 +1,4 @@
-"""Markers and interactive markers, drawn and handled in a real browser."""
+"""Markers and interactive markers, drawn and used in a real browser."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def color(r: float, g: float, b: float, a: float = 1.0):
 
 
 def all_kinds(mesh: Path) -> list[Marker]:
-    """One marker of each type, in a row along y."""
+    """Return a marker of each type, in a row along y."""
     triangle = [(0, 0, 0), (1, 0, 0), (0, 0, 1)]
     rainbow = [color(1.0, 0.0, 0.0), color(0.0, 1.0, 0.0), color(0.0, 0.0, 1.0)]
     markers = [
@@ -115,10 +115,10 @@ def test_unreadable_marker_mesh_is_reported(live, open_page, tmp_path):
 def test_box_selection_ignores_hidden_markers(live, open_page):
     viewer = live(MARKERS.replace("Pitch: 0.6", "Pitch: 0").replace("Yaw: 0.8", "Yaw: 0"))
     page = open_page(viewer, wait=False)
-    wall, hidden, beside = (marker(number, kind=Marker.CUBE, color=color(0.0, 1.0, 0.0)) for number in range(3))
+    wall, hidden, neighbor = (marker(number, kind=Marker.CUBE, color=color(0.0, 1.0, 0.0)) for number in range(3))
     wall.pose.position.x, wall.scale.y, wall.scale.z = 2.0, 3.0, 3.0
-    beside.pose.position.y = 3.0
-    viewer.publish("/marks", MarkerArray(markers=[wall, hidden, beside]))
+    neighbor.pose.position.y = 3.0
+    viewer.publish("/marks", MarkerArray(markers=[wall, hidden, neighbor]))
     until(page, "Object.keys(lw.displays[1]?.drawn?.markers ?? {}).length === 3")
     viewer.settle(page)
     page.keyboard.press("s")
@@ -129,8 +129,8 @@ def test_box_selection_ignores_hidden_markers(live, open_page):
     page.mouse.move(box["x"] + box["width"] - 20, box["y"] + box["height"] - 20, steps=5)
     page.mouse.up()
     until(page, "JSON.stringify(lw.selection).includes('a/2')")
-    assert "a/0" in (chosen := page.evaluate("() => JSON.stringify(window.linkwright.selection)"))
-    assert "a/1" not in chosen
+    assert "a/0" in (selection := page.evaluate("() => JSON.stringify(window.linkwright.selection)"))
+    assert "a/1" not in selection
 
 
 INTERACTIVE = configuration(
@@ -158,7 +158,7 @@ def test_interactive_marker_is_dragged_along_its_axis(live, open_page):
     until(page, "lw.tool.class.endsWith('/Interact')")
     viewer.settle(page)
     box = page.locator("canvas").first.bounding_box()
-    # The eye is above, x to the right: the arrow ends at x = 1.8.
+    # The camera is above, x to the right: the arrow ends at x = 1.8.
     middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     meter = box["height"] / (2 * 8 * 0.4142)
     start = (middle[0] + 1.4 * meter, middle[1])

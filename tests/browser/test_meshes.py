@@ -1,4 +1,4 @@
-"""Mesh files of every kind that RViz reads, and what a broken one looks like."""
+"""Mesh files of all formats that RViz reads, and reports about broken ones."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ def link(name: str, mesh: str, y: float) -> str:
 @pytest.fixture
 def robot(tmp_path):
     box = trimesh.creation.box((0.2, 0.1, 0.3))
-    for kind in ("stl", "obj", "glb"):
-        box.export(tmp_path / f"box.{kind}")
+    for extension in ("stl", "obj", "glb"):
+        box.export(tmp_path / f"box.{extension}")
     shutil.copy(PACKAGE / "meshes" / "kinect.dae", tmp_path / "box.dae")
 
-    def write(*more: str) -> str:
-        links = [link(kind, f"file://{tmp_path}/box.{kind}", 0.4 * n) for n, kind in enumerate(KINDS)]
+    def write(*extra_links: str) -> str:
+        links = [link(extension, f"file://{tmp_path}/box.{extension}", 0.4 * n) for n, extension in enumerate(KINDS)]
         path = tmp_path / "robot.urdf"
-        path.write_text(f'<robot name="r"><link name="base"/>{"".join(links)}{"".join(more)}</robot>')
+        path.write_text(f'<robot name="r"><link name="base"/>{"".join(links)}{"".join(extra_links)}</robot>')
         return str(path)
 
     return write
@@ -54,7 +54,7 @@ def test_all_mesh_formats_are_drawn(start, open_page, robot):
 
 
 def test_malformed_collada_is_read_as_leniently_as_by_rviz(start, open_page, robot, tmp_path):
-    """Exporters write what XML forbids: assimp names the nodes of an STL ``<STL_BINARY>``."""
+    """Exporters write invalid XML: assimp names the nodes of an STL ``<STL_BINARY>``."""
     proper = (tmp_path / "box.dae").read_text()
     loose = proper.replace('<node id="body"', '<!-- made -- by hand --><node id="<STL_BINARY>"', 1)
     assert loose != proper
@@ -85,25 +85,25 @@ def test_broken_mesh_is_reported_at_its_link(start, open_page, robot, tmp_path):
         (tmp_path / name).write_bytes(data)
     links = [link(f"broken_{name[:-4]}", f"file://{tmp_path}/{name}", -0.4) for name in BROKEN]
     page = open_page(start("view", robot(*links)))
-    files_by_link = {f"broken_{name[:-4]}": (name, words) for name, (_, words) in BROKEN.items()}
+    files_by_link = {f"broken_{name[:-4]}": (name, message) for name, (_, message) in BROKEN.items()}
     becomes(
         lambda: {link: rows(page).get(link, ("", ""))[0] for link in files_by_link},
         dict.fromkeys(files_by_link, "error"),
     )
-    for link_name, (name, words) in files_by_link.items():
+    for link_name, (name, message) in files_by_link.items():
         text = rows(page)[link_name][1]
         assert name in text
-        assert words in text
+        assert message in text
     becomes(lambda: [rows(page).get(kind, ("", ""))[0] for kind in KINDS], ["ok"] * len(KINDS))
     assert state(page, "robot.visuals") == len(KINDS)
 
 
 def test_slow_mesh_is_reported_until_loaded(start, open_page, robot):
     page = open_page(start("view", robot()))
-    held = []
+    held_requests = []
 
     def hold(route) -> None:
-        held.append(route)
+        held_requests.append(route)
 
     page.route("**/box.stl*", hold)
     page.reload()
@@ -111,7 +111,7 @@ def test_slow_mesh_is_reported_until_loaded(start, open_page, robot):
     notice.wait_for()
     assert "box.stl" in notice.inner_text()
     page.get_by_text("Status: Loading", exact=True).wait_for()
-    held[0].continue_()
+    held_requests[0].continue_()
     notice.wait_for(state="hidden")
     page.locator(".row", has_text="Status: Ok").nth(1).wait_for()
     page.wait_for_function("window.linkwright?.ready === true")

@@ -1,4 +1,4 @@
-"""A world is modeled in the page: what is added, moved and saved stands in its file."""
+"""Editing of a world in the page: additions and moves are saved in its file."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ YARD = """\
 BOUNDS = "lw.displays.find(({class: c}) => c === 'linkwright/World').drawn.links['box::link']?.visuals[0]?.bounds"
 
 
-def modeled(start, open_page, tmp_path: Path):
-    """The page of a world that is modeled, and the world's file."""
+def open_modeling(start, open_page, tmp_path: Path):
+    """Open the page of a world in modeling mode; return it with the world's file."""
     path = tmp_path / "yard.world"
     path.write_text(YARD)
     page = open_page(start("sim", str(path)))
@@ -42,7 +42,7 @@ def modeled(start, open_page, tmp_path: Path):
 
 
 def add_box(page) -> None:
-    """By the keyboard, which puts it into the middle of the view."""
+    """Add a box with the keyboard, in the center of the view."""
     page.get_by_role("button", name="Box", exact=True).press("Enter")
     page.get_by_role("option", name="box", selected=True).wait_for()
 
@@ -52,17 +52,17 @@ def number(page, key: str):
 
 
 def test_added_box_is_moved_undone_and_saved(start, open_page, tmp_path):
-    page, path = modeled(start, open_page, tmp_path)
+    page, path = open_modeling(start, open_page, tmp_path)
     bar = page.get_by_role("toolbar", name="Model the world")
     undo, redo, save = (bar.get_by_role("button", name=name) for name in ("Undo", "Redo", "Save the world"))
     assert undo.is_disabled()
     add_box(page)
-    before = float(number(page, "pose/0").input_value())
+    x = float(number(page, "pose/0").input_value())
     number(page, "pose/0").fill("1.5")
     number(page, "pose/0").press("Enter")
     until(page, f"Math.abs({BOUNDS}?.min[0] - 1.25) < 1e-3")
     undo.click()
-    becomes(lambda: float(number(page, "pose/0").input_value()), before)
+    becomes(lambda: float(number(page, "pose/0").input_value()), x)
     redo.click()
     becomes(lambda: number(page, "pose/0").input_value(), "1.5")
     assert redo.is_disabled()
@@ -71,27 +71,27 @@ def test_added_box_is_moved_undone_and_saved(start, open_page, tmp_path):
     save.click()
     page.get_by_role("img", name="unsaved changes").wait_for(state="hidden")
     text = path.read_text()
-    added = re.search(r'    <model name="box">.*?</model>\n', text, re.DOTALL)
-    assert added is not None
-    assert "<pose>1.5 " in added[0]
-    assert text.replace(added[0], "") == YARD
+    box_element = re.search(r'    <model name="box">.*?</model>\n', text, re.DOTALL)
+    assert box_element is not None
+    assert "<pose>1.5 " in box_element[0]
+    assert text.replace(box_element[0], "") == YARD
 
 
 def test_gizmo_moves_selection_and_keys_group_and_delete(start, open_page, tmp_path):
-    page, path = modeled(start, open_page, tmp_path)
+    page, path = open_modeling(start, open_page, tmp_path)
     page.get_by_role("button", name="Snap to the grid").click()
     add_box(page)
     number(page, "pose/2").fill("0")  # the middle of the box is in the middle of the view
     number(page, "pose/2").press("Enter")
     until(page, f"Math.abs({BOUNDS}?.min[2] + 0.25) < 1e-3")
-    before = [number(page, f"pose/{axis}").input_value() for axis in range(3)]
+    position = [number(page, f"pose/{axis}").input_value() for axis in range(3)]
     box = page.locator(".canvas-box canvas").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 60, y, steps=4)
     page.mouse.up()
-    wait_until(lambda: [number(page, f"pose/{axis}").input_value() for axis in range(3)] != before)
+    wait_until(lambda: [number(page, f"pose/{axis}").input_value() for axis in range(3)] != position)
     page.get_by_role("option", name="crate").click(modifiers=["Shift"])
     page.keyboard.press("Control+g")
     page.get_by_role("option", name="group", selected=True).wait_for()

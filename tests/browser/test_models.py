@@ -1,4 +1,4 @@
-"""Every model of the package, through its two launch files, as RViz would show it."""
+"""All models of the package through their two launch files, as in RViz."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ TOWER = """
 """
 
 
-def launch_words(model: str, package: Path = PACKAGE) -> list[str]:
+def launch_arguments(model: str, package: Path = PACKAGE) -> list[str]:
     launch = "display_xacro.launch.py" if model.endswith(".xacro") else "display.launch.py"
     return ["launch", str(package / "launch" / launch), f"model:={package / 'urdf' / model}"]
 
 
 @pytest.mark.parametrize(("model", "links"), MODELS.items())
 def test_model_is_shown(start, open_page, model, links):
-    page = open_page(start(*launch_words(model)))
+    page = open_page(start(*launch_arguments(model)))
     assert state(page, "robot.name") == "mbot"
     assert state(page, "robot.links") == links
     assert state(page, "robot.visuals") == links
@@ -106,6 +106,6 @@ def test_launch_files_run_from_package_folder(start, open_page, package, launch,
 
 
 def test_top_plate_is_above_base(start, open_page):
-    page = open_page(start(*launch_words("mbot_base.xacro")))
+    page = open_page(start(*launch_arguments("mbot_base.xacro")))
     # Its visual's center is another 0.16 m above its frame: 0.32 m above base_link (tests/viewer has the shape).
     assert state(page, "frames.base_link_upper.position") == pytest.approx([0, 0, 0.16], abs=1e-6)

@@ -1,4 +1,4 @@
-"""Displays of MoveIt, drawn in a real browser."""
+"""Displays of MoveIt in a real browser."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ MOTION_PLANNING = configuration(
 
 
 def kitchen(*, wrist: float = 0.2):
-    """A scene with a table, a ball, a cone, an octomap, and a cup in the hand."""
+    """Return a scene with a table, a ball, a cone, an octomap, and a cup in the hand."""
     robot = state(shoulder=0.3, wrist=wrist)
     cylinder = primitive(SolidPrimitive.CYLINDER, 0.3, 0.08)
     robot.attached_collision_objects = [
@@ -63,8 +63,8 @@ def kitchen(*, wrist: float = 0.2):
     octomap.header.frame_id, octomap.origin = "base", pose(x=-1.0, y=-1.0)
     octomap.octomap.id, octomap.octomap.binary, octomap.octomap.resolution = "OcTree", True, 0.1
     inner, leaves = struct.pack("<H", 0xFFFF), struct.pack("<H", 0xAAAA)
-    down = struct.pack("<H", 3 << 14) + struct.pack("<H", 3) * 12
-    octomap.octomap.data = signed(down + inner + (inner + leaves * 8) * 8)
+    octree_data = struct.pack("<H", 3 << 14) + struct.pack("<H", 3) * 12
+    octomap.octomap.data = signed(octree_data + inner + (inner + leaves * 8) * 8)
     return kitchen_scene
 
 
@@ -75,14 +75,21 @@ def test_planning_scene_and_trajectory_are_drawn(live, open_page, tmp_path):
     viewer.publish("/robot_description", String(data=ARM.replace('<sphere radius="0.1"/>', mesh)), DESCRIPTION_QOS)
     page = open_page(viewer, wait=False)
     viewer.publish("/monitored_planning_scene", kitchen())
-    shown = "lw.displays[1]?.drawn?.markers"
+    markers = "lw.displays[1]?.drawn?.markers"
     until(
-        page, f"{shown}?.['Scene Geometry/table'] === 'cube' && {shown}?.['Scene Geometry/octomap 0.1'] === 'cube_list'"
+        page,
+        f"{markers}?.['Scene Geometry/table'] === 'cube' && {markers}?.['Scene Geometry/octomap 0.1'] === 'cube_list'",
     )
-    until(page, f"{shown}?.['Scene Robot/hand'] === 'mesh' && {shown}?.['Scene Robot holds/cup'] === 'cylinder'")
+    until(
+        page,
+        f"{markers}?.['Scene Robot/hand'] === 'mesh' && {markers}?.['Scene Robot holds/cup'] === 'cylinder'",
+    )
     viewer.publish("/display_planned_path", trajectory(*(0.1 * step for step in range(15))))
-    until(page, f"{shown}?.['Planned Path/hand'] === 'mesh' && {shown}?.['Goal State/upper'] === 'cylinder'")
-    until(page, f"{shown}?.['Planned Path 15/upper'] === 'cylinder'")
+    until(
+        page,
+        f"{markers}?.['Planned Path/hand'] === 'mesh' && {markers}?.['Goal State/upper'] === 'cylinder'",
+    )
+    until(page, f"{markers}?.['Planned Path 15/upper'] === 'cylinder'")
     page.screenshot(path=tmp_path / "moveit.png")
     assert viewer.run(lambda: [row.text for row in viewer.viewer.displays[1].status if row.level != "ok"]) == []
 

@@ -1,4 +1,4 @@
-"""Meshes of a robot that moves, on a page that is slow: fewer triangles, and the same image."""
+"""Meshes of a moving robot on a slow page: fewer triangles, and the same image."""
 
 from __future__ import annotations
 
@@ -41,17 +41,17 @@ SLOW = """() => {
 
 
 @contextmanager
-def stirred(viewer: LiveViewer) -> Iterator[None]:
-    """A robot that moves all the time, by less than anybody sees."""
+def keep_moving(viewer: LiveViewer) -> Iterator[None]:
+    """Move a robot all the time by invisible amounts."""
     ends = threading.Event()
 
-    def stir() -> None:
-        turn = 0
+    def move() -> None:
+        count = 0
         while not ends.wait(0.05):
-            turn += 1
-            viewer.place("round", 0.0, 0.0, 1e-6 * (turn % 2))
+            count += 1
+            viewer.place("round", 0.0, 0.0, 1e-6 * (count % 2))
 
-    thread = threading.Thread(target=stir)
+    thread = threading.Thread(target=move)
     thread.start()
     try:
         yield
@@ -62,9 +62,9 @@ def stirred(viewer: LiveViewer) -> Iterator[None]:
 
 
 def pixels(page: Any) -> np.ndarray:
-    """The scene as the screen shows it: height x width x 3."""
+    """Return the scene as on the screen: height x width x 3."""
     box = page.locator(".canvas-box canvas").bounding_box()
-    # The notice about the slow page lies over the upper right corner, and the sign of the axes over the lower one.
+    # The notice about the slow page covers the upper right corner, and the axes cover the lower one.
     clip = {"x": box["x"], "y": box["y"], "width": 0.6 * box["width"], "height": box["height"]}
     with Image.open(io.BytesIO(page.screenshot(clip=clip))) as image:
         return np.asarray(image.convert("RGB")).astype(int)
@@ -97,10 +97,10 @@ def test_moving_meshes_are_simplified_and_look_the_same(live, open_page, tmp_pat
 
     all_of_them = 2 * FACES["ball.stl"] + FACES["box.glb"]
     page.evaluate(SLOW)
-    with stirred(viewer):
+    with keep_moving(viewer):
         until(page, "lw.displays[0].drawn.moving.pieces === 3")
         triangles = state(page, "displays[0].drawn.moving.triangles")
-        moving = pixels(page)
+        image_in_motion = pixels(page)
     assert 0 < triangles < all_of_them / 4
 
     page.evaluate("() => { window.slow = false; }")
@@ -108,7 +108,7 @@ def test_moving_meshes_are_simplified_and_look_the_same(live, open_page, tmp_pat
     np.testing.assert_array_equal(pixels(page), still)
 
     # Coarse frames have larger pixels: along edges they differ, within surfaces hardly.
-    difference = np.abs(moving - still).max(axis=2)
+    difference = np.abs(image_in_motion - still).max(axis=2)
     assert (still.max(axis=2) > 100).mean() > 0.02  # there is something to be seen
     assert np.median(difference[still.max(axis=2) > 100]) < 12
     assert (difference > 60).mean() < 0.02

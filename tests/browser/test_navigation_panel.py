@@ -1,4 +1,4 @@
-"""The panel of nav2 in a real browser."""
+"""nav2's panel in a real browser."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`linkwright.show` in a notebook: a cell of JupyterLab has the robot, with sliders that move it."""
+"""`linkwright.show` in a notebook: a cell of JupyterLab shows the robot, with sliders for its joints."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ TOKEN = "test"
 
 @pytest.fixture
 def lab(tmp_path: Path):
-    """The address of a JupyterLab with a notebook that shows a robot."""
+    """Return the address of a JupyterLab with a notebook that shows a robot."""
     cell = {
         "cell_type": "code",
         "execution_count": None,
@@ -44,21 +44,21 @@ def lab(tmp_path: Path):
     kernel = {"name": "python3", "display_name": "Python 3"}
     notebook = {"cells": [cell], "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5}
     (tmp_path / "robot.ipynb").write_text(json.dumps(notebook), encoding="utf-8")
-    words = [
+    command = [
         *(sys.executable, "-m", "jupyterlab", "--no-browser", "--ip=127.0.0.1", "--port=0", "--allow-root"),
         *(f"--IdentityProvider.token={TOKEN}", f"--ServerApp.root_dir={tmp_path}"),
     ]
     folders = {f"JUPYTER_{name}_DIR": str(tmp_path / name) for name in ("CONFIG", "RUNTIME", "DATA")}
     with (tmp_path / "lab.log").open("w") as log:
         process = subprocess.Popen(
-            words,
+            command,
             env={**os.environ, **folders, "HOME": str(tmp_path)},
             stdout=log,
             stderr=subprocess.STDOUT,
         )
 
     def address() -> str:
-        """The server's address once it answers, from the file that it writes; empty before."""
+        """Return the server's address from the file that it writes; empty until it runs."""
         assert process.poll() is None, (tmp_path / "lab.log").read_text()
         for file in (tmp_path / "RUNTIME").glob("jpserver-*.json"):
             with contextlib.suppress(OSError, json.JSONDecodeError):  # the server may still be writing the file
@@ -97,9 +97,9 @@ def highest(frame) -> float:
 
 
 def test_show_raises_if_description_is_invalid():
-    with pytest.raises(LinkwrightError) as raised:
+    with pytest.raises(LinkwrightError) as error:
         show("<robot name='a'><joint/></robot>")
-    assert raised.value.diagnostics
+    assert error.value.diagnostics
 
 
 def test_a_notebook_holds_the_page_once_and_a_terminal_prints_one_line():

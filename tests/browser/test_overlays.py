@@ -1,4 +1,4 @@
-"""What lies over the scene: everything open at once, in windows of three sizes, and nothing over anything else."""
+"""Overlays on the scene: everything open at once, in windows of three sizes, and nothing overlaps."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
 from tests.browser.arm import write_arm
 from tests.browser.conftest import becomes, state, until
-from tests.browser.kept import keep
+from tests.browser.kept_pictures import keep
 from tests.browser.live import configuration
 
 pytestmark = pytest.mark.browser
@@ -49,7 +49,7 @@ TELL = """() => {
 
 
 def overlapping(boxes: dict[str, list[float]]) -> list[str]:
-    """The pairs of boxes that have more than an edge in common, and those that are not within the scene."""
+    """Return the pairs of boxes that overlap by more than an edge, and the boxes outside the scene."""
     left, top, right, bottom = boxes.pop(".scene-box")
     overlaps = [
         f"{first} over {second}"
@@ -94,14 +94,14 @@ WIDE = '<robot name="wide"><link name="base"><visual><geometry><box size="2 2 1"
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, height):
-    """One that would is folded, and unfolded by hand it has the robot go aside, until it is gone."""
+    """A card that would cover the robot is folded; unfolded by hand, it moves the robot aside until it is closed."""
     (tmp_path / "wide.urdf").write_text(WIDE)
     page = open_page(start("view", str(tmp_path / "wide.urdf")))
     page.set_viewport_size({"width": width, "height": height})
     fit = page.get_by_role("toolbar", name="Tools", exact=True).get_by_role("button", name="Fit", exact=True)
     fit.click()
     until(page, "lw.settled")
-    before = state(page, "robotsReach")
+    right_edge = state(page, "robotsRightEdge")
     canvas = page.locator(".canvas-box canvas")
     middle = canvas.bounding_box()
     canvas.click(position={"x": middle["width"] / 2, "y": middle["height"] / 2})
@@ -110,34 +110,34 @@ def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, 
 
     def covers() -> bool:
         box = card.bounding_box()
-        return state(page, "robotsReach") > box["x"] - canvas.bounding_box()["x"]
+        return state(page, "robotsRightEdge") > box["x"] - canvas.bounding_box()["x"]
 
-    reaches = before > middle["width"] - 10 - min(256, 0.55 * (middle["width"] - 20))
+    reaches = right_edge > middle["width"] - 10 - min(256, 0.55 * (middle["width"] - 20))
     assert fold.get_attribute("aria-expanded") == ("false" if reaches else "true")
     if reaches:
         assert card.bounding_box()["height"] < 45
         fold.click()
-        becomes(lambda: state(page, "robotsReach") < before, True)
+        becomes(lambda: state(page, "robotsRightEdge") < right_edge, True)
         fit.click()  # where going aside is not enough
     becomes(covers, False)
     page.keyboard.press("Escape")
     card.wait_for(state="hidden")
     page.keyboard.press("Shift+F")
-    becomes(lambda: state(page, "robotsReach"), pytest.approx(before, abs=1))
+    becomes(lambda: state(page, "robotsRightEdge"), pytest.approx(right_edge, abs=1))
 
 
 def test_robot_shifted_aside_stays_on_canvas(start, open_page, tmp_path):
-    """A robot that takes nearly all of the canvas goes aside only until it meets the canvas's edge."""
+    """A robot that fills nearly all of the canvas moves aside only as far as the canvas's edge."""
     (tmp_path / "flat.urdf").write_text(WIDE.replace("2 2 1", "2 2 0.1"))
     page = open_page(start("view", str(tmp_path / "flat.urdf")))
     page.set_viewport_size({"width": 1024, "height": 768})
     page.get_by_role("toolbar", name="Tools", exact=True).get_by_role("button", name="Fit", exact=True).click()
     until(page, "lw.settled")
     # In the middle of the canvas it has as much room at its left as at its right.
-    reach, width = state(page, "robotsReach"), page.locator(".canvas-box canvas").bounding_box()["width"]
+    reach, width = state(page, "robotsRightEdge"), page.locator(".canvas-box canvas").bounding_box()["width"]
     page.locator(".inspect > button").click()
     page.locator(".inspect-card").wait_for()
-    becomes(lambda: state(page, "robotsReach"), pytest.approx(reach - (width - reach), abs=1))
+    becomes(lambda: state(page, "robotsRightEdge"), pytest.approx(reach - (width - reach), abs=1))
 
 
 TALL = """\
@@ -159,34 +159,34 @@ def test_tall_robot_moves_below_banner_and_returns(start, open_page, tmp_path, w
     page.keyboard.press("Shift+F")
 
     def head() -> int:
-        """How many pixels of the head are seen."""
+        """Return the number of visible pixels of the head."""
         until(page, "lw.settled")
         box = page.locator(".scene-box").bounding_box()
         with Image.open(io.BytesIO(page.screenshot(clip=box))) as image:
             return sum(count for count, (r, g, b) in image.convert("RGB").getcolors(1 << 24) if g > 60 > max(r, b))
 
-    whole = head()
-    assert whole > 300
+    head_before = head()
+    assert head_before > 300
     file.write_text(TALL.replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()
     if height > 600:
-        becomes(lambda: head() > 0.98 * whole, True)
+        becomes(lambda: head() > 0.98 * head_before, True)
     page.keyboard.press("Shift+F")  # where going down is not enough
-    becomes(lambda: head() > 0.15 * whole, True)
+    becomes(lambda: head() > 0.15 * head_before, True)
     file.write_text(TALL)
     page.locator(".banner").wait_for(state="hidden")
     page.keyboard.press("Shift+F")
-    becomes(head, whole)
+    becomes(head, head_before)
 
 
 def test_fit_button_shows_whole_robot(start, open_page, tmp_path):
     page = open_page(start("view", str(write_arm(tmp_path))))
     until(page, "lw.settled")
-    before = state(page, "view.values")
+    view = state(page, "view.values")
     page.get_by_role("button", name="Zero", exact=True).click()
-    until(page, f"lw.view.values.Distance !== {before['Distance']}")
+    until(page, f"lw.view.values.Distance !== {view['Distance']}")
     page.get_by_role("toolbar", name="Tools", exact=True).get_by_role("button", name="Fit", exact=True).click()
-    until(page, "Math.abs(lw.view.values['Focal Point/Z'] - " + str(before["Focal Point/Z"]) + ") < 1e-6")
+    until(page, "Math.abs(lw.view.values['Focal Point/Z'] - " + str(view["Focal Point/Z"]) + ") < 1e-6")
     assert state(page, "view.values.Distance") < 10
     page.keyboard.press("z")
     until(page, "lw.view.values.Distance === 10")
@@ -200,8 +200,8 @@ def test_replaced_description_is_reported(live, open_page):
     page = open_page(viewer)
     notice = page.locator("[data-notice=owner]")
     assert notice.is_hidden()
-    other = viewer.run(lambda: viewer.node.graph.create_node("other"))
-    publisher = viewer.run(lambda: other.create_publisher(String, "/robot_description", DESCRIPTION_QOS))
+    other_node = viewer.run(lambda: viewer.node.graph.create_node("other"))
+    publisher = viewer.run(lambda: other_node.create_publisher(String, "/robot_description", DESCRIPTION_QOS))
     viewer.run(lambda: publisher.publish(String(data=WIDE.replace('"wide"', '"narrow"'))))
     notice.get_by_text("Another node now publishes the description").wait_for()
     becomes(lambda: "Robot The description of /other is shown" in notice.inner_text(), True)

@@ -1,4 +1,4 @@
-"""Which panels are open: the file's when it is new to the browser, and the user's from then on."""
+"""The open panels: those of the file on the first visit of a browser, and then those of the user."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ USUAL = ("Displays", "Views", "Tool Properties", "Selection", "Time")
 
 
 @pytest.fixture(autouse=True)
-def _state_of_the_user(tmp_path, monkeypatch):
+def _user_state(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
 
 
-def settled(page, *names: str) -> None:
-    """Waits until these are the panels that are open, beside the scene and those that RViz never had."""
+def wait_for_panels(page, *names: str) -> None:
+    """Wait until exactly these panels are open, beside the scene and the panels that RViz does not have."""
     expected = sorted({*names, *OURS})
     page.wait_for_function(
         """wanted => {
@@ -47,7 +47,7 @@ def choose(page, name: str) -> None:
     page.get_by_role("menuitemcheckbox", name=name, exact=True).click()
 
 
-def opened(page, path: Path) -> None:
+def open_file(page, path: Path) -> None:
     page.keyboard.press("Control+o")
     page.get_by_label("File name").fill(str(path))
     page.keyboard.press("Enter")
@@ -64,18 +64,18 @@ def is_unsaved(page) -> bool:
 
 
 def test_rviz_file_opens_panels_that_rviz_shows(live, open_page, tmp_path: Path):
-    path, other = tmp_path / "robot.rviz", tmp_path / "other.rviz"
+    path, other_path = tmp_path / "robot.rviz", tmp_path / "other.rviz"
     path.write_text(RVIZ_PANELS + configuration(GRID) + window_state(Selection=False, **{"Tool Properties": False}))
-    other.write_text("Panels:\n  - {Class: rviz_common/Time, Name: Time}\n" + configuration(GRID))
+    other_path.write_text("Panels:\n  - {Class: rviz_common/Time, Name: Time}\n" + configuration(GRID))
     viewer = live(configuration(GRID))
     page = open_page(viewer, wait=False)
-    settled(page, *USUAL)  # the file says nothing of panels
-    opened(page, path)
-    settled(page, "Displays", "Views")
-    opened(page, other)
-    settled(page, "Time")
-    opened(page, path)
-    settled(page, "Displays", "Views")
+    wait_for_panels(page, *USUAL)  # the file does not list panels
+    open_file(page, path)
+    wait_for_panels(page, "Displays", "Views")
+    open_file(page, other_path)
+    wait_for_panels(page, "Time")
+    open_file(page, path)
+    wait_for_panels(page, "Displays", "Views")
     # What the others leave is the scene's.
     columns = ("Displays", "Views", "Diagnostics")
     becomes(lambda: [column_width(page, column) for column in columns], pytest.approx([320, 290, 290], abs=3))
@@ -89,29 +89,29 @@ def test_opened_and_closed_panels_are_remembered_and_saved(live, open_page, tmp_
     path.write_text(RVIZ_PANELS + configuration(GRID) + window_state(Selection=False, **{"Tool Properties": False}))
     viewer = live(configuration(GRID))
     page = open_page(viewer, wait=False)
-    settled(page, *USUAL)
-    opened(page, path)
-    settled(page, "Displays", "Views")
+    wait_for_panels(page, *USUAL)
+    open_file(page, path)
+    wait_for_panels(page, "Displays", "Views")
     neighbor = open_page(viewer, wait=False)
-    settled(neighbor, "Displays", "Views")
+    wait_for_panels(neighbor, "Displays", "Views")
     close(page, "Views")
     choose(page, "Selection")
-    settled(page, "Displays", "Selection")
+    wait_for_panels(page, "Displays", "Selection")
     page.locator(".file-name .unsaved").wait_for()
     choose(page, "Plots")  # none of RViz's
     page.reload()
     page.locator(".panel-tab", has_text="Plots").wait_for()
     close(page, "Plots")
-    settled(page, "Displays", "Selection")
-    # Nobody else's panels come or go, and whoever comes later begins with the file's.
-    settled(neighbor, "Displays", "Views")
-    settled(open_page(viewer, wait=False), "Displays", "Selection")
+    wait_for_panels(page, "Displays", "Selection")
+    # Panels of other pages stay, and a new browser starts with the file's panels.
+    wait_for_panels(neighbor, "Displays", "Views")
+    wait_for_panels(open_page(viewer, wait=False), "Displays", "Selection")
     page.keyboard.press("Control+s")
     page.locator(".file-name .unsaved").wait_for(state="detached")
     assert panels_of(RvizConfig.load(path)) == ["displays", "selection"]
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitem", name="Reset layout").click()
-    settled(page, "Displays", "Selection")
+    wait_for_panels(page, "Displays", "Selection")
 
 
 BROKEN = (

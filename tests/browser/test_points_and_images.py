@@ -1,4 +1,4 @@
-"""Clouds, scans, maps and images, published to a viewer and looked at in a real browser."""
+"""Clouds, scans, maps and images, published to a viewer and checked in a real browser."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from linkwright.messages import get_message
-from tests.browser.conftest import becomes, frames_drawn_meanwhile, state, until
+from tests.browser.conftest import becomes, count_frames, state, until
 from tests.browser.pixels import Color, colors_at
 from tests.images.test_images import image
 from tests.rviz.clouds.test_clouds import cloud, depth_image, scan, xyz
@@ -38,14 +38,14 @@ def config(*displays: dict[str, Any]) -> str:
     return yaml.safe_dump({"Visualization Manager": manager})
 
 
-def seen(page: Any, *points: tuple[float, float]) -> list[Color]:
-    """The colors at points of the fixed frame, seen from above."""
+def colors_from_above(page: Any, *points: tuple[float, float]) -> list[Color]:
+    """Return the colors at points of the fixed frame, as seen from above."""
     box = page.locator(".canvas-box canvas").bounding_box()
     x0, y0 = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     return colors_at(page, *((x0 + x * SCALE, y0 - y * SCALE) for x, y in points))
 
 
-def drawn(page: Any, display: int = 0) -> dict[str, Any]:
+def drawing_of(page: Any, display: int = 0) -> dict[str, Any]:
     drawing: dict[str, Any] = state(page, f"displays[{display}].drawn")
     return drawing
 
@@ -67,22 +67,22 @@ def test_point_cloud_is_drawn_in_all_styles(live, open_page):
     viewer.place("lidar", 0.0, 1.0, 0.0)
     viewer.publish("/cloud", three_points(frame="lidar"))
     until(page, "lw.displays[0]?.drawn?.points === 3")
-    assert drawn(page)["bounds"] == [[-2, 1, 0], [2, 1, 0]]
+    assert drawing_of(page)["bounds"] == [[-2, 1, 0], [2, 1, 0]]
     for style in ("Flat Squares", "Points", "Squares", "Spheres", "Boxes", "Tiles"):
         set_property(viewer, 0, ("Style",), style)
         until(page, f"lw.displays[0].drawn.style === '{style}'")
         viewer.settle(page)
-        inside = 0.2 if style == "Spheres" else 0.26
-        places = [(-2.0, 1.0), (0.0, 1.0), (2.0, 1.0), (0.35, 1.0), (inside, 1.0), (0.27, 1.27)]
+        inner = 0.2 if style == "Spheres" else 0.26
+        points = [(-2.0, 1.0), (0.0, 1.0), (2.0, 1.0), (0.35, 1.0), (inner, 1.0), (0.27, 1.27)]
 
-        def looks(places: list[tuple[float, float]] = places) -> tuple[list[Color], bool, bool]:
-            *colors, near_edge, corner = seen(page, *places)
+        def looks(points: list[tuple[float, float]] = points) -> tuple[list[Color], bool, bool]:
+            *colors, near_edge, corner = colors_from_above(page, *points)
             return colors, near_edge[1] > 100, corner == BACKGROUND
 
         becomes(looks, ([RED, GREEN, BLUE, BACKGROUND], True, style == "Spheres"))
     set_property(viewer, 0, ("Style",), "Flat Squares")
     set_property(viewer, 0, ("Alpha",), 0.5)
-    becomes(lambda: seen(page, (-2.0, 1.0)), [pytest.approx((152, 24, 24), abs=2)])
+    becomes(lambda: colors_from_above(page, (-2.0, 1.0)), [pytest.approx((152, 24, 24), abs=2)])
 
 
 def test_clicked_point_is_selected_and_shows_fields(live, open_page):
@@ -115,7 +115,7 @@ def test_large_cloud_is_updated_continuously(live, open_page):
         array[name] = rng.uniform(-3, 3, array.size)
     # The first comes while the page is busy starting, the rest one upon the other: the last is drawn, and all of it.
     for number in range(10):
-        array["x"][0] = 4.0 + number  # the bounds say which message is drawn
+        array["x"][0] = 4.0 + number  # the bounds show which message is drawn
         viewer.publish("/cloud", cloud(array))
     until(page, "lw.displays[0]?.drawn?.bounds?.[1][0] === 13 && lw.displays[0].drawn.points === 100000")
     # From now on each is, when it has its time.
@@ -141,8 +141,8 @@ def test_laser_scan_temperature_and_grid_cells_are_drawn(live, open_page):
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.points === 1")
     until(page, "lw.displays[2].drawn.cells === 1")
     viewer.settle(page)
-    places = (1.0, 0.0), (-3.0, 0.0), (0.0, -2.0), (-1.9, 0.2), (-1.9, 0.3)
-    becomes(lambda: seen(page, *places), [RED, (255, 0, 255), RED, (25, 255, 0), BACKGROUND])
+    points = (1.0, 0.0), (-3.0, 0.0), (0.0, -2.0), (-1.9, 0.2), (-1.9, 0.3)
+    becomes(lambda: colors_from_above(page, *points), [RED, (255, 0, 255), RED, (25, 255, 0), BACKGROUND])
 
 
 def test_map_is_drawn_and_updated(live, open_page):
@@ -155,20 +155,22 @@ def test_map_is_drawn_and_updated(live, open_page):
     viewer.publish("/map", grid(data=[0, 100, -1, 50, 110, -128]))
     until(page, "lw.displays[0]?.drawn?.cells === 6")
     # The corner is at x -1, cells are half a meter wide.
-    places = [(-0.75, 0.25), (-0.25, 0.25), (0.25, 0.25), (-0.75, 0.75), (-0.25, 0.75), (0.25, 0.75)]
+    points = [(-0.75, 0.25), (-0.25, 0.25), (0.25, 0.25), (-0.75, 0.75), (-0.25, 0.75), (0.25, 0.75)]
     shades = [(255, 255, 255), (0, 0, 0), (112, 137, 134), (128, 128, 128), (0, 255, 0), (255, 0, 0)]
-    becomes(lambda: seen(page, *places), shades)
+    becomes(lambda: colors_from_above(page, *points), shades)
     set_property(viewer, 0, ("Color Scheme",), "costmap")
-    becomes(lambda: seen(page, *places[:4]), [BACKGROUND, (255, 0, 255), (112, 137, 134), (127, 0, 128)])
+    becomes(lambda: colors_from_above(page, *points[:4]), [BACKGROUND, (255, 0, 255), (112, 137, 134), (127, 0, 128)])
     set_property(viewer, 0, ("Color Scheme",), "raw")
     set_property(viewer, 0, ("Binary representation",), True)
     set_property(viewer, 0, ("Binary threshold",), 50)
-    becomes(lambda: seen(page, *places[:4]), [(0, 0, 0), (255, 255, 255), (255, 255, 255), (255, 255, 255)])
+    becomes(
+        lambda: colors_from_above(page, *points[:4]), [(0, 0, 0), (255, 255, 255), (255, 255, 255), (255, 255, 255)]
+    )
     set_property(viewer, 0, ("Binary representation",), False)
     set_property(viewer, 0, ("Color Scheme",), "map")
     viewer.publish("/map_updates", update(0, 0, 1, 1, [100]))
     until(page, "lw.displays[0].drawn.counts[100] === 2")
-    becomes(lambda: seen(page, places[0]), [(0, 0, 0)])
+    becomes(lambda: colors_from_above(page, points[0]), [(0, 0, 0)])
 
 
 def test_map_drawn_behind_does_not_hide_points(live, open_page):
@@ -183,10 +185,10 @@ def test_map_drawn_behind_does_not_hide_points(live, open_page):
     viewer.publish("/cloud", three_points(frame="cellar"))
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.cells === 6")
     viewer.settle(page)
-    becomes(lambda: seen(page, (0.0, 0.0), (0.1, 0.1)), [GREEN, GREEN])
+    becomes(lambda: colors_from_above(page, (0.0, 0.0), (0.1, 0.1)), [GREEN, GREEN])
     set_property(viewer, 1, ("Draw Behind",), False)
     viewer.settle(page)
-    becomes(lambda: seen(page, (0.1, 0.1)) != [GREEN], True)
+    becomes(lambda: colors_from_above(page, (0.1, 0.1)) != [GREEN], True)
 
 
 def test_image_has_its_own_panel(live, open_page):
@@ -197,12 +199,12 @@ def test_image_has_its_own_panel(live, open_page):
     pixels[:, :20], pixels[:, 20:] = (255, 0, 0), (0, 0, 255)
     viewer.publish("/image", image("rgb8", 40, 20, pixels.tobytes()))
     until(page, "lw.displays[0]?.drawn?.width === 40")
-    assert drawn(page)["corner"] == [255, 0, 0, 255]
+    assert drawing_of(page)["corner"] == [255, 0, 0, 255]
 
     def looks() -> tuple[bool, list[Color]]:
         box = page.locator(".image-panel canvas").bounding_box()
-        places = [(0.4, box["height"] / 2), (0.6, box["height"] / 2), (0.5, 1.0)]
-        colors = colors_at(page, *((box["x"] + share * box["width"], box["y"] + down) for share, down in places))
+        positions = [(0.4, box["height"] / 2), (0.6, box["height"] / 2), (0.5, 1.0)]
+        colors = colors_at(page, *((box["x"] + share * box["width"], box["y"] + y) for share, y in positions))
         return box["height"] > box["width"] / 2, colors
 
     # The shape is kept: above and below the image it is black.
@@ -220,7 +222,7 @@ def test_image_has_its_own_panel(live, open_page):
 
 
 def layers(page: Any) -> list[str]:
-    """The layers that the browser composes the page of, by the attributes of their elements."""
+    """Return the browser's compositing layers of the page, by the attributes of their elements."""
     tools = page.context.new_cdp_session(page)
     messages: list[list[dict[str, Any]]] = []
     tools.on("LayerTree.layerTreeDidChange", lambda event: messages.append(event.get("layers", [])))
@@ -238,8 +240,10 @@ def test_image_is_composited_without_repainting_page(live, open_page):
     page = open_page(viewer, wait=False)
     viewer.publish("/image", image("rgb8", 40, 20, bytes(2400)))
     until(page, "lw.displays[0]?.drawn?.width === 40")
-    own = ("CANVAS height 20 width 40", "CANVAS data-engine", "DIV class orientation")
-    becomes(lambda: [any(layer.startswith(prefix) for layer in layers(page)) for prefix in own], [True, True, True])
+    own_layers = ("CANVAS height 20 width 40", "CANVAS data-engine", "DIV class orientation")
+    becomes(
+        lambda: [any(layer.startswith(prefix) for layer in layers(page)) for prefix in own_layers], [True, True, True]
+    )
 
 
 def test_compressed_image_is_decoded_by_browser(live, open_page):
@@ -271,8 +275,8 @@ def test_camera_display_shows_scene_over_image(live, open_page):
     viewer.publish("/eye/camera_info", info)
     viewer.publish("/eye/image", placed(image("rgb8", 40, 30, bytes([255, 255, 0]) * 1200), "eye"))
     until(page, "lw.displays[0]?.drawn?.image?.[0] === 40 && lw.displays[0].drawn.width > 0")
-    becomes(lambda: drawn(page)["middle"], [255, 255, 0, 255])  # the next frame has the image
-    assert drawn(page)["position"] == pytest.approx([0, 0, 0])
+    becomes(lambda: drawing_of(page)["middle"], [255, 255, 0, 255])  # the next frame has the image
+    assert drawing_of(page)["position"] == pytest.approx([0, 0, 0])
     viewer.publish("/cloud", three_points())
     until(page, "lw.displays[0].drawn.middle[0] < 200 && lw.displays[0].drawn.middle[2] > 100")  # blue, 2 m ahead
     set_property(viewer, 0, ("Visibility", "PointCloud2"), False)
@@ -292,9 +296,9 @@ def test_depth_image_is_drawn_as_points(live, open_page):
     viewer.publish("/color/image", placed(image("rgb8", 2, 1, bytes([255, 0, 0, 0, 255, 0]))))
     viewer.publish("/depth/image", placed(depth_image([[2.0, 4.0]])))
     until(page, "lw.displays[0]?.drawn?.points === 2")
-    becomes(lambda: drawn(page)["bounds"], [[0, 0, 2], [2, 0, 4]])
+    becomes(lambda: drawing_of(page)["bounds"], [[0, 0, 2], [2, 0, 4]])
     # A pixel is half as wide as it is far: 1 m and 2 m here.
-    becomes(lambda: seen(page, (-0.3, 0.0), (2.8, 0.0)), [RED, GREEN])
+    becomes(lambda: colors_from_above(page, (-0.3, 0.0), (2.8, 0.0)), [RED, GREEN])
 
 
 def test_depth_cloud_uses_chosen_image_transports(live, open_page):
@@ -311,9 +315,9 @@ def test_depth_cloud_uses_chosen_image_transports(live, open_page):
     viewer.publish("/depth/image/compressedDepth", depth_message(np.array([[2000, 4000]], np.uint16), "rvl"))
     until(page, "lw.displays[0]?.drawn?.points === 2 && lw.displays[1].drawn?.width === 2")
     viewer.settle(page)
-    assert drawn(page)["bounds"] == [[0, 0, 2], [2, 0, 4]]
-    assert drawn(page)["firstColor"][2] > 240
-    assert drawn(page, 1)["corner"] == [0, 0, 0, 255]
+    assert drawing_of(page)["bounds"] == [[0, 0, 2], [2, 0, 4]]
+    assert drawing_of(page)["firstColor"][2] > 240
+    assert drawing_of(page, 1)["corner"] == [0, 0, 0, 255]
 
 
 def test_idle_displays_are_not_redrawn(live, open_page):
@@ -323,5 +327,5 @@ def test_idle_displays_are_not_redrawn(live, open_page):
     viewer.publish("/map", grid())
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.cells === 6")
     viewer.settle(page)
-    becomes(lambda: frames_drawn_meanwhile(page), 0)
-    assert frames_drawn_meanwhile(page) == 0
+    becomes(lambda: count_frames(page), 0)
+    assert count_frames(page) == 0

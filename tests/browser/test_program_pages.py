@@ -1,4 +1,4 @@
-"""The page of a program in a terminal of the classroom: it comes beside the lesson, takes keys, and goes."""
+"""The page of a program in a terminal of the classroom: it opens beside the lesson, takes keys, and closes."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def page(start, open_page, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> P
 
 
 def frames_of(page: Page) -> list[Frame]:
-    """Wait for the pages of programs, and for what they show."""
+    """Wait for the pages of programs, and return their contents."""
     page.wait_for_selector(f"{FRAMES}:visible")
     frames = [frame for handle in page.locator(FRAMES).element_handles() if (frame := handle.content_frame())]
     for frame in frames:

@@ -1,4 +1,4 @@
-"""Where the pictures of a recording are seen, in windows of several sizes, and what is said in place of one."""
+"""The images of a recording in windows of several sizes, and the message in place of an unreadable one."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ CompressedImage = get_message("sensor_msgs/msg/CompressedImage")
 LaserScan = get_message("sensor_msgs/msg/LaserScan")
 
 
-def recorded(path: Path, *, scans: bool) -> Path:
-    """A recording with pictures of 4x4 pixels as they are and as files, one of these cut off, and scans or none."""
+def write_recording(path: Path, *, scans: bool) -> Path:
+    """Write a recording with raw and compressed images of 4x4 pixels, one of these truncated, with or without scans."""
     file = BytesIO()
     PIL.Image.new("RGB", (64, 64), (200, 30, 60)).save(file, "jpeg")
     raw = image("rgb8", 4, 4, bytes((200, 30, 60)) * 16)
@@ -46,11 +46,11 @@ def recorded(path: Path, *, scans: bool) -> Path:
 
 
 @pytest.fixture
-def shown(start, open_page, tmp_path: Path) -> Callable[..., Page]:
-    """A function that opens the page of such a recording in a window of some size."""
+def open_recording(start, open_page, tmp_path: Path) -> Callable[..., Page]:
+    """Return a function that opens the page of such a recording in a window of some size."""
 
     def show(width: int, height: int, *, scans: bool) -> Page:
-        program = start("view", str(recorded(tmp_path / "drive", scans=scans)))
+        program = start("view", str(write_recording(tmp_path / "drive", scans=scans)))
         page = open_page(program, wait=False, size=(width, height))
         until(page, "lw.timeline && lw.displays.some(({ drawn }) => drawn?.width === 4)")
         return page
@@ -65,31 +65,31 @@ def place(page: Page, selector: str) -> dict[str, float]:
 
 
 def boxes(page: Page) -> list[dict[str, float]]:
-    """The pictures that are seen."""
+    """Return the visible images."""
     rectangles = (panel.bounding_box() for panel in page.locator(".image-panel").all())
     return [dict(box) for box in rectangles if box is not None]
 
 
 def switch(page: Page, name: str) -> None:
-    """Click on the box of a display."""
+    """Toggle a display."""
     page.get_by_role("treeitem").filter(has_text=name).get_by_role("checkbox").first.click()
 
 
 @pytest.mark.parametrize("size", [(1280, 800), (800, 600)])
-def test_recording_with_only_images_shows_them_in_place_of_scene(shown, size):
-    page = shown(*size, scans=False)
+def test_recording_with_only_images_shows_them_in_place_of_scene(open_recording, size):
+    page = open_recording(*size, scans=False)
     becomes(lambda: place(page, ".image-panel")["width"] >= size[0] / 2 and page.locator(".canvas-box").count(), 0)
     page.locator(".dv-tab", has_text="3D View").dispatch_event("pointerdown")
     page.locator(".canvas-box").wait_for()
     page.locator(".dv-tab", has_text="raw").dispatch_event("pointerdown")
     switch(page, "front")
     becomes(lambda: len({box["y"] for box in boxes(page)}) == 1 and len(boxes(page)), 2)
-    left, right = sorted(boxes(page), key=lambda box: box["x"])
-    assert left["x"] + left["width"] <= right["x"], "they are beside each other"
+    left_box, right_box = sorted(boxes(page), key=lambda box: box["x"])
+    assert left_box["x"] + left_box["width"] <= right_box["x"], "they are beside each other"
 
 
-def test_image_is_beside_scene_in_small_window(shown):
-    page = shown(800, 600, scans=True)
+def test_image_is_beside_scene_in_small_window(open_recording):
+    page = open_recording(800, 600, scans=True)
     becomes(lambda: place(page, ".canvas-box")["width"] > 400, True)
     scene, panel = place(page, ".canvas-box"), place(page, ".image-panel")
     assert scene["x"] + scene["width"] <= panel["x"]
@@ -98,8 +98,8 @@ def test_image_is_beside_scene_in_small_window(shown):
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Displays").count() == 1
 
 
-def test_unreadable_image_shows_reason(shown):
-    page = shown(1280, 800, scans=False)
+def test_unreadable_image_shows_reason(open_recording):
+    page = open_recording(1280, 800, scans=False)
     switch(page, "cut/compressed")
     notice = page.locator(".image-notice", has_text="The image cannot be read")
     notice.get_by_text("The image file is truncated").wait_for()

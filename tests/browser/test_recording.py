@@ -1,4 +1,4 @@
-"""Recording from the page, used in a real browser: topics and the last minutes become files that open again."""
+"""Recording from the page in a real browser: topics and the last minutes become files that can be opened."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ MODEL = (
 @pytest.fixture
 def program(start, tmp_path: Path) -> Program:
     (tmp_path / "arm.urdf").write_text(MODEL)
-    shown: Program = start("view", "arm.urdf")
-    return shown
+    viewer: Program = start("view", "arm.urdf")
+    return viewer
 
 
 @pytest.fixture
 def page(program: Program, open_page) -> Page:
-    """A page that shows a robot, whose transforms come all the time."""
-    shown: Page = open_page(program, wait=False)
-    until(shown, "lw.timeline?.live && lw.timeline.kept > 1000 && lw.timeline.length > 2 && lw.frames.tip")
-    return shown
+    """Open a page that shows a robot whose transforms are published all the time."""
+    robot_page: Page = open_page(program, wait=False)
+    until(robot_page, "lw.timeline?.live && lw.timeline.sizeBytes > 1000 && lw.timeline.length > 2 && lw.frames.tip")
+    return robot_page
 
 
 def choose(page: Page, entry: str) -> None:
-    """Take an entry of the menu of Record."""
+    """Choose an entry of the Record menu."""
     page.get_by_role("button", name="Record", exact=True).click()
     page.get_by_role("menuitem", name=entry).click()
 
@@ -48,14 +48,14 @@ def is_stopped(page: Page, count: int) -> None:
 
 
 def topics(page: Page) -> dict[str, int]:
-    """The topics of the newest file, and how many messages they have."""
+    """Return the topics of the newest file, with their message counts."""
     with BagReader(state(page, "recording")["files"][0]) as bag:
         assert not bag.findings
         return {topic.name: topic.count for topic in bag.topics}
 
 
 def span(page: Page) -> float:
-    """The time from the first to the last message of the newest file, in seconds."""
+    """Return the time from the first to the last message of the newest file, in seconds."""
     with BagReader(state(page, "recording")["files"][0]) as bag:
         return (bag.end_ns - bag.start_ns) / 1e9
 
@@ -70,14 +70,14 @@ def test_all_topics_are_recorded_downloaded_and_reopened(page: Page, open_page, 
     is_stopped(page, 1)
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text(str(folder))
-    with page.expect_download() as fetched:
+    with page.expect_download() as download:
         dialog.get_by_role("button", name="Download").click()
-    download = tmp_path / "taken.mcap"
-    fetched.value.save_as(download)
+    copy = tmp_path / "taken.mcap"
+    download.value.save_as(copy)
     (file,) = folder.glob("*.mcap")
-    assert download.read_bytes() == file.read_bytes()
+    assert copy.read_bytes() == file.read_bytes()
     assert {"/tf", "/robot_description", "/joint_states"} <= topics(page).keys()
-    recorded_page = open_page(start("view", str(download)), wait=False)
+    recorded_page = open_page(start("view", str(copy)), wait=False)
     until(recorded_page, "lw.timeline?.live === false && lw.timeline.length > 1 && lw.frames.tip")
     assert recorded_page.get_by_role("button", name="Record", exact=True).count() == 0
 
@@ -107,24 +107,24 @@ def test_chosen_topics_are_recorded(page: Page):
 
 
 def test_all_pages_show_recording_after_its_page_closes(program: Program, page: Page, open_page):
-    other = open_page(program, wait=False)
+    other_page = open_page(program, wait=False)
     choose(page, "Record all topics")
-    until(other, "lw.recording?.path !== ''")
+    until(other_page, "lw.recording?.path !== ''")
     page.close()
-    until(other, "lw.recording.length >= 3")
-    stop(other)
-    is_stopped(other, 1)
-    other.get_by_role("dialog").get_by_role("button", name="OK").click()
-    other.get_by_role("button", name="Record", exact=True).click()
-    name = Path(state(other, "recording")["files"][0]).name
-    assert other.get_by_role("menuitem", name=f"Download {name}").count() == 1
+    until(other_page, "lw.recording.length >= 3")
+    stop(other_page)
+    is_stopped(other_page, 1)
+    other_page.get_by_role("dialog").get_by_role("button", name="OK").click()
+    other_page.get_by_role("button", name="Record", exact=True).click()
+    name = Path(state(other_page, "recording")["files"][0]).name
+    assert other_page.get_by_role("menuitem", name=f"Download {name}").count() == 1
 
 
 def test_last_minutes_and_marked_range_are_saved(page: Page):
     choose(page, "Save the last minutes")
     is_stopped(page, 1)
     assert topics(page)["/robot_description"] == 1
-    whole = span(page)
+    full_span = span(page)
     page.get_by_role("dialog").get_by_role("button", name="OK").click()
     page.get_by_role("button", name="Pause (Space)").click()
     until(page, "!lw.timeline.live")
@@ -141,10 +141,10 @@ def test_last_minutes_and_marked_range_are_saved(page: Page):
     begin, end = state(page, "recording")["mark"]
     choose(page, "Save the marked part")
     is_stopped(page, 2)
-    part = topics(page)
-    assert part["/tf"]
-    assert part["/robot_description"] == 1, "it is older, and needed"
-    assert 0.0 < span(page) < whole
+    range_topics = topics(page)
+    assert range_topics["/tf"]
+    assert range_topics["/robot_description"] == 1, "it is older, and needed"
+    assert 0.0 < span(page) < full_span
     assert span(page) == pytest.approx(end - begin, abs=0.1)
 
 

@@ -1,4 +1,4 @@
-"""Editing the model while it is shown: change, break, repair; joint positions and camera survive."""
+"""Changes of the model's file while it is shown: change, error, repair; joint positions and camera stay."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def model(tmp_path):
     return path
 
 
-def edit(path, before, after):
+def edit(path, old, new):
     text = path.read_text(encoding="utf-8")
-    assert before in text
-    path.write_text(text.replace(before, after), encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new), encoding="utf-8")
 
 
 def test_model_reloads_after_change_error_and_fix(start_fresh, open_page, model):

@@ -1,4 +1,4 @@
-"""Pages far away: what a slow line shows, and that nothing comes from elsewhere."""
+"""Pages on slow connections, and that pages request nothing from other hosts."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ SENSES = configuration(
 
 
 def noise(width: int, height: int) -> Any:
-    """An image of squares of any color: hard to compress, and as large as its panel it is so still."""
+    """Return an image of squares of random colors: hard to compress, also at the size of its panel."""
     message = image(width, height)
     squares = np.random.default_rng(1).integers(0, 256, (height // _SQUARE, width // _SQUARE, 3), np.uint8)
     message.data = squares.repeat(_SQUARE, axis=0).repeat(_SQUARE, axis=1).tobytes()
@@ -63,8 +63,8 @@ _WAITING = """async () => {
 }"""
 
 
-class Through:
-    """The address of a viewer through a slow line."""
+class SlowAddress:
+    """The address of a viewer, reached through a slow line."""
 
     def __init__(self, url: str) -> None:
         self.url = url
@@ -74,29 +74,29 @@ def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
     viewer = live(SENSES)
     viewer.place("tip", 1.0, 0.0, 0.0)
     line = slow_line(viewer.url, 100_000.0)  # images come no larger than their panel
-    page = open_page(Through(viewer.run(line.__aenter__)), wait=False)
+    page = open_page(SlowAddress(viewer.run(line.__aenter__)), wait=False)
     until(page, "lw.displays.length === 2")
 
     heavy = cloud(50_000), noise(1280, 720)
     facts: dict[str, Any] = {}
 
     def is_thinned() -> bool:
-        """Asked while both keep coming: of what comes no more all is sent in the end."""
+        """The state while both topics are published; the last message of a silent topic is sent completely."""
         for topic, message in zip(("/cloud", "/image"), heavy, strict=True):
             viewer.publish(topic, message)
         notice = "document.querySelector('.line-notice:not([hidden])')?.innerText ?? ''"
         facts.update(
             page.evaluate(f"() => ({{ text: {notice}, drawn: linkwright.displays.map((display) => display.drawn) }})")
         )
-        points, shown = facts["drawn"]
+        points, shown_points = facts["drawn"]
         return (
             all(
-                words in facts["text"]
-                for words in ("The connection is slow", "Cloud 1 in", "of 1280 × 720, quality", "WebP")
+                text in facts["text"]
+                for text in ("The connection is slow", "Cloud 1 in", "of 1280 × 720, quality", "WebP")
             )
             and points["step"] > 1
             and 0 < points["points"] < 50_000
-            and shown["width"] == 1280
+            and shown_points["width"] == 1280
         )
 
     wait_until(is_thinned, SECONDS, lambda: facts)
@@ -117,7 +117,7 @@ def test_fast_connection_shows_no_notice(live, open_page):
 
 
 def test_scene_is_not_drawn_before_displays_are_known(live, browser):
-    """Each frame of a waiting page is one less of the robot's where no graphics card draws."""
+    """Without a GPU, each frame of a waiting page would cost a frame of the robot's page."""
     viewer = live(SENSES)
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     context.add_init_script(_HELD)
@@ -133,7 +133,7 @@ def test_scene_is_not_drawn_before_displays_are_known(live, browser):
 
 def test_page_requests_nothing_from_other_hosts(live, browser):
     viewer = live(SENSES)
-    own = urlsplit(viewer.url).netloc
+    host = urlsplit(viewer.url).netloc
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     page = context.new_page()
     urls: list[str] = []
@@ -150,5 +150,5 @@ def test_page_requests_nothing_from_other_hosts(live, browser):
     page.wait_for_load_state("networkidle")
     context.close()
     assert len(urls) > 3
-    elsewhere = [url for url in urls if urlsplit(url).netloc != own and not url.startswith(("data:", "blob:"))]
+    elsewhere = [url for url in urls if urlsplit(url).netloc != host and not url.startswith(("data:", "blob:"))]
     assert elsewhere == []

@@ -1,4 +1,4 @@
-"""Ctrl-C, arrow up, Enter: open pages go on with the program that was started again."""
+"""A restart with Ctrl-C, arrow up and Enter: open pages continue with the new program."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ def port() -> str:
 
 @pytest.fixture
 def context(browser):
-    """A browser whose console may tell that nobody answered."""
+    """Return a browser whose console may show connection errors."""
     context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
     context.set_default_timeout(1000 * SECONDS)
     yield context
     context.close()
 
 
-def opened(context, url):
+def open_url(context, url):
     page = context.new_page()
     page.goto(url)
     until(page, "lw.ready")
@@ -43,7 +43,7 @@ def opened(context, url):
 
 
 def tabs(page) -> list[str]:
-    """Titles of panels, without the number of findings, which come one after the other."""
+    """Return the titles of the panels, without the number of findings, which arrive one by one."""
     return [re.sub(r" \(\d+\)", "", text) for text in page.locator(".dv-tab").all_inner_texts()]
 
 
@@ -57,7 +57,7 @@ def is_back(page) -> None:
 
 def test_pages_keep_panels_joint_pose_and_camera_after_restart(start, context, port):
     program = start("view", str(MBOT), "--port", port)
-    page, second = opened(context, program.url), opened(context, program.url)
+    page, second = open_url(context, program.url), open_url(context, program.url)
     page.locator('[data-joint="left_wheel_joint"] input[type=range]').fill("1.2")
     until(page, "lw.joints.left_wheel_joint > 1")
     joints = state(page, "joints")
@@ -70,8 +70,8 @@ def test_pages_keep_panels_joint_pose_and_camera_after_restart(start, context, p
     assert program.interrupt() == 130
     is_gone(page)
     assert "Start it again" in page.locator(".notice[data-state=ended]").inner_text()
-    restarted = start("view", str(MBOT), "--port", port)
-    assert restarted.url == program.url
+    new_program = start("view", str(MBOT), "--port", port)
+    assert new_program.url == program.url
     is_back(page)
     becomes(lambda: state(page, "joints"), joints)
     becomes(lambda: state(second, "joints"), joints)
@@ -82,10 +82,10 @@ def test_pages_keep_panels_joint_pose_and_camera_after_restart(start, context, p
 
 
 def test_restart_with_other_file_resets_view_and_keeps_panels(start, context, port, tmp_path):
-    other = tmp_path / "other.xacro"
-    shutil.copy(MBOT, other)
+    other_file = tmp_path / "other.xacro"
+    shutil.copy(MBOT, other_file)
     program = start("view", str(MBOT), "--port", port)
-    page = opened(context, program.url)
+    page = open_url(context, program.url)
     first = state(page, "view.distance")
     page.locator('[data-joint="left_wheel_joint"] input[type=range]').fill("1.2")
     until(page, "lw.joints.left_wheel_joint > 1")
@@ -95,7 +95,7 @@ def test_restart_with_other_file_resets_view_and_keeps_panels(start, context, po
     panels = tabs(page)
     assert program.interrupt() == 130
     is_gone(page)
-    start("view", str(other), "--port", port)
+    start("view", str(other_file), "--port", port)
     is_back(page)
     until(page, "lw.robot.visuals === 12 && lw.settled")
     becomes(lambda: state(page, "view.distance"), pytest.approx(first))
@@ -110,30 +110,30 @@ def shell(monkeypatch, tmp_path) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
 
 
-def shows(page, text: str) -> None:
+def wait_for_text(page, text: str) -> None:
     page.wait_for_function("text => window.linkwright?.panels.terminal.text?.includes(text)", arg=text, polling=50)
 
 
-def runs(page, command: str) -> None:
+def run(page, command: str) -> None:
     until(page, f"/[$#] *$/.test({TERMINAL}.text ?? '') && {TERMINAL}.notice === ''")
     page.locator(".terminal-screen:visible .xterm-helper-textarea").focus()
     page.keyboard.type(f"{command}\n")
 
 
 @posix
-@pytest.mark.parametrize("words", [("view", str(MBOT), "--terminal"), ("learn", "ws")], ids=["view", "learn"])
-def test_tabs_reattach_to_terminal_of_restarted_program(start, context, port, shell, words):
-    program = start(*words, "--port", port)
+@pytest.mark.parametrize("texts", [("view", str(MBOT), "--terminal"), ("learn", "ws")], ids=["view", "learn"])
+def test_tabs_reattach_to_terminal_of_restarted_program(start, context, port, shell, texts):
+    program = start(*texts, "--port", port)
     first = context.new_page()
     first.goto(program.url)
-    runs(first, "echo mine=$((6*7))")
-    shows(first, "mine=42")
+    run(first, "echo mine=$((6*7))")
+    wait_for_text(first, "mine=42")
     second = context.new_page()
     second.goto(program.url)
     until(second, f"{TERMINAL}.notice?.includes('another page')")
     assert program.interrupt() == 130
     until(first, f"{TERMINAL}.notice.includes('cannot be reached')")
-    start(*words, "--port", port)
+    start(*texts, "--port", port)
     for page in (first, second):
         is_back(page)
         page.reload()
@@ -143,13 +143,13 @@ def test_tabs_reattach_to_terminal_of_restarted_program(start, context, port, sh
         assert "mine" not in state(page, "panels.terminal.text")
     if state(second, "panels.terminal.notice") != "":
         second.get_by_role("button", name="Show it here").click()
-    runs(second, "echo again=$((6*7))")
-    shows(second, "again=42")
+    run(second, "echo again=$((6*7))")
+    wait_for_text(second, "again=42")
 
 
 @posix
 def test_page_with_lost_connection_reclaims_its_terminal(start, context, shell):
-    """The program does not notice the loss for seconds, and another page could have the terminal."""
+    """The program notices the loss only after seconds, in which another page could take the terminal."""
     sockets = []
 
     def through(page_end) -> None:
@@ -160,28 +160,28 @@ def test_page_with_lost_connection_reclaims_its_terminal(start, context, shell):
     page = context.new_page()
     page.route_web_socket(re.compile("/ws"), through)
     page.goto(start("view", str(MBOT), "--terminal").url)
-    runs(page, "echo mine=$((6*7))")
-    shows(page, "mine=42")
+    run(page, "echo mine=$((6*7))")
+    wait_for_text(page, "mine=42")
     sockets[0].close()
     page.locator(".notice[data-state=reconnecting]").wait_for()
     is_back(page)
     until(page, f"{TERMINAL}.notice === ''")
     assert len(sockets) == 2
-    runs(page, "echo again=$((6*7))")
-    shows(page, "again=42")
+    run(page, "echo again=$((6*7))")
+    wait_for_text(page, "again=42")
 
 
 def test_token_is_not_sent_to_program_without_it(start, context, port, monkeypatch, tmp_path):
     program = start("view", str(MBOT), "--port", port)
-    page = opened(context, program.url)
+    page = open_url(context, program.url)
     urls: list[str] = []
     page.on("request", lambda request: urls.append(request.url))
-    page.on("websocket", lambda opened: urls.append(opened.url))
+    page.on("websocket", lambda socket: urls.append(socket.url))
     assert program.interrupt() == 130
     is_gone(page)
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "of-another-user"))
-    other = start("view", str(MBOT), "--port", port)
-    assert other.url != program.url
+    other_program = start("view", str(MBOT), "--port", port)
+    assert other_program.url != program.url
     page.locator(".notice[data-state=refused]").wait_for()
     assert any("/proof?nonce=" in url for url in urls)
     assert not [url for url in urls if "token" in url]

@@ -1,4 +1,4 @@
-"""The page of a review: scenes in 3D in frames of their own."""
+"""The page of a review, with 3D scenes in frames."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ def test_scene_is_drawn_when_it_is_opened(browser, tmp_path):
         {"arm_description/urdf/arm.urdf.xacro": ARM.replace('parent="middle"', 'parent="middle" length="0.7"')}
     )
     path = tmp_path / "review.html"
-    words = ["--repository", str(repository.root), "HEAD~1..HEAD", "--html", str(path), "--scenes"]
-    subprocess.run([sys.executable, "-m", "linkwright", "review", *words], check=True, capture_output=True)
+    arguments = ["--repository", str(repository.root), "HEAD~1..HEAD", "--html", str(path), "--scenes"]
+    subprocess.run([sys.executable, "-m", "linkwright", "review", *arguments], check=True, capture_output=True)
     context = browser.new_context(viewport={"width": 1000, "height": 900}, offline=True)
     page = context.new_page()
     wrong: list[str] = []

@@ -1,4 +1,4 @@
-"""The page in windows of many sizes, and several displays at once."""
+"""The page in windows of many sizes, and selections of several displays."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ DISPLAYS = """
 
 
 @pytest.fixture
-def sized(browser: Browser, live: Callable[..., LiveViewer]) -> Iterator[Callable[..., Page]]:
-    """A function that opens a page in a window of some size, for the first time."""
+def open_window_of_size(browser: Browser, live: Callable[..., LiveViewer]) -> Iterator[Callable[..., Page]]:
+    """Return a function that opens a page in a window of some size, as on the first visit."""
     viewer = live(configuration(DISPLAYS))
     contexts = []
 
@@ -55,25 +55,25 @@ RECTANGLE = """([selector, part, text]) => {
   const { x, y, width, height } = found?.getBoundingClientRect() ?? {};
   return width > 0 ? { x, y, width, height } : null;
 }"""
-"""Finds and measures at one moment: of a window that changes its size all is built anew, and what was found is gone."""
+"""Find and measure in one call, because a resized window builds all elements again, and those found before are gone."""
 
 
-def box(page: Page, selector: str, *, part: str | None = None, text: str = "") -> dict[str, float]:
-    """The first element to be seen, or the first that has such a part with a text in it."""
-    rectangle: dict[str, float] = page.wait_for_function(RECTANGLE, arg=[selector, part, text]).json_value()
+def box(page: Page, selector: str, *, part_selector: str | None = None, text: str = "") -> dict[str, float]:
+    """Return the box of the first visible element, or of the first with a part that contains a text."""
+    rectangle: dict[str, float] = page.wait_for_function(RECTANGLE, arg=[selector, part_selector, text]).json_value()
     return rectangle
 
 
-def place(page: Page, name: str) -> dict[str, float]:
-    """The group that has a panel's tab."""
-    return box(page, ".dv-groupview", part=".panel-tab", text=name)
+def group_box(page: Page, name: str) -> dict[str, float]:
+    """Return the box of the group with a panel's tab."""
+    return box(page, ".dv-groupview", part_selector=".panel-tab", text=name)
 
 
 @pytest.mark.parametrize(("width", "height"), [(500, 800), (900, 700)])
-def test_scene_is_above_panels_up_to_tablet_width(sized, width, height):
-    page = sized(width, height)
-    beside = place(page, "Front")["width"] if width >= 600 else 0
-    becomes(lambda: box(page, ".canvas-box")["width"] + beside, pytest.approx(width, abs=8))
+def test_scene_is_above_panels_up_to_tablet_width(open_window_of_size, width, height):
+    page = open_window_of_size(width, height)
+    width_beside = group_box(page, "Front")["width"] if width >= 600 else 0
+    becomes(lambda: box(page, ".canvas-box")["width"] + width_beside, pytest.approx(width, abs=8))
     canvas = box(page, ".canvas-box")
     assert canvas["height"] > 300
     page.locator(".dv-tab", has_text="Displays").first.dispatch_event("pointerdown")
@@ -82,38 +82,41 @@ def test_scene_is_above_panels_up_to_tablet_width(sized, width, height):
     assert box(page, ".displays-panel")["y"] > canvas["y"] + canvas["height"]
 
 
-def test_images_are_beside_scene_in_wide_enough_window(sized):
-    page = sized(800, 600)
+def test_images_are_beside_scene_in_wide_enough_window(open_window_of_size):
+    page = open_window_of_size(800, 600)
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Displays").count() == 1
-    becomes(lambda: place(page, "Front") == place(page, "Back"), True)
-    scene, images = box(page, ".canvas-box"), place(page, "Front")
+    becomes(lambda: group_box(page, "Front") == group_box(page, "Back"), True)
+    scene, images = box(page, ".canvas-box"), group_box(page, "Front")
     assert scene["x"] + scene["width"] <= images["x"]
     assert scene["width"] > images["width"] > 300
 
 
-def test_displays_tab_is_in_front_of_images_when_panels_share_space(sized):
-    page = sized(500, 800)
+def test_displays_tab_is_in_front_of_images_when_panels_share_space(open_window_of_size):
+    page = open_window_of_size(500, 800)
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Displays").count() == 1
     page.locator(".dv-tab", has_text="Front").dispatch_event("pointerdown")
     page.locator(".dv-tab[aria-selected=true]", has_text="Front").wait_for()
 
 
-def test_displays_filter_does_not_overlap_tabs(sized):
-    page = sized(800, 600)
-    tabs, filter_ = box(page, ".dv-tab", text="Displays", part=".panel-tab"), box(page, ".displays-panel .search-box")
+def test_displays_filter_does_not_overlap_tabs(open_window_of_size):
+    page = open_window_of_size(800, 600)
+    tabs, filter_ = (
+        box(page, ".dv-tab", text="Displays", part_selector=".panel-tab"),
+        box(page, ".displays-panel .search-box"),
+    )
     assert filter_["y"] >= tabs["y"] + tabs["height"]
-    assert filter_["y"] < box(page, ".displays-panel .toolbar")["y"] + 30, "it stands beside the buttons"
+    assert filter_["y"] < box(page, ".displays-panel .toolbar")["y"] + 30, "it is beside the buttons"
 
 
 @pytest.mark.parametrize("width", [360, 390])
-def test_title_bar_fits_phone(sized, width):
-    page = sized(width, 844)
+def test_title_bar_fits_phone(open_window_of_size, width):
+    page = open_window_of_size(width, 844)
     edges = page.locator(".title-bar button:visible").evaluate_all(
         "elements => elements.map(element => element.getBoundingClientRect()).map(({ left, right }) => [left, right])"
     )
     assert len(edges) == 9
-    assert all(left >= 0 and right <= width for left, right in edges), edges
-    assert all(before[1] <= after[0] + 0.5 for before, after in pairwise(edges)), edges
+    assert all(start >= 0 and end <= width for start, end in edges), edges
+    assert all(one[1] <= following[0] + 0.5 for one, following in pairwise(edges)), edges
 
 
 def test_phone_view_fits_map_until_user_moves_camera(browser, live):
@@ -136,10 +139,10 @@ def test_phone_view_fits_map_until_user_moves_camera(browser, live):
         assert state(page, "view.values.Scale") * 10 > 250
         page.set_viewport_size({"width": 844, "height": 390})
         until(page, "lw.view.values.Scale * 10 < document.querySelector('.canvas-box canvas').clientHeight")
-        framed = state(page, "view.values.Scale")
+        fitted_scale = state(page, "view.values.Scale")
         page.locator(".canvas-box canvas").hover()
         page.mouse.wheel(0, -120)
-        until(page, f"lw.view.values.Scale !== {framed}")
+        until(page, f"lw.view.values.Scale !== {fitted_scale}")
         scale = state(page, "view.values.Scale")
         page.set_viewport_size({"width": 390, "height": 844})
         viewer.settle(page)
@@ -147,8 +150,8 @@ def test_phone_view_fits_map_until_user_moves_camera(browser, live):
 
 
 @pytest.mark.parametrize(("width", "height"), [(1024, 600), (1280, 800)])
-def test_open_panels_have_enough_space(sized, width, height):
-    page = sized(width, height)
+def test_open_panels_have_enough_space(open_window_of_size, width, height):
+    page = open_window_of_size(width, height)
     foot = box(page, ".foot")
     assert foot["height"] < 45, "the last minutes and the status are one line"
     canvas = box(page, ".canvas-box")
@@ -169,13 +172,13 @@ def test_open_panels_have_enough_space(sized, width, height):
 
 
 @pytest.mark.parametrize(("width", "height"), [(844, 390), (667, 375), (932, 430)])
-def test_panels_are_beside_scene_on_phone_in_landscape(sized, width, height):
-    page = sized(width, height)
+def test_panels_are_beside_scene_on_phone_in_landscape(open_window_of_size, width, height):
+    page = open_window_of_size(width, height)
     canvas = box(page, ".canvas-box")
     assert canvas["height"] > 0.65 * height
     assert 0.5 * width < canvas["width"] < 0.7 * width
-    assert place(page, "Front") == place(page, "Displays") == place(page, "Views")
-    displays = place(page, "Displays")
+    assert group_box(page, "Front") == group_box(page, "Displays") == group_box(page, "Views")
+    displays = group_box(page, "Displays")
     assert displays["x"] >= canvas["x"] + canvas["width"]
     assert displays["x"] + displays["width"] <= width + 1
     page.set_viewport_size({"width": height, "height": width})
@@ -184,46 +187,46 @@ def test_panels_are_beside_scene_on_phone_in_landscape(sized, width, height):
     becomes(lambda: box(page, ".canvas-box")["height"] > 0.65 * height, True)
 
 
-def test_window_resized_narrow_and_wide_keeps_its_panels(sized):
-    page = sized(1280, 800)
+def test_window_resized_narrow_and_wide_keeps_its_panels(open_window_of_size):
+    page = open_window_of_size(1280, 800)
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitemcheckbox", name="Topics", exact=True).click()
-    becomes(lambda: place(page, "Topics")["y"] > box(page, ".canvas-box")["y"] + 100, True)
+    becomes(lambda: group_box(page, "Topics")["y"] > box(page, ".canvas-box")["y"] + 100, True)
     page.set_viewport_size({"width": 500, "height": 800})
     becomes(lambda: box(page, ".canvas-box")["width"], 500)
-    becomes(lambda: place(page, "Topics") == place(page, "Displays"), True)
+    becomes(lambda: group_box(page, "Topics") == group_box(page, "Displays"), True)
     page.set_viewport_size({"width": 1280, "height": 800})
-    becomes(lambda: place(page, "Topics")["x"] > place(page, "Displays")["x"], True)
+    becomes(lambda: group_box(page, "Topics")["x"] > group_box(page, "Displays")["x"], True)
 
 
-def test_wide_text_panels_share_one_group(sized):
-    page = sized(1280, 800)
+def test_wide_text_panels_share_one_group(open_window_of_size):
+    page = open_window_of_size(1280, 800)
     for name in ("Source", "Topics", "Diagram", "Log"):
         page.get_by_role("button", name="Panels", exact=True).click()
         page.get_by_role("menuitemcheckbox", name=name, exact=True).click()
-    becomes(lambda: [place(page, name) for name in ("Topics", "Diagram", "Log")], [place(page, "Source")] * 3)
+    becomes(lambda: [group_box(page, name) for name in ("Topics", "Diagram", "Log")], [group_box(page, "Source")] * 3)
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Log").count() == 1
 
 
-def test_tabs_are_operable_by_keyboard(sized):
-    page = sized(1280, 800)
+def test_tabs_are_operable_by_keyboard(open_window_of_size):
+    page = open_window_of_size(1280, 800)
     tabs = page.locator("[role=tablist]", has=page.locator(".dv-tab", has_text="Views")).get_by_role("tab")
     assert tabs.evaluate_all("elements => elements.map(element => element.tabIndex)").count(0) == 1
-    focused = "() => document.activeElement.getAttribute('aria-label')"
+    focused_label = "() => document.activeElement.getAttribute('aria-label')"
     page.locator(".dv-tab", has_text="Views").focus()
     page.keyboard.press("ArrowRight")
-    assert page.evaluate(focused) == "Tool Properties"
-    ring = "() => getComputedStyle(document.activeElement).outlineStyle"
-    assert page.evaluate(ring) == "solid"
+    assert page.evaluate(focused_label) == "Tool Properties"
+    focus_ring = "() => getComputedStyle(document.activeElement).outlineStyle"
+    assert page.evaluate(focus_ring) == "solid"
     page.keyboard.press("Enter")
     page.locator(".dv-tab[aria-selected=true]", has_text="Tool Properties").wait_for()
     page.keyboard.press("End")
-    assert page.evaluate(focused) == "Selection"
+    assert page.evaluate(focused_label) == "Selection"
     page.keyboard.press("Home")
-    assert page.evaluate(focused) == "Views"
+    assert page.evaluate(focused_label) == "Views"
     page.keyboard.press("Delete")
     page.locator(".dv-tab", has_text="Views").wait_for(state="detached")
-    assert page.evaluate(focused) == "Tool Properties"
+    assert page.evaluate(focused_label) == "Tool Properties"
     # The scene must stay.
     page.locator(".dv-tab", has_text="3D View").focus()
     page.keyboard.press("Delete")
@@ -233,8 +236,8 @@ def test_tabs_are_operable_by_keyboard(sized):
     until(page, f"lw.view.yaw !== {yaw}")
 
 
-def test_multiple_displays_are_selected_duplicated_removed_and_restored(sized):
-    page = sized(1280, 800)
+def test_multiple_displays_are_selected_duplicated_removed_and_restored(open_window_of_size):
+    page = open_window_of_size(1280, 800)
 
     def row(name: str) -> Any:
         return page.locator(".row.strong", has_text=name).first
@@ -267,9 +270,9 @@ def test_multiple_displays_are_selected_duplicated_removed_and_restored(sized):
     assert names() == ["Grid", "Axes", "Axes", "Front", "Back", "TF", "TF"]
 
 
-def test_tabs_beside_views_are_not_clipped_in_chinese(sized):
-    """At 1280 pixels the third was cut. Where no font has the characters, each is made as wide as one that has them."""
-    page = sized(1280, 800, "zh-CN")
+def test_tabs_beside_views_are_not_clipped_in_chinese(open_window_of_size):
+    """At 1280 pixels the third tab was clipped. A character without a font is replaced by one of the same width."""
+    page = open_window_of_size(1280, 800, "zh-CN")
     page.evaluate(
         """() => {
           const title = document.querySelector(".tab-title");
@@ -287,20 +290,20 @@ def test_tabs_beside_views_are_not_clipped_in_chinese(sized):
         last, bar = tabs.last.bounding_box(), group.bounding_box()
         assert last is not None
         assert bar is not None
-        inside = last["x"] + last["width"] <= bar["x"] + bar["width"]
-        return tabs.count(), inside, group.locator(".dv-tabs-overflow-dropdown-default").count()
+        is_inside = last["x"] + last["width"] <= bar["x"] + bar["width"]
+        return tabs.count(), is_inside, group.locator(".dv-tabs-overflow-dropdown-default").count()
 
     becomes(fit, (3, True, 0))
 
 
-def test_tabs_beside_views_are_not_clipped_in_english(sized):
-    page = sized(1280, 800)
+def test_tabs_beside_views_are_not_clipped_in_english(open_window_of_size):
+    page = open_window_of_size(1280, 800)
     group = page.locator(".dv-tabs-and-actions-container", has=page.locator(".dv-tab", has_text="Views"))
     becomes(lambda: (group.locator(".dv-tab").count(), group.locator("[class*=overflow-dropdown]").count()), (3, 0))
 
 
-def test_view_type_label_stays_on_one_line_in_chinese(sized):
-    page = sized(800, 600, "zh-CN")
+def test_view_type_label_stays_on_one_line_in_chinese(open_window_of_size):
+    page = open_window_of_size(800, 600, "zh-CN")
     page.locator(".dv-tab", has_text="视角").click()
     label = page.locator(".view-type > .toolbar-label")
     becomes(

@@ -1,4 +1,4 @@
-"""The files of a robot are edited in the page: with findings and names, saved, and told of other programs' changes."""
+"""Editing of a robot's files in the page: findings, completion, saving, and notices of external changes."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def file(tmp_path: Path) -> Path:
 
 
 def open_editor(page):
-    """Open the editor with the main file, and put the cursor at its beginning."""
+    """Open the editor with the main file, and put the cursor at its start."""
     open_panel(page, "Source")
     page.get_by_role("button", name="Edit", exact=True).click()
     until(page, f"{EDITOR}.file?.endsWith('robot.urdf.xacro')")
@@ -56,13 +56,13 @@ def open_editor(page):
     return text
 
 
-def shows(page, line: str) -> None:
-    """Wait until the editor has this text somewhere."""
+def wait_for_text(page, line: str) -> None:
+    """Wait until the editor shows a text."""
     page.wait_for_function("part => window.linkwright.panels.source.editor.text?.includes(part)", arg=line, polling=50)
 
 
 def go_to(text, line: int, column: int = 0) -> None:
-    """Put the cursor on a line, from the beginning of the text."""
+    """Put the cursor on a line, given from the start of its text."""
     text.press("Control+Home")
     for _ in range(line - 1):
         text.press("ArrowDown")
@@ -93,16 +93,16 @@ def test_change_on_disk_is_merged_or_reported_as_conflict(start, open_page, file
     text.press("End")
     page.keyboard.insert_text("<!-- mine -->")
     file.write_text(ROBOT.replace("0.2", "0.3"))
-    shows(page, "1 1 0.3")
-    shows(page, "<!-- mine -->")
+    wait_for_text(page, "1 1 0.3")
+    wait_for_text(page, "<!-- mine -->")
     until(page, f"!{EDITOR}.isConflict && {EDITOR}.unsaved.length === 1")
 
     file.write_text(ROBOT.replace('wiki/xacro">', 'wiki/xacro"><!-- theirs -->'))
     until(page, f"{EDITOR}.isConflict")
     page.get_by_role("button", name="Take the file").click()
-    shows(page, "<!-- theirs -->")
+    wait_for_text(page, "<!-- theirs -->")
     text.press("Control+z")
-    shows(page, "<!-- mine -->")
+    wait_for_text(page, "<!-- mine -->")
     text.press("Control+s")
     becomes(file.read_text, ROBOT.replace("0.2", "0.3").replace('wiki/xacro">', 'wiki/xacro"><!-- mine -->'))
 
@@ -119,7 +119,7 @@ def test_robot_edits_and_text_edits_share_undo_history(start, open_page, file):
     leg = file.parent / "leg.xacro"
     becomes(lambda: "0.4" in leg.read_text(), True)
     page.locator(".panel-tab", has_text="Source").first.click()
-    shows(page, "0.4")
+    wait_for_text(page, "0.4")
     page.mouse.move(0, 0)  # the explanation of an element below the pointer could cover the tab
     text.focus()
     text.press("Control+z")
@@ -187,7 +187,7 @@ def test_file_is_created_in_tree_and_escape_leaves_editor(start, open_page, file
     becomes((file.parent / "config" / "legs.yaml").read_text, "legs: 2\n")
 
     text.press("Tab")
-    shows(page, "legs: 2\n  ")
+    wait_for_text(page, "legs: 2\n  ")
     text.press("Escape")
     text.press("Tab")
     page.wait_for_function("!document.activeElement.closest('.cm-editor')")
@@ -219,8 +219,8 @@ def choose(page, label: str) -> None:
 
 def test_code_actions_fix_findings_and_extract_values(start, open_page, file):
     leg = file.parent / "leg.xacro"
-    turning = LEG.replace('type="fixed">', 'type="continuous"><axis xyz="0 0 2"/>')
-    leg.write_text(turning)
+    continuous_leg = LEG.replace('type="fixed">', 'type="continuous"><axis xyz="0 0 2"/>')
+    leg.write_text(continuous_leg)
     page = open_page(start("view", str(file)))
     text = open_editor(page)
     go_to(text, 2)
@@ -234,19 +234,19 @@ def test_code_actions_fix_findings_and_extract_values(start, open_page, file):
     page.locator(".cm-lintRange").first.hover()
     page.get_by_role("button", name="Fix…").click()
     choose(page, "apply all safe fixes in this file")
-    shows(page, 'xyz="0 0 1"')
+    wait_for_text(page, 'xyz="0 0 1"')
     page.get_by_text("changed 1 file, not saved yet").wait_for()
     until(page, "document.activeElement.matches('.cm-content')")
     text.press("Control+z")
-    shows(page, 'xyz="0 0 2"')
+    wait_for_text(page, 'xyz="0 0 2"')
     until(page, f"{EDITOR}.findings.includes('LW221')")
 
     text.press("Control+Home")
     text.press("F8")
     text.press("Control+.")
     choose(page, "extract '0 0 2' to a property")
-    shows(page, "<xacro:property")
-    assert leg.read_text() == turning
+    wait_for_text(page, "<xacro:property")
+    assert leg.read_text() == continuous_leg
 
 
 def test_urdf_is_converted_to_new_xacro_file(start, open_page, file):
@@ -262,7 +262,7 @@ def test_urdf_is_converted_to_new_xacro_file(start, open_page, file):
     page.get_by_role("menuitem", name="xacro").first.wait_for()
     page.get_by_role("menuitem", name="xacro").first.click()
     until(page, f"{EDITOR}.file.endsWith('plain.urdf.xacro')")
-    shows(page, "xmlns:xacro")
+    wait_for_text(page, "xmlns:xacro")
     text.press("Control+s")
     becomes(lambda: "xmlns:xacro" in (file.parent / "plain.urdf.xacro").read_text(), True)
 
@@ -276,8 +276,8 @@ def test_definitions_and_references_navigate_across_files(start, open_page, file
     go_to(text, 2, 23)  # in the name of the macro
     text.press("Shift+F12")
     page.get_by_role("listbox", name="2 references").wait_for()
-    places = page.locator(".place-list-place")
-    assert [" ".join(place.split()) for place in places.all_inner_texts()] == [
+    locations = page.locator(".place-list-place")
+    assert [" ".join(line.split()) for line in locations.all_inner_texts()] == [
         '2 <xacro:macro name="leg" params="name">',
         '4 <xacro:leg name="left"/>',
     ]
@@ -287,16 +287,16 @@ def test_definitions_and_references_navigate_across_files(start, open_page, file
     page.keyboard.press("Enter")
     until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 4")
     text.press("Control+Home")
-    page.keyboard.insert_text("\n")  # the places behind move with the text
+    page.keyboard.insert_text("\n")  # the following locations move with the text
     text.press("Alt+ArrowLeft")
     until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
     text.press("Alt+ArrowLeft")
     until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 5")
     text.press("Alt+ArrowRight")
     until(page, f"{EDITOR}.file.endsWith('leg.xacro')")
-    places.last.click()
+    locations.last.click()
     until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 5")
-    places.first.focus()
+    locations.first.focus()
     page.keyboard.press("Escape")
     until(page, "document.activeElement.matches('.cm-content')")
     page.locator(".cm-line").nth(4).get_by_text("leg").first.click(modifiers=["Control"])
@@ -321,7 +321,7 @@ def test_scene_follows_unsaved_text_and_keeps_last_valid_robot(start, open_page,
     until(page, f"{EDITOR}.scene === 'errors'")
     page.get_by_text("The scene shows the last robot without errors").wait_for()
     assert page.evaluate("window.linkwright.frames.right !== undefined")
-    shows(page, '<xacro:leg name="right"/><link name=')  # the cursor has stayed
+    wait_for_text(page, '<xacro:leg name="right"/><link name=')  # the cursor has stayed
     assert file.read_text() == ROBOT
     assert "error[" not in "".join(program.output)
 
@@ -363,7 +363,7 @@ def test_scene_edit_changes_unsaved_text_and_shares_undo(start, open_page, file)
     until(page, "Math.abs(lw.frames.tip?.position[2] - 0.4) < 1e-6")
 
     page.locator(".panel-tab", has_text="Source").first.click()
-    shows(page, "0.4")
+    wait_for_text(page, "0.4")
     text.click(position={"x": 30, "y": 8})
     text.press("Control+z")
     until(page, f"Math.abs(lw.frames.tip?.position[2]) < 1e-6 && {EDITOR}.unsaved.length === 1")
@@ -428,7 +428,7 @@ def test_inlay_values_hover_and_colors_are_shown_in_text(start, open_page, file)
     choose(page, "Choose the color…")
     field = page.locator("input[type=color]")
     field.evaluate("element => { element.value = '#ff0000'; element.dispatchEvent(new Event('change')); }")
-    shows(page, 'rgba="1 0 0 0.5"')
+    wait_for_text(page, 'rgba="1 0 0 0.5"')
     until(page, f"{EDITOR}.scene === 'shown' && document.activeElement.matches('.cm-content')")
     assert leg.read_text() == text_of_leg
     assert violations(page, ".source-panel") == []

@@ -1,4 +1,4 @@
-"""Python files are edited in the page with ty and ruff, if these are installed."""
+"""Editing of Python files in the page with ty and ruff, if these are installed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.lsp.python.programs import installed_programs
 from tests.browser.conftest import becomes, until
-from tests.browser.test_source_editor import EDITOR, LEG, ROBOT, choose, go_to, open_editor, shows
+from tests.browser.test_source_editor import EDITOR, LEG, ROBOT, choose, go_to, open_editor, wait_for_text
 
 pytestmark = [
     pytest.mark.browser,
@@ -44,7 +44,7 @@ def package(tmp_path: Path) -> Path:
 
 
 def open_walker(page):
-    """Open the Python file from the tree of files."""
+    """Open the Python file from the file tree."""
     text = open_editor(page)
     page.get_by_role("button", name="Files", exact=True).click()
     page.get_by_role("treeitem", name="walker.py").click()
@@ -53,7 +53,7 @@ def open_walker(page):
 
 
 def hover(page, line: int, text: str) -> None:
-    """Move the mouse to a text of a line."""
+    """Move the mouse over a text of a line."""
     find = """([line, text]) => {
         const walker = document.createTreeWalker(document.querySelectorAll(".cm-line")[line - 1], NodeFilter.SHOW_TEXT);
         let node = walker.nextNode();
@@ -99,7 +99,7 @@ def test_finding_is_fixed_and_file_is_formatted(start, open_page, package):
     choose(page, "Ruff (F401): Remove unused import: `os`")
     until(page, f"{EDITOR}.findings.length === 0")
     text.press("Shift+Alt+F")
-    shows(page, '("行走😀")\n        self.count')
+    wait_for_text(page, '("行走😀")\n        self.count')
     text.press("Control+s")
     formatted = WALKER.replace("import os\n", "").replace("; ", "\n        ")
     becomes(lambda: (package / "walker.py").read_text(encoding="utf-8"), formatted.replace("steps\n", "steps\n"))

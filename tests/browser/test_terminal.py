@@ -1,4 +1,4 @@
-"""The terminal in the page: commands, keys, sizes, several of them, and the way out with the keyboard."""
+"""The terminal in the page: commands, keys, sizes, several terminals, and leaving it with the keyboard."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return path
 
 
-def shows(page, text: str) -> None:
+def wait_for_line(page, text: str) -> None:
     """Wait until the terminal has a line with this text."""
     page.wait_for_function("text => window.linkwright.panels.terminal.text?.includes(text)", arg=text, polling=50)
 
 
 def open_terminal(page) -> None:
-    """Wait for the shell's prompt, and put the focus into the terminal."""
+    """Wait for the shell's prompt, and focus the terminal."""
     until(page, f"/[$#] *$/.test({TERMINAL}.text ?? '')")
     page.locator(INPUT).focus()
 
@@ -49,25 +49,27 @@ def test_commands_run_and_are_stopped_by_keys(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     run(page, "echo 你好-$((40+2)); pwd")
-    shows(page, f"\n你好-42\n{file.parent}\n")
+    wait_for_line(page, f"\n你好-42\n{file.parent}\n")
     run(page, "sh -c 'echo be''gun; exec sleep 1000'")
-    shows(page, "\nbegun")
+    wait_for_line(page, "\nbegun")
     page.keyboard.press("Control+c")
     run(page, "echo interrupted=$?")
-    shows(page, "\ninterrupted=130")
+    wait_for_line(page, "\ninterrupted=130")
     run(page, "sh -c 'echo once'' more; exec sleep 1000'")
-    shows(page, "\nonce more")
+    wait_for_line(page, "\nonce more")
     page.keyboard.press("Control+z")
-    shows(page, "Stopped")
+    wait_for_line(page, "Stopped")
     run(page, "kill %1; env -u LINKWRIGHT_DDS linkwright topic list; echo listed=$?")
-    shows(page, "\nlisted=0")
+    wait_for_line(page, "\nlisted=0")
     columns = state(page, "panels.terminal.size.columns")
     run(page, "echo columns=$(stty size)")
-    shows(page, f"columns={state(page, 'panels.terminal.size.rows')} {columns}")
+    wait_for_line(page, f"columns={state(page, 'panels.terminal.size.rows')} {columns}")
     page.set_viewport_size({"width": 1000, "height": 700})
     until(page, f"{TERMINAL}.size.columns < {columns}")
     run(page, "clear; echo columns=$(stty size)")
-    shows(page, f"columns={state(page, 'panels.terminal.size.rows')} {state(page, 'panels.terminal.size.columns')}\n")
+    wait_for_line(
+        page, f"columns={state(page, 'panels.terminal.size.rows')} {state(page, 'panels.terminal.size.columns')}\n"
+    )
 
 
 def test_endless_output_does_not_block_page_or_program(start, open_page, file):
@@ -78,7 +80,7 @@ def test_endless_output_does_not_block_page_or_program(start, open_page, file):
     assert state(page, "ready")
     page.keyboard.press("Control+c")
     run(page, "echo done=$((1+1))")
-    shows(page, "\ndone=2")
+    wait_for_line(page, "\ndone=2")
 
 
 def test_exited_shell_is_reported_and_restarts(start, open_page, file):
@@ -89,26 +91,26 @@ def test_exited_shell_is_reported_and_restarts(start, open_page, file):
     page.keyboard.press("Enter")
     until(page, f"{TERMINAL}.terminals[0].status === null && {TERMINAL}.notice === ''")
     run(page, "echo again=$((1+1))")
-    shows(page, "\nagain=2")
+    wait_for_line(page, "\nagain=2")
 
 
 def test_multiple_terminals_survive_reload(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     run(page, "name=first; echo $name")
-    shows(page, "\nfirst")
+    wait_for_line(page, "\nfirst")
     page.get_by_role("button", name="New", exact=True).click()
     until(page, f"{TERMINAL}.current === 2")
     open_terminal(page)
     run(page, "echo second=$name.")
-    shows(page, "\nsecond=.")
+    wait_for_line(page, "\nsecond=.")
     page.reload()
     until(page, f"{TERMINAL}.text?.includes('first') && {TERMINAL}.terminals.length === 2")
     page.locator(INPUT).focus()
     run(page, "echo again=$name")
-    shows(page, "\nagain=first")
+    wait_for_line(page, "\nagain=first")
     page.get_by_role("tab", name="Terminal 2").click()
-    shows(page, "\nsecond=.")
+    wait_for_line(page, "\nsecond=.")
     page.locator(".terminal-deck").get_by_role("button", name="Close", exact=True).click()
     until(page, f"{TERMINAL}.terminals.length === 1 && {TERMINAL}.text.includes('again=first')")
 
@@ -118,12 +120,12 @@ def test_second_page_shows_terminal_owner_and_can_take_over(start, open_page, fi
     first = open_page(program)
     open_terminal(first)
     run(first, "echo mine=$((6*7))")
-    shows(first, "\nmine=42")
+    wait_for_line(first, "\nmine=42")
     second = open_page(program)
     until(second, f"{TERMINAL}.current === 1 && {TERMINAL}.notice?.includes('another page')")
     assert second.get_by_role("tab", name="Terminal 1").get_attribute("aria-selected") == "true"
     second.get_by_role("button", name="Show it here").click()
-    shows(second, "\nmine=42")
+    wait_for_line(second, "\nmine=42")
     until(first, f"{TERMINAL}.notice.includes('another page')")
 
 
@@ -132,14 +134,14 @@ def test_text_is_copied_and_pasted_by_keys(start, open_page, file):
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     open_terminal(page)
     run(page, "clear; echo copy-$((1+1))-me")
-    shows(page, "copy-2-me")
+    wait_for_line(page, "copy-2-me")
     page.locator(".terminal-screen:visible .xterm-screen").dblclick(position={"x": 20, "y": 8})
     page.keyboard.press("Control+Shift+C")
     becomes(lambda: page.evaluate("navigator.clipboard.readText()"), "copy-2-me")
     page.keyboard.type("echo pasted-")
     page.keyboard.press("Control+Shift+V")
     page.keyboard.press("Enter")
-    shows(page, "\npasted-copy-2-me")
+    wait_for_line(page, "\npasted-copy-2-me")
 
 
 def test_keyboard_can_leave_terminal_and_page_shortcuts_are_ignored(start, open_page, file):
@@ -150,7 +152,7 @@ def test_keyboard_can_leave_terminal_and_page_shortcuts_are_ignored(start, open_
     page.keyboard.press("Control+q")
     page.keyboard.press("Tab")
     page.keyboard.type("?f\n")
-    shows(page, "\n        ?f\n")
+    wait_for_line(page, "\n        ?f\n")
     assert state(page, "panels.terminal.focused")
     assert page.locator("dialog").count() == 0
     page.keyboard.press("Control+Shift+M")
@@ -163,7 +165,7 @@ def test_terminal_passes_axe_in_both_themes(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     run(page, r"printf '\033[31mred\033[33myellow\033[90mgrey\033[44mon blue\033[0m\n'")
-    shows(page, "\nredyellowgreyon blue")
+    wait_for_line(page, "\nredyellowgreyon blue")
     assert violations(page) == []
 
 

@@ -1,4 +1,4 @@
-"""The timeline of a recording, used in a real browser: images, plots and frames are of the time that it shows."""
+"""The timeline of a recording in a real browser: images, plots and frames belong to its time."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ LENGTH = 30
 """Seconds. In each are ten messages of a topic; number, frame and image all tell which second it is."""
 
 
-def recorded(folder: Path) -> Path:
-    """A recording in one MCAP file."""
+def write_recording(folder: Path) -> Path:
+    """Write a recording to an MCAP file."""
     with BagWriter(folder / "drive") as writer:
         writer.add_topic("/second", "std_msgs/msg/Float64", [DEFAULT_QOS])
         writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
@@ -50,13 +50,13 @@ def color(second: int) -> tuple[int, int, int]:
 
 @pytest.fixture
 def page(start, open_page, tmp_path: Path) -> Page:
-    """A page that shows the recording, which stands still; the robot is none, so nothing is waited for but frames."""
-    shown = open_page(start("view", str(recorded(tmp_path))), wait=False)
-    until(shown, "lw.timeline && lw.frames.tip && lw.displays.some(({ drawn }) => drawn?.width === 4)")
-    if state(shown, "timeline")["playing"]:
-        shown.get_by_role("button", name="Pause (Space)").click()
-    until(shown, "!lw.timeline.playing")
-    return shown
+    """Open a page with the recording, paused; without a robot, the page waits only for frames."""
+    recording_page = open_page(start("view", str(write_recording(tmp_path))), wait=False)
+    until(recording_page, "lw.timeline && lw.frames.tip && lw.displays.some(({ drawn }) => drawn?.width === 4)")
+    if state(recording_page, "timeline")["playing"]:
+        recording_page.get_by_role("button", name="Pause (Space)").click()
+    until(recording_page, "!lw.timeline.playing")
+    return recording_page
 
 
 def position(page: Page) -> float:
@@ -76,8 +76,8 @@ def seek(page: Page, seconds: float) -> None:
     until(page, f"Math.abs(lw.timeline.position - {seconds}) < {LENGTH / box['width'] + 0.01}")
 
 
-def shows(page: Page, second: int) -> None:
-    """Wait until frame and image are those of a second."""
+def wait_for_second(page: Page, second: int) -> None:
+    """Wait until the frame and the image are those of a second."""
     until(page, f"Math.abs(lw.frames.tip?.position[0] - {second}) < 1e-6")
     corner = "window.linkwright.displays.find(({ drawn }) => drawn?.width === 4).drawn.corner"
     becomes(lambda: page.evaluate(corner), [*color(second), 255])
@@ -87,7 +87,7 @@ def test_seek_shows_frames_and_images_of_that_time(page: Page):
     assert state(page, "timeline")["length"] == LENGTH
     for seconds in (20.55, 4.55, 12.55):
         seek(page, seconds)
-        shows(page, int(seconds))
+        wait_for_second(page, int(seconds))
     assert not state(page, "timeline")["playing"]
 
 
@@ -96,25 +96,25 @@ def test_dragging_slider_updates_scene_before_release(page: Page):
     middle = box["y"] + box["height"] / 2
     page.mouse.move(box["x"] + 0.1 * box["width"], middle)
     page.mouse.down()
-    for part in (0.3, 0.6, 0.851):
-        page.mouse.move(box["x"] + part * box["width"], middle, steps=5)
-    shows(page, 25)
+    for share in (0.3, 0.6, 0.851):
+        page.mouse.move(box["x"] + share * box["width"], middle, steps=5)
+    wait_for_second(page, 25)
     page.mouse.move(box["x"] - 100, middle)
-    shows(page, 0)
+    wait_for_second(page, 0)
     assert position(page) == 0
     page.mouse.up()
 
 
 def test_step_buttons_move_between_messages(page: Page):
     seek(page, 9.95)
-    shows(page, 9)
+    wait_for_second(page, 9)
     # At each time there are three messages; a step shows all of them.
     page.get_by_role("button", name="Next message (→)").click()
     until(page, "Math.abs(lw.timeline.position - 10) < 1e-5")
-    shows(page, 10)
+    wait_for_second(page, 10)
     page.keyboard.press("ArrowLeft")
     until(page, "Math.abs(lw.timeline.position - 9.9) < 1e-5")
-    shows(page, 9)
+    wait_for_second(page, 9)
     page.get_by_role("button", name="Previous message (←)").click()
     until(page, "Math.abs(lw.timeline.position - 9.8) < 1e-5")
 
@@ -159,11 +159,11 @@ def test_space_plays_and_pauses_at_chosen_speed(page: Page):
     until(page, "lw.timeline.playing && lw.timeline.position > 6")
     page.keyboard.press("Space")
     until(page, "!lw.timeline.playing")
-    stood = position(page)
-    shows(page, int(stood))
+    start_position = position(page)
+    wait_for_second(page, int(start_position))
     page.get_by_role("combobox", name="Speed").select_option("0.1")
     page.get_by_role("button", name="Play (Space)").click()
-    until(page, f"lw.timeline.position > {stood}")
+    until(page, f"lw.timeline.position > {start_position}")
     page.get_by_role("button", name="Pause (Space)").click()
     until(page, "!lw.timeline.playing")
 
@@ -173,7 +173,7 @@ def test_playback_stops_or_repeats_at_end(page: Page):
     seek(page, LENGTH - 3)
     page.get_by_role("button", name="Play (Space)").click()
     until(page, f"!lw.timeline.playing && lw.timeline.position === {LENGTH}")
-    shows(page, LENGTH)
+    wait_for_second(page, LENGTH)
     page.get_by_role("button", name="Repeat from the start").click()
     seek(page, LENGTH - 3)
     page.get_by_role("button", name="Play (Space)").click()
@@ -203,11 +203,11 @@ def test_history_supports_pause_seek_and_return_to_live(start, open_page, tmp_pa
         '<parent link="base"/><child link="tip"/><axis xyz="0 0 1"/></joint></robot>'
     )
     page = open_page(start("view", str(model), "--history", "1MB"), wait=False)
-    until(page, "lw.timeline?.live && lw.timeline.kept > 1000 && lw.timeline.length > 2 && lw.frames.tip")
+    until(page, "lw.timeline?.live && lw.timeline.sizeBytes > 1000 && lw.timeline.length > 2 && lw.frames.tip")
     page.get_by_role("button", name="Pause (Space)").click()
     until(page, "!lw.timeline.live && !lw.timeline.playing")
-    stood = state(page, "timeline")
-    until(page, f"lw.timeline.length > {stood['length'] + 1}")
+    paused_timeline = state(page, "timeline")
+    until(page, f"lw.timeline.length > {paused_timeline['length'] + 1}")
     page.get_by_role("slider", name="Time within the last minutes").click(position={"x": 3, "y": 5})
     until(page, "lw.timeline.position < 1")
     live = page.get_by_role("button", name="Live: follow the newest messages")
@@ -216,7 +216,7 @@ def test_history_supports_pause_seek_and_return_to_live(start, open_page, tmp_pa
         box = live.bounding_box()
         assert (box["height"], box["x"] + box["width"] <= width) == (22, True)
     live.click()
-    until(page, "lw.timeline.live && lw.timeline.kept <= 1e6 && lw.frames.tip")
+    until(page, "lw.timeline.live && lw.timeline.sizeBytes <= 1e6 && lw.frames.tip")
 
 
 def test_viewer_without_history_has_no_timeline(start, open_page, tmp_path: Path):

@@ -1,4 +1,4 @@
-"""Where the token is: in the address that was printed, then in the browser's storage for this host and port."""
+"""The token: in the printed address, and then in the browser's storage for this host and port."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def viewer(live):
 
 @pytest.fixture
 def context(browser):
-    """A browser that has seen nothing yet."""
+    """Return a browser without any data."""
     context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
     context.set_default_timeout(1000 * SECONDS)
     yield context
@@ -32,7 +32,7 @@ def context(browser):
 
 @pytest.fixture
 def other_server():
-    """A server of somebody else on this host, and what browsers tell it."""
+    """Run another server on this host, and record the requests of browsers."""
     requests = []
 
     class Handler(http.server.BaseHTTPRequestHandler):
@@ -92,8 +92,8 @@ def test_token_is_not_sent_to_other_server_on_same_host(viewer, context, other_s
     assert requests
     # The browser may ask for an icon too, on behalf of that server's own page.
     for request in requests:
-        for telling in ("cookie:", address.netloc, address.query.partition("=")[2].lower()):
-            assert telling not in request.lower()
+        for secret in ("cookie:", address.netloc, address.query.partition("=")[2].lower()):
+            assert secret not in request.lower()
     assert context.cookies() == []
     assert page.evaluate("() => Object.keys(localStorage)") == []
     page.go_back()

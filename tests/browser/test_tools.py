@@ -1,4 +1,4 @@
-"""Tools, selection and time, with the mouse and the keys of a user, and what a node hears of them."""
+"""Tools, selection and time with mouse and keyboard, and the messages that a node receives."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ import math
 import pytest
 
 from linkwright.messages import get_message
-from tests.browser.arm_from_above import TIP, Scene, open_scene
-from tests.browser.conftest import becomes, state, two_seconds_pass, until
+from tests.browser.arm_from_above import TIP, ArmPage, open_scene
+from tests.browser.conftest import becomes, state, until, wait_two_seconds
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
 
 
 @pytest.fixture
-def scene(live, open_page) -> Scene:
+def scene(live, open_page) -> ArmPage:
     return open_scene(live, open_page)
 
 
@@ -58,7 +58,7 @@ def test_goal_pose_is_published_where_dragged(scene):
     becomes(lambda: state(scene.page, "tool.state")["arrows"], 1)
     scene.page.mouse.up()
     until(scene.page, "lw.tool.class.endsWith('/Interact')")
-    goal = scene.only("/goal_pose")
+    goal = scene.single_message("/goal_pose")
     assert goal.header.frame_id == "base"
     assert goal.header.stamp.sec > 0
     assert (goal.pose.position.x, goal.pose.position.y, goal.pose.position.z) == pytest.approx((-2, 1, 0), abs=0.03)
@@ -72,13 +72,13 @@ def test_pose_estimate_uses_covariance_of_tool_properties(scene):
     row.locator("input").press("Enter")
     scene.press("p")
     scene.drag((2, -2), (1, -2))
-    estimate = scene.only("/initialpose")
+    estimate = scene.single_message("/initialpose")
     pose = estimate.pose.pose
     assert (pose.position.x, pose.position.y) == pytest.approx((2, -2), abs=0.03)
     assert (abs(pose.orientation.z), pose.orientation.w) == pytest.approx((1, 0), abs=0.01)
     covariance = list(estimate.pose.covariance)
     assert (covariance[0], covariance[7], covariance[35]) == (0.25, 0.25, 0.5)
-    pose_tool = next(tool for tool in scene.file()["Tools"] if tool["Class"].endswith("/SetInitialPose"))
+    pose_tool = next(tool for tool in scene.saved_settings()["Tools"] if tool["Class"].endswith("/SetInitialPose"))
     assert pose_tool["Covariance yaw"] == 0.5
 
 
@@ -88,8 +88,8 @@ def test_clicked_point_is_published_and_drawn(scene):
     becomes(lambda: state(scene.page, "tool.hint"), "Move over an object to select the target point.")
     scene.click(0.25, 0.5)
     until(scene.page, "lw.tool.class.endsWith('/Interact')")
-    clicked = scene.only("/clicked_point")
-    assert (clicked.point.x, clicked.point.y, clicked.point.z) == pytest.approx((0.25, 0.5, 1.5), abs=0.03)
+    point = scene.single_message("/clicked_point")
+    assert (point.point.x, point.point.y, point.point.z) == pytest.approx((0.25, 0.5, 1.5), abs=0.03)
     until(scene.page, "lw.displays[2].drawn !== null")
 
 
@@ -133,7 +133,7 @@ def test_tools_are_added_and_removed(scene):
     page.get_by_role("button", name="Add a tool").click()
     page.get_by_role("menuitem", name="Measure").click()
     until(page, "lw.tools.length === 8")
-    tools = [tool["Class"].rpartition("/")[2] for tool in scene.file()["Tools"]]
+    tools = [tool["Class"].rpartition("/")[2] for tool in scene.saved_settings()["Tools"]]
     assert tools[-2:] == ["SetGoal", "Measure"]
 
 
@@ -144,23 +144,23 @@ def test_links_are_selected_by_click_and_box(scene):
     page = scene.page
     scene.press("s")
     scene.click(0, 0)
-    assert scene.selected() == ["base"]
+    assert scene.selected_keys() == ["base"]
     page.keyboard.down("Shift")
     scene.click(*TIP)
-    assert scene.selected() == ["base", "tip"]
+    assert scene.selected_keys() == ["base", "tip"]
     page.keyboard.up("Shift")
     page.keyboard.down("Control")
     scene.click(0, 0)
     page.keyboard.up("Control")
-    assert scene.selected() == ["tip"]
+    assert scene.selected_keys() == ["tip"]
     scene.click(-3, -3)
-    assert scene.selected() == []
+    assert scene.selected_keys() == []
     scene.drag((-3, -3), (2, 2))
-    assert scene.selected() == ["base"]
+    assert scene.selected_keys() == ["base"]
     scene.drag((-3, -3), (4, 2))
-    assert sorted(scene.selected()) == ["base", "tip"]
+    assert sorted(scene.selected_keys()) == ["base", "tip"]
     scene.viewer.settle(page)
-    assert sorted(scene.selected()) == ["base", "tip"]
+    assert sorted(scene.selected_keys()) == ["base", "tip"]
 
 
 def test_selection_panel_shows_link_poses(scene):
@@ -194,11 +194,11 @@ def test_pause_freezes_displayed_scene(scene):
     assert scene.viewer.run(scene.viewer.viewer.displays[2].data) == []
     page.get_by_role("button", name="Pause").click()
     until(page, "lw.frames.tip.position[0] === 5")
-    two_seconds_pass(page)
+    wait_two_seconds(page)
     elapsed = page.locator(".time-panel .figure").nth(1)
-    before = float(elapsed.inner_text())
+    time_before = float(elapsed.inner_text())
     page.keyboard.press("r")
-    becomes(lambda: float(elapsed.inner_text()) < before, True)
+    becomes(lambda: float(elapsed.inner_text()) < time_before, True)
     assert not state(page, "time.paused")
 
 

@@ -1,4 +1,4 @@
-"""Types of view, the mouse in them, and views that are kept."""
+"""View types, the mouse in them, and saved views."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import math
 
 import pytest
 
-from tests.browser.arm_from_above import SCALE, TIP, Scene, open_scene
+from tests.browser.arm_from_above import SCALE, TIP, ArmPage, open_scene
 from tests.browser.conftest import becomes, state, until
 
 pytestmark = pytest.mark.browser
 
 
 @pytest.fixture
-def scene(live, open_page) -> Scene:
+def scene(live, open_page) -> ArmPage:
     return open_scene(live, open_page)
 
 
@@ -53,10 +53,10 @@ def test_mouse_moves_orthographic_view_by_its_scale(scene):
 def test_fps_view_moves_and_rotates(scene):
     scene.show("FPS")
     scene.page.keyboard.press("z")
-    before = state(scene.page, "view")
+    start = state(scene.page, "view")
     scene.drag((0, 0), (1, 0))
     view = state(scene.page, "view")
-    assert view["yaw"] == pytest.approx(before["yaw"] - SCALE * 0.005, abs=0.01)
+    assert view["yaw"] == pytest.approx(start["yaw"] - SCALE * 0.005, abs=0.01)
     assert view["camera"]["position"] == pytest.approx([5, 5, 10])
     scene.page.mouse.wheel(0, -120)
     until(scene.page, "Math.abs(lw.view.camera.position[2] - 10) > 0.5")
@@ -99,9 +99,9 @@ def test_views_are_saved_renamed_used_and_removed(scene):
     page.get_by_role("treeitem").filter(has_text="map").locator(".row-name").dblclick()
     until(page, "lw.view.type === 'TopDownOrtho'")
     assert state(page, "view.values")["Scale"] == SCALE
-    becomes(lambda: scene.file()["Views"]["Current"]["Class"], "rviz_default_plugins/TopDownOrtho")
-    views = scene.file()["Views"]
+    becomes(lambda: scene.saved_settings()["Views"]["Current"]["Class"], "rviz_default_plugins/TopDownOrtho")
+    views = scene.saved_settings()["Views"]
     assert [(view["Name"], view["Scale"]) for view in views["Saved"]] == [("map", SCALE)]
     page.get_by_role("button", name="Remove", exact=True).click()
     until(page, "lw.view.saved.length === 0")
-    assert not scene.file()["Views"]["Saved"]
+    assert not scene.saved_settings()["Views"]["Saved"]

@@ -1,4 +1,4 @@
-"""The Voice panel in a real browser, whose microphone is a file: a tone."""
+"""The Voice panel in a real browser whose microphone is a file with a tone."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from playwright.sync_api import Browser, Page, Playwright, expect
 from linkwright.messages import get_message
 from linkwright.speech.enrolled.words import RECOMMENDED_TAKES, Take, Words, words_path
 from linkwright.speech.sound.spectra import BANDS
-from tests.browser.conftest import launched, until
+from tests.browser.conftest import run_browser, until
 from tests.browser.live import LiveViewer, configuration
 from tests.waiting import SECONDS, wait_until
 
@@ -27,12 +27,12 @@ STRING = "std_msgs/msg/String"
 
 @pytest.fixture(scope="module")
 def browser(playwright: Playwright, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    """A browser that says yes to the question for the microphone, which hears a tone."""
+    """Run a browser that grants the microphone, which records a tone."""
     path = tmp_path_factory.mktemp("sound") / "tone.wav"
     _write_tone(path)
     fake = ("--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream")
-    with launched(playwright, *fake, f"--use-file-for-fake-audio-capture={path}") as started:
-        yield started
+    with run_browser(playwright, *fake, f"--use-file-for-fake-audio-capture={path}") as new_browser:
+        yield new_browser
 
 
 def _write_tone(path: Path) -> None:
@@ -45,31 +45,31 @@ def _write_tone(path: Path) -> None:
 
 
 class Robot:
-    """A node that keeps what it hears, and answers."""
+    """A node that records the page's speech messages, and answers."""
 
     def __init__(self, viewer: LiveViewer) -> None:
         self.viewer = viewer
         self.samples: list[np.ndarray] = []
-        self.held: list[bool] = []
+        self.button_states: list[bool] = []
         self.commands: list[str] = []
         viewer.run(self._listen)
 
     def _listen(self) -> None:
         node = self.viewer.node
-        node.create_subscription("audio_common_msgs/msg/AudioDataStamped", "/audio/audio_stamped", self._hear, 100)
+        node.create_subscription("audio_common_msgs/msg/AudioDataStamped", "/audio/audio_stamped", self._on_audio, 100)
         node.create_subscription(
-            "std_msgs/msg/Bool", "/voice/listen", lambda message: self.held.append(message.data), 10
+            "std_msgs/msg/Bool", "/voice/listen", lambda message: self.button_states.append(message.data), 10
         )
         node.create_subscription(STRING, "/voice/text_input", lambda message: self.commands.append(message.data), 10)
 
-    def _hear(self, message: Any) -> None:
+    def _on_audio(self, message: Any) -> None:
         self.samples.append(np.frombuffer(bytes(message.audio.data), "<i2"))
 
     @property
     def seconds(self) -> float:
         return sum(sample.size for sample in self.samples) / 16_000
 
-    def says(self, topic: str, text: str) -> None:
+    def publish_text(self, topic: str, text: str) -> None:
         self.viewer.publish(f"/voice/{topic}", get_message(STRING)(data=text))
 
 
@@ -92,11 +92,11 @@ def test_push_to_talk_key_records_while_held(voice_page: tuple[Robot, Page]) -> 
     robot, page = voice_page
     page.keyboard.down("v")
     wait_until(lambda: robot.seconds > 1.0, SECONDS)
-    assert robot.held == [True]
+    assert robot.button_states == [True]
     page.keyboard.up("v")
-    wait_until(lambda: robot.held == [True, False], SECONDS)
+    wait_until(lambda: robot.button_states == [True, False], SECONDS)
     until(page, "lw.panels.voice.mode === 'ready'")
-    # Blocks of a tenth of a second but for the last; without gaps a tone has one line in its spectrum.
+    # All blocks but the last are a tenth of a second; without gaps, a tone has one line in its spectrum.
     assert {sample.size for sample in robot.samples[:-1]} == {1600}
     sound = np.concatenate(robot.samples)[1600:11200].astype(float)
     spectrum = np.abs(np.fft.rfft(sound * np.hanning(sound.size))) ** 2
@@ -109,10 +109,10 @@ def test_conversation_is_shown_and_commands_can_be_typed(voice_page: tuple[Robot
     robot, page = voice_page
     open_panel(page)
     until(page, "lw.panels.voice.serverState?.text_listeners === 1")
-    robot.says("partial_text", "turn")
+    robot.publish_text("partial_text", "turn")
     page.wait_for_selector(".voice-said.partial:has-text('turn')")
     for topic, text in (("text", "turn left"), ("command", "turn (angle 90°)"), ("response", "Turning left.")):
-        robot.says(topic, text)
+        robot.publish_text(topic, text)
     page.wait_for_selector(".voice-said.response:has-text('Turning left.')")
     assert page.locator(".voice-said").count() == 3
     field = page.get_by_label("Command as text")
@@ -120,7 +120,7 @@ def test_conversation_is_shown_and_commands_can_be_typed(voice_page: tuple[Robot
     field.press("v")  # a letter where text is typed
     field.press("Enter")
     wait_until(lambda: robot.commands == ["go to the kitchenv"], SECONDS)
-    assert robot.held == []
+    assert robot.button_states == []
 
 
 def test_talk_button_releases_when_page_loses_focus(voice_page: tuple[Robot, Page]) -> None:
@@ -128,22 +128,22 @@ def test_talk_button_releases_when_page_loses_focus(voice_page: tuple[Robot, Pag
     open_panel(page)
     page.locator(".voice-talk").focus()
     page.keyboard.down("Space")
-    wait_until(lambda: robot.held == [True], SECONDS)
+    wait_until(lambda: robot.button_states == [True], SECONDS)
     page.evaluate("window.dispatchEvent(new Event('blur'))")
-    wait_until(lambda: robot.held == [True, False], SECONDS)
+    wait_until(lambda: robot.button_states == [True, False], SECONDS)
     page.keyboard.up("Space")
     page.get_by_label("Open listening").check()
     until(page, "lw.panels.voice.mode === 'open' && lw.panels.voice.peak > 0.02")  # browsers suppress steady tones
-    before = robot.seconds
-    wait_until(lambda: robot.seconds > before + 0.3, SECONDS)
-    assert robot.held == [True, False]
+    seconds = robot.seconds
+    wait_until(lambda: robot.seconds > seconds + 0.3, SECONDS)
+    assert robot.button_states == [True, False]
 
 
 _REFUSE = "navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('', '{}')); 0"
 
 
 @pytest.mark.parametrize(
-    ("breaks", "words"),
+    ("breaks", "text"),
     [
         ("Object.defineProperty(window, 'isSecureContext', {value: false}); 0", "ssh -L"),
         (_REFUSE.format("NotAllowedError"), "not allowed"),
@@ -151,12 +151,12 @@ _REFUSE = "navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMExc
     ],
     ids=["insecure", "denied", "none"],
 )
-def test_reason_for_missing_audio_is_shown(voice_page: tuple[Robot, Page], breaks: str, words: str) -> None:
+def test_reason_for_missing_audio_is_shown(voice_page: tuple[Robot, Page], breaks: str, text: str) -> None:
     robot, page = voice_page
     page.evaluate(breaks)
     page.locator(".scene-tool.talk").hover()
     page.mouse.down()
-    page.wait_for_selector(f".voice-notice:has-text('{words}')")
+    page.wait_for_selector(f".voice-notice:has-text('{text}')")
     page.mouse.up()
     assert robot.samples == []
 
@@ -171,7 +171,7 @@ def test_lost_microphone_is_reported(voice_page: tuple[Robot, Page]) -> None:
     wait_until(lambda: robot.seconds > 0.1, SECONDS)
     page.evaluate("window.heard.getTracks()[0].dispatchEvent(new Event('ended'))")
     page.wait_for_selector(".voice-notice:has-text('disconnected')")
-    wait_until(lambda: robot.held == [True, False], SECONDS)
+    wait_until(lambda: robot.button_states == [True, False], SECONDS)
     page.keyboard.up("v")
 
 
@@ -187,7 +187,7 @@ def test_word_is_recorded_while_button_is_held(voice_page: tuple[Robot, Page], m
     page.keyboard.down("Space")
     until(page, "lw.panels.voice.recording && lw.panels.voice.peak > 0.2")
     page.keyboard.up("Space")
-    # A tone without an end is no word; what matters here is that it is judged, and published to nobody.
+    # An endless tone is not a word; it must be judged, and not be published.
     page.wait_for_selector(".word-judged:has-text(' dB, ')")
     assert robot.samples == []
 
@@ -204,18 +204,18 @@ def test_unrecognized_speaker_can_enroll_words_at_this_place(
             words.add(name, Take(rng.uniform(1e3, 1e6, (40, BANDS)), np.ones(BANDS)))
     words.write(words_path())
     page.keyboard.down("v")
-    wait_until(lambda: robot.held == [True], SECONDS)
+    wait_until(lambda: robot.button_states == [True], SECONDS)
     page.keyboard.up("v")
     until(page, "lw.panels.voice.serverState !== null")
     robot.viewer.publish("/voice/propose_enrolling", get_message("std_msgs/msg/Bool")(data=True))
-    robot.says("response", "I know none of what you say")
+    robot.publish_text("response", "I know none of what you say")
     page.locator(".voice-notice").get_by_role("button", name="Enroll here").click()
     page.get_by_text("0 of 2 words are enrolled here.").wait_for()
-    # What was said elsewhere does not count, and the first word can be said at once.
+    # Speech outside the panel does not count, and the first word can be recorded at once.
     expect(page.get_by_role("button", name="Hold and say: stop")).to_be_focused()
     assert page.locator(".word-takes").all_text_contents() == ["0/3", "0/3"]
-    for shown in (page.locator(".voice-notice button"), page.locator(".voice-proposal")):
-        expect(shown).to_be_hidden()
+    for element in (page.locator(".voice-notice button"), page.locator(".voice-proposal")):
+        expect(element).to_be_hidden()
     page.get_by_role("button", name="Done").click()
     expect(page.locator(".word-here")).to_be_hidden()
     assert page.locator(".word-takes").all_text_contents() == ["3/3", "3/3"]

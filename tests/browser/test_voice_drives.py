@@ -1,6 +1,6 @@
-"""From the microphone to the wheels: words are enrolled in a real browser and said to it, and mbot obeys.
+"""From the microphone to the wheels: words are enrolled and spoken in a real browser, and mbot obeys.
 
-The browser's microphone is a file that another word is written to before each opening of the microphone.
+The browser's microphone is a file, which gets another word before each opening of the microphone.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import pytest
 from playwright.sync_api import Browser, Locator, Page, Playwright
 
 from linkwright.speech.sound.wav import encode_wav
-from tests.browser.conftest import Start, launched, state, until
-from tests.browser.live import LOOK_EVERY
+from tests.browser.conftest import Start, run_browser, state, until
+from tests.browser.live import POLL_PERIOD
 from tests.speech.voices import WORDS, say
 from tests.waiting import wait_until
 
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.browser
 
 SILENCE = 1.5
 AFTER = 1.2
-"""Seconds that the button is held before and after the word; the sound of the file goes on long after."""
+"""The time in seconds that the button is held before and after the word; the file is much longer."""
 
 _KEPT = """
 const get = navigator.mediaDevices.getUserMedia.bind(navigator.mediaDevices);
@@ -43,17 +43,17 @@ _UNPLUGGED = "window.heard?.getTracks().forEach((track) => { track.stop(); track
 
 
 class Microphone:
-    """The file that the browser hears when it opens the microphone anew."""
+    """The file that the browser reads each time it opens the microphone."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
         self.put(np.zeros(16_000, np.int16))
 
     def put(self, samples: np.ndarray) -> None:
-        rest = np.zeros(5 * 16_000, np.int16)
-        beside = self._path.with_suffix(".new")
-        beside.write_bytes(encode_wav(np.concatenate((samples, rest))))
-        beside.replace(self._path)
+        silence = np.zeros(5 * 16_000, np.int16)
+        new_path = self._path.with_suffix(".new")
+        new_path.write_bytes(encode_wav(np.concatenate((samples, silence))))
+        new_path.replace(self._path)
 
 
 @pytest.fixture(scope="module")
@@ -63,15 +63,15 @@ def microphone(tmp_path_factory: pytest.TempPathFactory) -> Microphone:
 
 @pytest.fixture(scope="module")
 def browser(playwright: Playwright, microphone: Microphone) -> Iterator[Browser]:
-    """A browser that says yes to the question for the microphone, and hears its file."""
+    """Run a browser that grants the microphone, and reads its file."""
     fake = ("--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream")
-    with launched(playwright, *fake, f"--use-file-for-fake-audio-capture={microphone._path}") as started:
-        yield started
+    with run_browser(playwright, *fake, f"--use-file-for-fake-audio-capture={microphone._path}") as new_browser:
+        yield new_browser
 
 
-def speak(page: Page, button: Locator, microphone: Microphone, word: str, *, seed: int, **how: float) -> None:
-    """Hold a button and say a word."""
-    samples = say(WORDS[word], silence=SILENCE, seed=seed, **how)
+def speak(page: Page, button: Locator, microphone: Microphone, word: str, *, seed: int, **voice: float) -> None:
+    """Hold a button and speak a word."""
+    samples = say(WORDS[word], silence=SILENCE, seed=seed, **voice)
     page.evaluate(_UNPLUGGED)
     until(page, "lw.panels.voice.isOpen === false")
     microphone.put(samples)
@@ -83,7 +83,7 @@ def speak(page: Page, button: Locator, microphone: Microphone, word: str, *, see
     page.keyboard.up("Space")
 
 
-def place(page: Page) -> tuple[float, float]:
+def position(page: Page) -> tuple[float, float]:
     x, y, *_ = state(page, "frames")["base_footprint"]["position"]
     return x, y
 
@@ -113,29 +113,31 @@ def test_enrolled_words_drive_and_stop_mbot(
         row = page.locator(".word", has=button)
         for take, speed in enumerate((1.0, 0.93, 1.07), 1):
             speak(page, button, microphone, word, seed=take, speed=speed)
-            judged = row.locator(".word-judged:has-text(' dB, ')")
-            judged.wait_for()
-            # A machine that is busy loses sound, and says so.
-            while any(lost in judged.inner_text() for lost in ("gaps", "begins or ends")):
+            verdict = row.locator(".word-judged:has-text(' dB, ')")
+            verdict.wait_for()
+            # A busy machine loses sound, and reports it.
+            while any(problem in verdict.inner_text() for problem in ("gaps", "begins or ends")):
                 speak(page, button, microphone, word, seed=take, speed=speed)
-                judged.wait_for()
+                verdict.wait_for()
             row.locator(f".word-takes:text-is('{take}/3')").wait_for()
 
     talk = page.locator(".voice-talk")
-    x, y = place(page)
+    x, y = position(page)
     speak(page, talk, microphone, "forward", seed=7, speed=0.97)
     page.wait_for_selector(".voice-said:has-text('understood') >> text=forward")
     wait_until(
-        lambda: math.hypot(place(page)[0] - x, place(page)[1] - y) > 0.2, what=lambda: place(page), pause=LOOK_EVERY
+        lambda: math.hypot(position(page)[0] - x, position(page)[1] - y) > 0.2,
+        what=lambda: position(page),
+        pause=POLL_PERIOD,
     )
     speak(page, talk, microphone, "stop", seed=8, speed=1.03)
     page.wait_for_selector(".voice-said:has-text('understood') >> text=stop")
-    stood = [place(page)]
+    positions = [position(page)]
 
     def stands() -> bool:
         page.wait_for_timeout(300)
-        stood.append(place(page))
-        return math.dist(stood[-1], stood[-2]) < 1e-3
+        positions.append(position(page))
+        return math.dist(positions[-1], positions[-2]) < 1e-3
 
-    wait_until(stands, what=lambda: stood)
+    wait_until(stands, what=lambda: positions)
     assert program.process.poll() is None

@@ -1,4 +1,4 @@
-"""A simulated world in the page: its models, the bar of the simulation, and what the mouse does to models."""
+"""A simulated world in the page: its models, the simulation bar, and the mouse on models."""
 
 from __future__ import annotations
 
@@ -42,13 +42,13 @@ SERVICES = {
 }
 
 
-def described(live, more=""):
-    viewer = live(configuration(DISPLAYS + more, distance=12.0).replace("Fixed Frame: base", "Fixed Frame: world"))
+def publish_world(live, extra=""):
+    viewer = live(configuration(DISPLAYS + extra, distance=12.0).replace("Fixed Frame: base", "Fixed Frame: world"))
     viewer.publish("/world_description", String(data=WORLD), DESCRIPTION_QOS)
     return viewer
 
 
-def moved(viewer, x: float) -> None:
+def move_model(viewer, x: float) -> None:
     transform = get_message("geometry_msgs/msg/TransformStamped")()
     transform.header.frame_id, transform.child_frame_id = "world", "crate::link"
     transform.transform.translation.x, transform.transform.rotation.w = x, 1.0
@@ -62,21 +62,21 @@ def bounds(page, link: str, shape: int = 0) -> list[list[float]]:
 
 
 def test_models_are_drawn_and_moved(live, open_page):
-    viewer = described(live)
+    viewer = publish_world(live)
     page = open_page(viewer)
     viewer.settle(page)
     assert bounds(page, "crate::link") == [[-2, -2, -0.5], [2, 2, 0.5]]
     assert bounds(page, "hill::link") == [[-1, -1, 2], [1, 1, 4]]
     assert bounds(page, "hill::link", 1) == [[0, 0, 6], [2, 2, 6.5]]
-    moved(viewer, 3.0)
+    move_model(viewer, 3.0)
     viewer.settle(page)
     assert bounds(page, "crate::link") == [[1, -2, -0.5], [5, 2, 0.5]]
 
 
 def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, tmp_path):
-    listed = threading.Event()
-    monkeypatch.setattr(entities, "model_choices", lambda packages: (listed.wait(SECONDS), ModelChoices([]))[1])
-    viewer = described(live)
+    list_requested = threading.Event()
+    monkeypatch.setattr(entities, "model_choices", lambda packages: (list_requested.wait(SECONDS), ModelChoices([]))[1])
+    viewer = publish_world(live)
     requests_made: list[tuple[str, object]] = []
 
     def answer(name: str, request, response):
@@ -86,9 +86,9 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
         return response
 
     def begin() -> None:
-        for name, kind in SERVICES.items():
+        for name, service_type in SERVICES.items():
             viewer.node.create_service(
-                get_service(kind), name, lambda request, response, name=name: answer(name, request, response)
+                get_service(service_type), name, lambda request, response, name=name: answer(name, request, response)
             )
 
     def requests(name: str) -> list:
@@ -107,8 +107,8 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
     record = page.get_by_role("button", name="Record", exact=True).bounding_box()
     assert record["x"] + record["width"] <= page.viewport_size["width"]
     page.get_by_role("button", name="Add a model", exact=True).click()
-    places = page.get_by_role("dialog").locator(".spawn-places input")
-    assert [field.input_value() for field in places.all()] == [
+    fields = page.get_by_role("dialog").locator(".spawn-places input")
+    assert [field.input_value() for field in fields.all()] == [
         "3",
         "0",
         "0",
@@ -118,16 +118,16 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
     dialog.get_by_role("button", name="Add a model").click()
     failure = dialog.get_by_role("alert").get_by_text("no such file: '/nowhere/robot.urdf'")
     failure.wait_for()
-    listed.set()
+    list_requested.set()
     dialog.get_by_text("No model is on the search path").wait_for()
     assert failure.is_visible(), "a list that comes late takes nothing away"
     (tmp_path / "seen.urdf").write_text(SEEN, encoding="utf-8")
     dialog.get_by_label("Model or file").fill(str(tmp_path / "seen.urdf"))
     dialog.get_by_role("button", name="Add a model").click()
     dialog.wait_for(state="detached")
-    (spawned,) = requests("/spawn_entity")
-    assert '<robot name="seen">' in spawned.xml
-    assert (spawned.initial_pose.position.x, spawned.initial_pose.position.y) == (3.0, 0.0)
+    (request,) = requests("/spawn_entity")
+    assert '<robot name="seen">' in request.xml
+    assert (request.initial_pose.position.x, request.initial_pose.position.y) == (3.0, 0.0)
 
     box = page.locator(".canvas-box canvas").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
@@ -178,34 +178,38 @@ def test_camera_shows_world_origin_when_robot_falls_out_of_view(start, open_page
     (tmp_path / "seen.urdf").write_text(SEEN)
     page = open_page(start("sim", "empty", "seen.urdf", "-x", "7", "-z", "-900"))
     page.locator(".banner").get_by_text("no link of 'seen' has a <collision>").wait_for()
-    drawn = "lw.displays.find(({ name }) => name === 'World').drawn.links['seen::base'].visuals[0].bounds.max[2] < -800"
-    until(page, drawn)
+    has_fallen = (
+        "lw.displays.find(({ name }) => name === 'World').drawn.links['seen::base'].visuals[0].bounds.max[2] < -800"
+    )
+    until(page, has_fallen)
     # Without a ground of its own, a world that is empty is looked at where the robot was put.
     assert abs(state(page, "view.values['Focal Point/Z']")) < 1
 
 
 def test_model_without_collision_is_reported_until_dismissed(live, open_page):
-    viewer = described(live)
+    viewer = publish_world(live)
     page = open_page(viewer)
     falls = phrase("no link of '{name}' has a <collision>, so the model has no contacts and falls", name="seen")
     small = phrase("links without a mass")
-    both = [Diagnostic(code, text, severity=Severity.WARNING) for code, text in (("SDF172", small), ("SIM143", falls))]
-    viewer.run(lambda: viewer.viewer.show_diagnostics(both))
+    findings = [
+        Diagnostic(code, text, severity=Severity.WARNING) for code, text in (("SDF172", small), ("SIM143", falls))
+    ]
+    viewer.run(lambda: viewer.viewer.show_diagnostics(findings))
     banner = page.locator(".banner")
     banner.get_by_text("no link of 'seen'").wait_for()
     banner.get_by_role("button", name="Close this message").click()
     banner.wait_for(state="hidden")
-    broken = Diagnostic("URDF101", phrase("links without a mass"))
-    viewer.run(lambda: viewer.viewer.show_diagnostics([*both, broken]))
+    robot_finding = Diagnostic("URDF101", phrase("links without a mass"))
+    viewer.run(lambda: viewer.viewer.show_diagnostics([*findings, robot_finding]))
     banner.get_by_text("links without a mass").wait_for()
     assert banner.get_by_role("button", name="Close this message").count() == 0
-    viewer.run(lambda: viewer.viewer.show_diagnostics(both))
+    viewer.run(lambda: viewer.viewer.show_diagnostics(findings))
     banner.wait_for(state="hidden")
 
 
 def test_slow_world_is_reported_with_button_to_switch_off_images(live, open_page):
     image = "\n- {Class: rviz_default_plugins/Image, Name: Front, Enabled: true, Topic: {Value: /front}}"
-    viewer = described(live, image)
+    viewer = publish_world(live, image)
     page = open_page(viewer)
     until(page, "lw.displays.some(({ name, enabled }) => name === 'Front' && enabled)")
     slow = Diagnostic("SIM146", phrase("links without a mass"), severity=Severity.WARNING)
@@ -260,7 +264,7 @@ def test_sensor_rays_and_frustums_follow_display_properties(live, open_page):
     def drawn(page) -> dict:
         return page.evaluate("() => window.linkwright.displays[0].drawn.sensors")
 
-    viewer = described(live)
+    viewer = publish_world(live)
     viewer.publish("/world_description", String(data=WORLD.replace("</world>", SENSING)), DESCRIPTION_QOS)
     page = open_page(viewer)
     viewer.settle(page)

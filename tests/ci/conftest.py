@@ -1,4 +1,4 @@
-"""An example repository with a pull request that changes a robot, on a service that the steps of templates reach."""
+"""An example repository with a pull request that changes a robot, on a service for the steps of templates."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Example:
 
 @pytest.fixture
 def example(tmp_path: Path) -> Example:
-    """A pull request that renames a link, lengthens a macro, and has names and files that are hostile."""
+    """Return a pull request that renames a link, lengthens a macro, and has hostile names and files."""
     repository = Repository(tmp_path / "repository")
     base = repository.commit(PACKAGE)
     repository.git("checkout", "--quiet", "-b", HOSTILE_BRANCH)
@@ -72,6 +72,6 @@ def service() -> Iterator[Service]:
 
 @pytest.fixture
 def runner(example: Example, service: Service, tmp_path: Path) -> Runner:
-    """A runner of GitHub's, with the pull request checked out."""
+    """Return a runner as GitHub's, with the pull request checked out."""
     variables = {"GITHUB_API_URL": service.url, "GITHUB_REPOSITORY": "team/robots"}
     return Runner(example.repository.root, tmp_path / "runner", variables)

@@ -18,7 +18,7 @@ from tests.places import REPOSITORY
 
 TEMPLATES = REPOSITORY / "packaging" / "ci"
 BASH = ("bash", "--noprofile", "--norc", "-eo", "pipefail")
-"""How a runner starts ``shell: bash``."""
+"""The command with which a runner starts ``shell: bash``."""
 
 _EXPRESSION = re.compile(r"\$\{\{ (.+?) \}\}")
 _COMPARISON = re.compile(r"([\w.-]+)(?: (==|!=) '([^']*)')?")
@@ -26,14 +26,14 @@ _COMPARISON = re.compile(r"([\w.-]+)(?: (==|!=) '([^']*)')?")
 
 @dataclass
 class Run:
-    """What became of an action.
+    """The result of an action.
 
     Attributes:
-        failed: the name of the step that failed, or empty.
-        output: what the steps printed.
+        failed: the name of the failed step, or empty.
+        output: the output of the steps.
         used: the actions that it used, with their inputs.
         outputs: the outputs of the action.
-        uploaded: the folder of the artifact, by name.
+        uploaded: the uploaded files.
     """
 
     failed: str = ""

@@ -1,4 +1,4 @@
-"""A service with pull requests, for programs that comment on them: GitHub, Gitea or GitLab, on this machine."""
+"""A local service with pull requests, for programs that comment on them: GitHub, Gitea or GitLab."""
 
 from __future__ import annotations
 
@@ -52,11 +52,11 @@ class Service:
 
     @property
     def writes(self) -> list[str]:
-        """The requests that wrote something."""
+        """Return the requests that wrote something."""
         return [request for request in self.requests if not request.startswith("GET")]
 
     def add(self, body: str, name: str = "github-actions[bot]", kind: str = "Bot") -> None:
-        """Add a comment of somebody."""
+        """Add a comment of an author."""
         author = {self.name_key: name, "type": kind}
         self.comments.append({"id": 100 + len(self.comments), "body": body, self.author_key: author})
 

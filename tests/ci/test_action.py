@@ -1,4 +1,4 @@
-"""The action for GitHub and Gitea in an example repository: its files, its comment, and what it does not run."""
+"""The action for GitHub and Gitea in an example repository: its files, its comment, and code that it does not run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LINK = "\n[report.html](https://example.org/artifacts/8)\n"
 
 @pytest.fixture
 def expected(example: Example, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """The comment as the command writes it."""
+    """Return the comment that the command writes."""
     monkeypatch.chdir(example.repository.root)
     short = [example.repository.git("rev-parse", "--short", commit) for commit in (example.base, example.head)]
     assert main(["review", "...".join(short), "--markdown", str(tmp_path / "expected.md")]) == 0

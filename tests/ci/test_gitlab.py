@@ -1,4 +1,4 @@
-"""The template for GitLab in an example repository: its note, its report on code quality, and what it does not run."""
+"""The template for GitLab in an example repository: its note, its code quality report, and code that is not run."""
 
 from __future__ import annotations
 

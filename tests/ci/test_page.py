@@ -1,4 +1,4 @@
-"""The page about reviews shows what the program prints, and files that fit the templates."""
+"""The page about reviews: the program's output, and files that match the templates."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The hooks for pre-commit in an example repository: what is old passes, what is new fails."""
+"""The hooks for pre-commit in an example repository: old findings pass, new ones fail."""
 
 from __future__ import annotations
 

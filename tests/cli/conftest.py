@@ -1,4 +1,4 @@
-"""A graph for the commands about running nodes, on the event loop of the command."""
+"""A graph for the commands about running nodes, on the command's event loop."""
 
 from __future__ import annotations
 

@@ -134,7 +134,7 @@ def test_graph_discovery_stores_names_of_running_nodes(in_graph: Callable[[Calla
 
 
 def test_completion_imports_no_slow_modules() -> None:
-    """A completion is there in less than a tenth of a second."""
+    """A completion takes less than a tenth of a second."""
     line = "ros2 launch arm a.launch.py "
     program = (
         "import sys\nfrom linkwright.cli.completion.candidates import complete, split_line\n"
@@ -174,7 +174,7 @@ SHELL_LINES = [
     (["linkwright", "topic", "pub", "/a", "arm/msg/"], ["arm/msg/Grip"]),
     (["linkwright", "nonsense", ""], []),
 ]
-"""What shells hand over, the word at the cursor last, and what they are to offer for it."""
+"""The words that shells pass, the one at the cursor last, and the expected candidates."""
 
 
 @pytest.mark.parametrize(("words", "offered"), SHELL_LINES)
@@ -193,7 +193,7 @@ compdef() { print -ru2 -- compdef $@ }
 compadd() { while [[ "$1" != -- ]] { shift }; shift; (( $# )) && print -rl -- "$@" }
 _files() { print -r -- FILES }
 """
-"""What zsh's completion system offers, here as functions that print what they are given."""
+"""The functions of zsh's completion system, as functions that print their arguments."""
 
 
 @pytest.mark.skipif(shutil.which("zsh") is None, reason="there is no zsh")

@@ -17,7 +17,7 @@ POSITIONS = {"joints": ["hip"], "interface_name": "position"}
 
 @pytest.fixture
 def manager(in_graph, tmp_path):
-    """A manager whose controllers have given states."""
+    """Run a manager whose controllers have these states."""
     path = tmp_path / "c.yaml"
     path.write_text("positions: {ros__parameters: {joints: [hip], interface_name: position}}")
 

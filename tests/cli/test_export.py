@@ -70,7 +70,7 @@ def test_invalid_model_is_reported_and_not_exported(model, capsys):
 
 
 def test_exported_files_from_outside_packages_are_listed(model, capsys, monkeypatch):
-    """Neither what lies below the folder of the description, nor what is in a package, is a surprise."""
+    """Files below the description's folder, and files in packages, are not listed."""
     home, other, package = (model / name for name in ("home", "other", "package"))
     for folder in (home / "parts", other, package):
         folder.mkdir(parents=True)

@@ -18,7 +18,7 @@ termios = pytest.importorskip("termios")
 
 @pytest.fixture
 def keyboard(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
-    """The end of a terminal at which the test types; the other end is the standard input."""
+    """Return the typing end of a terminal; the other end is the standard input."""
     main, terminal = pty.openpty()
     with os.fdopen(terminal) as stdin:
         monkeypatch.setattr(sys, "stdin", stdin)

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.cli.completion.candidates import complete
-from tests.model_files.shop import ARCHIVE, PACKED, open_shop
+from tests.model_files.model_server import ARCHIVE, ARCHIVE_ENTRY, run_model_server
 
 
 @pytest.fixture(autouse=True)
@@ -20,11 +20,11 @@ def home(tmp_path, monkeypatch):
 
 @pytest.fixture
 def toy(monkeypatch):
-    with open_shop() as shop:
-        entry = shop.of(PACKED, "toy.zip", ARCHIVE)
+    with run_model_server() as server:
+        entry = server.add(ARCHIVE_ENTRY, "toy.zip", ARCHIVE)
         monkeypatch.setattr("linkwright.model_files.table.model_table", lambda: {"toy": entry})
         monkeypatch.setattr("linkwright.model_files.model_table", lambda: {"toy": entry})
-        yield shop
+        yield server
 
 
 def test_models_list_prints_license_and_status(capsys):
@@ -41,13 +41,13 @@ def test_models_list_prints_license_and_status(capsys):
 
 def test_model_is_downloaded_found_verified_and_removed(toy, home, capsys):
     assert main(["models", "get", "toy"]) == 0
-    printed = capsys.readouterr()
-    assert printed.out == f"{home / 'toy-1.0'}\n"
-    assert "license Apache-2.0" in printed.err
+    captured = capsys.readouterr()
+    assert captured.out == f"{home / 'toy-1.0'}\n"
+    assert "license Apache-2.0" in captured.err
     assert main(["models", "path", "toy"]) == 0
     assert capsys.readouterr().out == f"{home / 'toy-1.0'}\n"
     assert main(["models", "get", "toy"]) == 0
-    assert len(toy.asked) == 1  # it is there
+    assert len(toy.range_headers) == 1  # the installed model is not downloaded again
     assert main(["models", "check"]) == 0
     (home / "toy-1.0" / "conf" / "model.conf").write_text("other")
     capsys.readouterr()

@@ -34,7 +34,7 @@ def test_expanded_text_is_printed(model, capsys):
 
 
 def test_xacro_command_imports_few_modules(model):
-    """What takes long to import is not, where a file is only expanded: people type this often, and build tools do."""
+    """Slow modules are not imported for a plain expansion: users and build tools run it often."""
     loaded = loaded_by(f"from linkwright.cli import main; main(['xacro', {str(model)!r}])")
     seldom_needed = {"asyncio", "linkwright.packages", "linkwright.xmltree.positions", "locale", "numpy", "pathlib"}
     assert not (seldom_needed | {"tempfile", "unicodedata", "yaml"}) & loaded
@@ -89,7 +89,7 @@ def test_arguments_without_options_match_full_parser():
 
 
 def test_plain_command_does_not_import_argparse(tmp_path):
-    """It takes as long as the expansion of a small file."""
+    """The import takes as long as the expansion of a small file."""
     (tmp_path / "small.xacro").write_text('<robot name="r"/>', encoding="utf-8")
     loaded = loaded_by(f"from linkwright.cli import main; main(['xacro', {str(tmp_path / 'small.xacro')!r}, 'a:=1'])")
     slow = {"argparse", "ast", "contextlib", "dataclasses", "gettext", "inspect", "pathlib", "typing", "warnings"}

@@ -1,4 +1,4 @@
-"""Robots with ros2_control, and managers of them."""
+"""Robots with ros2_control, and managers for them."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import Graph
 from linkwright.graph.parameters.parameter import ParameterRules
 
-JOINT = "<joint name='{name}'>{commands}{states}{more}</joint>"
+JOINT = "<joint name='{name}'>{commands}{states}{extra}</joint>"
 
 
 def joint(
-    name: str, commands: str = "position", states: str = "position velocity", more: str = "", initial: str = ""
+    name: str, commands: str = "position", states: str = "position velocity", extra: str = "", initial: str = ""
 ) -> str:
-    """A joint of ``<ros2_control>``."""
+    """Return a joint of ``<ros2_control>``."""
     value = f"<param name='initial_value'>{initial}</param>" if initial else ""
     return JOINT.format(
         name=name,
-        more=more,
+        extra=extra,
         commands="".join(f"<command_interface name='{interface}'/>" for interface in commands.split()),
         states="".join(
             f"<state_interface name='{interface}'>{value if interface == 'position' else ''}</state_interface>"
@@ -34,23 +34,23 @@ def joint(
 
 
 def robot(control: str, *, parameters: str = "", mimic: str = "", joints: tuple[str, ...] = ("hip", "knee")) -> str:
-    """A robot whose joints are in a row, with one system of mock hardware."""
+    """Return a robot with joints in a row, and one system of mock hardware."""
     links = "<link name='base'/>" + "".join(f"<link name='{joint}_link'/>" for joint in joints)
     above = ["base", *(f"{joint}_link" for joint in joints)]
-    moving = "".join(
+    links_and_joints = "".join(
         f"<joint name='{joint}' type='revolute'><parent link='{parent}'/><child link='{joint}_link'/>"
         "<axis xyz='0 0 1'/>"
         f"<limit lower='-3' upper='3' effort='10' velocity='5'/>{mimic if joint == joints[-1] else ''}</joint>"
         for joint, parent in zip(joints, above, strict=False)
     )
     return (
-        f"<robot name='r'>{links}{moving}<ros2_control name='arm' type='system'><hardware>"
+        f"<robot name='r'>{links}{links_and_joints}<ros2_control name='arm' type='system'><hardware>"
         f"<plugin>mock_components/GenericSystem</plugin>{parameters}</hardware>{control}</ros2_control></robot>"
     )
 
 
-def described(text: str) -> tuple[list[HardwareDescription], list[str]]:
-    """The hardware in a description, and what is wrong with it."""
+def read_hardware(text: str) -> tuple[list[HardwareDescription], list[str]]:
+    """Return the hardware of a description, and the findings about it."""
     reading = DescriptionLibrary().read(text)
     assert reading.robot is not None
     hardware, findings = hardware_from_robot(reading.robot)
@@ -60,7 +60,7 @@ def described(text: str) -> tuple[list[HardwareDescription], list[str]]:
 def manager(
     graph: Graph, text: str, parameters: dict[str, Any] | None = None, **controller_parameters: dict[str, Any]
 ) -> Any:
-    """A manager of a robot: the parameters of its node, and those of the nodes of its controllers."""
+    """Return a manager of a robot; the parameters are those of its node, and of its controllers' nodes."""
     rules = ParameterRules()
     for name, values in controller_parameters.items():
         for key, value in values.items():

@@ -1,4 +1,4 @@
-"""Runs controllers by hand, without a manager: interfaces are what the test says, and time goes on in steps."""
+"""A test bench that steps controllers without a manager; the test provides the interfaces."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from linkwright.graph import Graph, LogRecord
 from linkwright.graph.stepped.exchange import Exchange
 
 
-class Stand:
+class TestBench:
+    """A test bench with interfaces, a clock and a log."""
+
     def __init__(self, graph: Graph, log: list[LogRecord]) -> None:
         self.graph, self.log = graph, log
         self.node = graph.create_node("audience")
@@ -21,23 +23,23 @@ class Stand:
         self.time_ns = 0
 
     def joint(self, name: str, *, commands: tuple[str, ...] = (), **states: float) -> None:
-        """A joint with command interfaces and states."""
-        for kind in commands:
-            self.commands[f"{name}/{kind}"] = CommandInterface(name, kind)
-        for kind, value in states.items():
-            self.states[f"{name}/{kind}"] = StateInterface(name, kind, value)
+        """Create a joint with command interfaces and states."""
+        for interface in commands:
+            self.commands[f"{name}/{interface}"] = CommandInterface(name, interface)
+        for interface, value in states.items():
+            self.states[f"{name}/{interface}"] = StateInterface(name, interface, value)
 
     def make(
         self, controller: type[Controller[Any]], name: str = "controller", *, description: str = "", **parameters: Any
     ) -> Any:
-        """A controller that is not configured yet; its name may have a namespace, its parameters nested mappings."""
+        """Create an unconfigured controller; its name may have a namespace, its parameters nested mappings."""
         namespace, _, name = name.rpartition("/")
         node = self.graph.create_node(name, namespace=namespace or "/", parameters=parameters)
-        place = ControllerContext(name, ControllerNode(node, self.exchange), 100.0, description)
-        return controller(place)
+        context = ControllerContext(name, ControllerNode(node, self.exchange), 100.0, description)
+        return controller(context)
 
     def activate(self, controller: Controller[Any], *, configure: bool = True) -> Any:
-        """Configure and activate a controller: it gets the interfaces that it asks for."""
+        """Configure and activate a controller with the interfaces that it requests."""
         if configure:
             controller.on_configure()
         controller.commands = _chosen(self.commands, controller.command_interfaces())
@@ -53,11 +55,11 @@ class Stand:
         return controller
 
     def start(self, controller: type[Controller[Any]], name: str = "controller", **parameters: Any) -> Any:
-        """A controller that is active."""
+        """Create, configure and activate a controller."""
         return self.activate(self.make(controller, name, **parameters))
 
     async def step(self, controller: Controller[Any], period_s: float = 0.01, count: int = 1) -> None:
-        """So many updates, each after what has come by topics, and before what goes out."""
+        """Update the controller several times; received messages are processed before, publications are sent after."""
         for _ in range(count):
             await self.graph.settle()
             self.exchange.run_commands()
@@ -67,13 +69,13 @@ class Stand:
             await self.graph.settle()
 
     def record(self, type_name: str, topic: str) -> list[Any]:
-        """The messages of a topic, from now on."""
+        """Return a list that receives a topic's messages."""
         messages: list[Any] = []
         self.node.create_subscription(type_name, topic, messages.append, 100)
         return messages
 
     def publish(self, type_name: str, topic: str, message: Any) -> None:
-        """Publish a message; the next step brings it."""
+        """Publish a message; the next step processes it."""
         self.node.create_publisher(type_name, topic, 10).publish(message)
 
 
@@ -82,5 +84,5 @@ def _chosen(interfaces: dict[str, Any], names: Any) -> list[Any]:
 
 
 def values(interfaces: list[Interface]) -> list[float]:
-    """The values of interfaces."""
+    """Return the values of interfaces."""
     return [interface.value for interface in interfaces]

@@ -1,4 +1,4 @@
-"""What the documentation says of controllers: the example runs, and every parameter is there."""
+"""The documentation of controllers: the example runs, and every parameter is documented."""
 
 from __future__ import annotations
 
@@ -36,16 +36,16 @@ DOCUMENTED = [
 ]
 
 
-def shown(text: str, language: str, part: str) -> str:
+def code_block(text: str, language: str, text_inside: str) -> str:
     """Return the code block of a page in a language that contains a text."""
     code_blocks: list[str] = re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
-    (block,) = (block for block in code_blocks if part in block)
+    (block,) = (block for block in code_blocks if text_inside in block)
     return block
 
 
 def example(page: Path) -> Any:
-    """The controller of a page."""
-    code = shown(page.read_text("utf-8"), "python", "class Swing(")
+    """Return the example controller of a page."""
+    code = code_block(page.read_text("utf-8"), "python", "class Swing(")
     module = ModuleType("my_controllers.swing")
     exec(compile(code, str(page), "exec", dont_inherit=True), module.__dict__)
     return module.__dict__["Swing"]
@@ -67,16 +67,16 @@ async def test_documented_example_swings_joint(stand, page):
 
 @pytest.fixture
 def installed(tmp_path, monkeypatch):
-    """The package of the page's example, installed as the page says."""
+    """Install the package of the page's example."""
     text = PAGES[0].read_text("utf-8")
-    code = shown(text, "python", "class Swing(")
-    declared = shown(text, "toml", '"linkwright.controllers"')
+    code = code_block(text, "python", "class Swing(")
+    entry_point = code_block(text, "toml", '"linkwright.controllers"')
     package, facts = tmp_path / "my_controllers", tmp_path / "my_controllers-1.0.dist-info"
     package.mkdir()
     facts.mkdir()
     (package / "__init__.py").touch()
     (package / "swing.py").write_text(code, encoding="utf-8")
-    lines = [f"[{GROUP}]", *read_pyproject_group(declared, GROUP), "my/Broken = nowhere:None"]
+    lines = [f"[{GROUP}]", *read_pyproject_group(entry_point, GROUP), "my/Broken = nowhere:None"]
     (facts / "entry_points.txt").write_text("\n".join(lines))
     monkeypatch.syspath_prepend(str(tmp_path))
     extensions._all_groups.cache_clear()
@@ -103,25 +103,25 @@ async def test_manager_runs_controller_of_package(graph):
 
 @pytest.mark.usefixtures("installed")
 def test_package_with_import_error_is_reported_by_name():
-    with pytest.raises(LinkwrightError) as raised:
+    with pytest.raises(LinkwrightError) as error:
         controller_class("my/Broken")
-    (diagnostic,) = raised.value.diagnostics
+    (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "CTL104"
     assert "my_controllers" in str(diagnostic.hint)
 
 
 def names(table: Any) -> set[str]:
-    """The names of the parameters of a table and those in it, without those that they stand below."""
+    """Return the parameters of a table and of its nested tables."""
     hints = get_type_hints(table)
     found_names: set[str] = set()
     for field in fields(table):
-        inside = field.metadata.get("table") or (hints[field.name] if is_dataclass(hints[field.name]) else None)
-        found_names |= {field.name} if inside is None else names(inside)
+        nested = field.metadata.get("table") or (hints[field.name] if is_dataclass(hints[field.name]) else None)
+        found_names |= {field.name} if nested is None else names(nested)
     return found_names
 
 
 @pytest.mark.parametrize("page", PAGES, ids=["en", "zh"])
 def test_controller_parameters_are_documented(page):
-    words = set(re.findall(r"[a-z_]+", page.read_text("utf-8")))
+    documented_names = set(re.findall(r"[a-z_]+", page.read_text("utf-8")))
     for controller in DOCUMENTED:
-        assert names(controller.PARAMETERS) - set("xyzw") <= words, controller
+        assert names(controller.PARAMETERS) - set("xyzw") <= documented_names, controller

@@ -1,4 +1,4 @@
-"""What tests of the documentation share."""
+"""Fixtures for tests of the documentation."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from pathlib import Path
 
 import pytest
 
-from tests.docs.reader import Known, Reader, environment_of
+from tests.docs.reader import Outcome, Reader, environment_of
 from tests.installed import install
 
 
 @pytest.fixture
 def follow(tmp_path_factory: pytest.TempPathFactory, tmp_path: Path) -> Callable[..., Path]:
-    """Follow a page as a reader does who knows some lines' outcome; returns their home folder."""
-    of_all_workers = tmp_path_factory.getbasetemp().parent / "installed"
-    environment = install(of_all_workers, "pytest", "flake8", "pydocstyle")
+    """Return a function that follows a page with the known outcomes of some lines, and returns the home folder."""
+    shared_folder = tmp_path_factory.getbasetemp().parent / "installed"
+    environment = install(shared_folder, "pytest", "flake8", "pydocstyle")
 
-    def follow_page(page: Path, known: Mapping[str, Known]) -> Path:
-        Reader(environment_of(environment, tmp_path), tmp_path, known).follow(page)
+    def follow_page(page: Path, outcomes: Mapping[str, Outcome]) -> Path:
+        Reader(environment_of(environment, tmp_path), tmp_path, outcomes).follow(page)
         return tmp_path
 
     return follow_page

@@ -18,7 +18,7 @@ _BLOCK = re.compile(
 
 @dataclass(frozen=True)
 class Block:
-    """A fenced code block; `title` is the file that a reader is told to put it into, or empty."""
+    """A fenced code block; `title` is the file in which the page puts it, or empty."""
 
     language: str
     title: str
@@ -26,19 +26,19 @@ class Block:
 
 
 def pages() -> list[Path]:
-    """Every page that a reader sees, the READMEs among them, without the records of decisions."""
+    """Return all pages for users, including the READMEs, without the decision records."""
     pages = [path for path in sorted(DOCS.rglob("*.md")) if "decisions" not in path.parts]
     return [*READMES, *pages]
 
 
 def blocks(page: Path) -> list[Block]:
-    """The page's code blocks in order."""
+    """Return the page's code blocks in order."""
     matches = _BLOCK.finditer(page.read_text(encoding="utf-8"))
     return [Block(match["language"], match["title"] or "", match["text"]) for match in matches]
 
 
 def commands(page: Path) -> list[str]:
-    """The ``linkwright`` lines of the page's shell blocks, without comments."""
+    """Return the ``linkwright`` lines of the page's shell blocks, without comments."""
     lines = [line for block in blocks(page) if block.language == "bash" for line in block.text.splitlines()]
     lines = [line.split(" #")[0].strip() for line in lines]
     return [line for line in lines if line.startswith("linkwright ")]

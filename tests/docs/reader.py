@@ -1,7 +1,7 @@
-"""A reader who follows a page: in terminals, in an empty home folder, with the wheel that they installed.
+"""A simulated reader of a page, with terminals, an empty home folder, and the installed wheel.
 
 The reader types each line of the page's shell blocks and writes each file that has a title, in the order of the page.
-A line that starts a page goes on in its terminal until the next such line; other lines are typed beside it.
+A line that opens a page of Linkwright keeps its terminal until the next such line; other lines are typed beside it.
 """
 
 from __future__ import annotations
@@ -31,31 +31,31 @@ _BAD = re.compile(r"Traceback|\[ERROR\]|\[FATAL\]|^error")
 
 
 @dataclass(frozen=True)
-class Known:
-    """What is known of a line that does more than end well.
+class Outcome:
+    """The known outcome of a line that does more than end with status 0.
 
     Attributes:
-        shows: a text that it prints, at the latest after the last line of its block.
-        hears: the topic that it subscribes to, which the reader waits for.
-        node: the node that it starts, which the reader waits for.
-        goes_on: whether it goes on until the reader presses Ctrl-C, at the end of the block.
-        complains: part of the error that it prints, because the page shows what goes wrong.
-        may_fail: whether it also may end with an error, as where there is no network.
+        output_text: a text that it prints, at the latest after the last line of its block.
+        topic: the topic that it subscribes to; the reader waits for the subscription.
+        node: the node that it starts; the reader waits for it.
+        runs_on: whether it runs until the reader presses Ctrl-C, at the end of the block.
+        error: part of the error that it prints, because the page shows a mistake.
+        may_fail: whether it also may end with an error, such as one without a network.
     """
 
-    shows: str = ""
-    hears: str = ""
+    output_text: str = ""
+    topic: str = ""
     node: str = ""
-    goes_on: bool = True
-    complains: str = ""
+    runs_on: bool = True
+    error: str = ""
     may_fail: bool = False
 
 
 class Terminal:
-    """A bash on a pseudo-terminal, whose prompts say the exit status of the last command."""
+    """A bash on a pseudo-terminal whose prompts contain the exit status of the last command."""
 
     def __init__(self, environment: Mapping[str, str], folder: Path) -> None:
-        self._own, theirs = os.openpty()
+        self._terminal, theirs = os.openpty()
         self._shell = subprocess.Popen(
             ["setsid", "--ctty", "bash", "--noprofile", "--norc", "-i"],
             stdin=theirs,
@@ -68,8 +68,8 @@ class Terminal:
         self._text = ""
         self._typed_at = 0
         self._changed = threading.Condition()
-        self._reading = threading.Thread(target=self._read)
-        self._reading.start()
+        self._reader_thread = threading.Thread(target=self._read)
+        self._reader_thread.start()
         self.line = ""
         self.status()
         self.run("stty -echo; bind 'set enable-bracketed-paste off'")
@@ -78,21 +78,21 @@ class Terminal:
         decoder = getincrementaldecoder("utf-8")("replace")
         while True:
             try:
-                read = os.read(self._own, 65536)
+                data = os.read(self._terminal, 65536)
             except OSError:  # all programs of the terminal have ended
                 return
             with self._changed:
-                self._text += decoder.decode(read)
+                self._text += decoder.decode(data)
                 self._changed.notify_all()
 
     @property
     def output(self) -> str:
-        """What was printed since the last line was typed."""
+        """Return the output since the last line was typed."""
         return self._text[self._typed_at :]
 
     @property
     def is_free(self) -> bool:
-        """Whether the last line has ended."""
+        """Return whether the last line has ended."""
         return _PROMPT.search(self.output) is not None
 
     def type(self, line: str) -> None:
@@ -100,26 +100,26 @@ class Terminal:
         self.line = line
         with self._changed:
             self._typed_at = len(self._text)
-        os.write(self._own, f"{line}\n".encode())
+        os.write(self._terminal, f"{line}\n".encode())
 
     def wait_for(self, text: str) -> None:
-        """Wait until the line has printed a text; it fails where the line ends before."""
+        """Wait until the line has printed a text; fail if the line ends before."""
         with self._changed:
-            came = self._changed.wait_for(lambda: text in self.output or self.is_free, PATIENCE)
-        assert came, f"{self.line!r} prints no {text!r}:\n{self.output}"
-        assert text in self.output, f"{self.line!r} ended without {text!r}:\n{self.output}"
+            is_done = self._changed.wait_for(lambda: text in self.output or self.is_free, PATIENCE)
+        assert is_done, f"{self.line!r} prints no {text!r}:\n{self.output}"
+        assert text in self.output, f"{self.line!r} ended before {text!r}:\n{self.output}"
 
     def status(self) -> int:
         """Wait for the end of the line, and return its exit status."""
         with self._changed:
-            ended = self._changed.wait_for(lambda: self.is_free, PATIENCE)
-        assert ended, f"{self.line!r} has not ended:\n{self.output}"
+            has_ended = self._changed.wait_for(lambda: self.is_free, PATIENCE)
+        assert has_ended, f"{self.line!r} has not ended:\n{self.output}"
         prompt = _PROMPT.search(self.output)
         assert prompt is not None
         return int(prompt[1])
 
     def run(self, line: str) -> str:
-        """Type a line that ends well, and return what it printed."""
+        """Type a line that must succeed, and return its output."""
         self.type(line)
         status = self.status()
         assert status == 0, f"{line!r} ended with {status}:\n{self.output}"
@@ -128,40 +128,42 @@ class Terminal:
     def interrupt(self) -> int:
         """Press Ctrl-C, and return the exit status of the line."""
         if not self.is_free:
-            os.write(self._own, b"\x03")
+            os.write(self._terminal, b"\x03")
         return self.status()
 
     def close(self) -> None:
         """Close the terminal's window."""
         self._shell.send_signal(signal.SIGHUP)
-        with suppress(OSError):  # the shell has ended, of which another error tells
-            os.write(self._own, b"\n")  # a shell that the signal meets just before it reads looks at it after the line
+        with suppress(OSError):  # the shell has ended, which another error reports
+            os.write(
+                self._terminal, b"\n"
+            )  # a shell that gets the signal just before it reads handles it after the line
         self._shell.wait(PATIENCE)
-        self._reading.join(PATIENCE)
-        os.close(self._own)
+        self._reader_thread.join(PATIENCE)
+        os.close(self._terminal)
 
 
 class Reader:
-    """Somebody who follows a page."""
+    """A reader of pages."""
 
-    def __init__(self, environment: Mapping[str, str], home: Path, known: Mapping[str, Known]) -> None:
+    def __init__(self, environment: Mapping[str, str], home: Path, outcomes: Mapping[str, Outcome]) -> None:
         """Open the first terminal.
 
         Args:
             environment: the variables of the terminals.
             home: the home folder, in which the reader begins.
-            known: what is known of lines of the page.
+            outcomes: the known outcomes of some lines of the page.
         """
         self._environment = environment
-        self._known = known
+        self._outcomes = outcomes
         self._first = Terminal(environment, home)
         self._page: Terminal | None = None
-        self._beside: list[Terminal] = []
-        self._typed: set[str] = set()
-        self._launched = 0.0
+        self._side_terminals: list[Terminal] = []
+        self._typed_lines: set[str] = set()
+        self._launch_time = 0.0
 
     def follow(self, page: Path) -> None:
-        """Do all that the page says in blocks."""
+        """Type and write all blocks of the page."""
         try:
             for block in blocks(page):
                 if block.title:
@@ -169,50 +171,50 @@ class Reader:
                 elif block.language == "bash":
                     for line in block.text.splitlines():
                         self._do(line)
-                    self._end_beside()
+                    self._end_side_terminals()
             self._end_page()
         finally:
-            for terminal in {*self._beside, *filter(None, (self._page,)), self._first}:
+            for terminal in {*self._side_terminals, *filter(None, (self._page,)), self._first}:
                 terminal.close()
-        assert set(self._known) <= self._typed, f"not on the page: {set(self._known) - self._typed}"
+        assert set(self._outcomes) <= self._typed_lines, f"not on the page: {set(self._outcomes) - self._typed_lines}"
 
     def _folder(self) -> Path:
         return Path(self._first.run("pwd").strip())
 
     def _do(self, line: str) -> None:
-        known = self._known.get(line, Known(goes_on=False))
-        self._typed.add(line)
+        outcome = self._outcomes.get(line, Outcome(runs_on=False))
+        self._typed_lines.add(line)
         if _PAGE.match(line):
             self._end_page()
             self._page = self._first if line.startswith("ros2 ") else Terminal(self._environment, self._folder())
             self._page.type(line)
             self._page.wait_for(_ANY_PAGE)
-            self._launched = time.monotonic()
-            while known.node and not self._is_there(known.node):
+            self._launch_time = time.monotonic()
+            while outcome.node and not self._node_exists(outcome.node):
                 assert not self._page.is_free, f"{line!r} has ended:\n{self._page.output}"
-        elif known.goes_on:
-            before = self._subscribers(known.hears)
+        elif outcome.runs_on:
+            count_before = self._subscribers(outcome.topic)
             terminal = Terminal(self._environment, self._folder())
-            self._beside.append(terminal)
+            self._side_terminals.append(terminal)
             terminal.type(line)
-            while known.hears and self._subscribers(known.hears) == before:
+            while outcome.topic and self._subscribers(outcome.topic) == count_before:
                 self._try_again(terminal)
-            while known.node and not self._is_there(known.node):
+            while outcome.node and not self._node_exists(outcome.node):
                 self._try_again(terminal)
         else:
             self._first.type(line)
-            while self._first.status() and not known.may_fail and self._try_again(self._first):
+            while self._first.status() and not outcome.may_fail and self._try_again(self._first):
                 pass
-            assert self._first.status() == 0 or known.may_fail, f"{line!r}:\n{self._first.output}"
-            assert known.shows in self._first.output
+            assert self._first.status() == 0 or outcome.may_fail, f"{line!r}:\n{self._first.output}"
+            assert outcome.output_text in self._first.output
             self._check(self._first)
 
     def _try_again(self, terminal: Terminal) -> bool:
-        """Type a line again where it has ended because what was launched is not up yet; return whether that was so."""
-        again = terminal.is_free and self._page is not None and time.monotonic() < self._launched + PATIENCE
-        if again:
+        """Type a line again if it ended before the launched program was ready, and return whether that happened."""
+        is_repeated = terminal.is_free and self._page is not None and time.monotonic() < self._launch_time + PATIENCE
+        if is_repeated:
             terminal.type(terminal.line)
-        return again
+        return is_repeated
 
     def _subscribers(self, topic: str) -> int:
         if not topic:
@@ -222,20 +224,20 @@ class Reader:
         match = re.search(r"Subscription count: (\d+)", self._first.output)
         return int(match[1]) if match is not None else 0
 
-    def _is_there(self, node: str) -> bool:
+    def _node_exists(self, node: str) -> bool:
         return node in self._first.run("linkwright node list").splitlines()
 
-    def _end_beside(self) -> None:
-        for terminal in self._beside:
-            terminal.wait_for(self._known[terminal.line].shows)
+    def _end_side_terminals(self) -> None:
+        for terminal in self._side_terminals:
+            terminal.wait_for(self._outcomes[terminal.line].output_text)
             assert not terminal.is_free, f"{terminal.line!r} has ended:\n{terminal.output}"
-        for terminal in reversed(self._beside):
+        for terminal in reversed(self._side_terminals):
             self._end(terminal)
             terminal.close()
-        self._beside.clear()
+        self._side_terminals.clear()
 
     def _end_page(self) -> None:
-        self._end_beside()
+        self._end_side_terminals()
         if self._page is not None:
             self._end(self._page)
             if self._page is not self._first:
@@ -248,17 +250,17 @@ class Reader:
         self._check(terminal)
 
     def _check(self, terminal: Terminal) -> None:
-        known = self._known.get(terminal.line, Known())
+        outcome = self._outcomes.get(terminal.line, Outcome())
         bad = [line for line in terminal.output.splitlines() if _BAD.search(line)]
-        if known.complains:
-            assert all(known.complains in line for line in bad)
-            assert bad, f"{terminal.line!r} did not say {known.complains!r}:\n{terminal.output}"
+        if outcome.error:
+            assert all(outcome.error in line for line in bad)
+            assert bad, f"{terminal.line!r} did not say {outcome.error!r}:\n{terminal.output}"
         else:
-            assert known.may_fail or not bad, f"{terminal.line!r}:\n{terminal.output}"
+            assert outcome.may_fail or not bad, f"{terminal.line!r}:\n{terminal.output}"
 
 
 def write(block: Block, folder: Path) -> None:
-    """Write a block with a title into the file that the page names; ``FILE, more`` adds to one."""
+    """Write a block with a title into the page's file; ``FILE, more`` adds to a file."""
     path = folder / block.title.removesuffix(", more")
     if path == folder / block.title:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -267,23 +269,23 @@ def write(block: Block, folder: Path) -> None:
     text = path.read_text(encoding="utf-8")
     if path.name == "package.xml":
         last = re.findall(r"^  <(?:depend|license)>.*\n", text, re.MULTILINE)[-1]
-        added = text.replace(last, last + block.text)
+        new_text = text.replace(last, last + block.text)
     else:
-        added = text.replace("</robot>", block.text + _sisters(block.text) + "</robot>")
-    assert added != text
-    path.write_text(added, encoding="utf-8")
+        new_text = text.replace("</robot>", block.text + _symmetric_elements(block.text) + "</robot>")
+    assert new_text != text
+    path.write_text(new_text, encoding="utf-8")
 
 
-def _sisters(text: str) -> str:
-    """What the page asks the reader to write alike: the right wheel after the left one, the back caster, too."""
-    parts = "".join(re.findall(r"  <joint.*?</joint>\n|  <link.*?</link>\n", text, re.DOTALL))
-    if "left_" in parts:
-        return parts.replace("left", "right").replace("0.19", "-0.19")
-    return parts.replace("front", "back").replace("0.18", "-0.18") if "front_" in parts else ""
+def _symmetric_elements(text: str) -> str:
+    """Return what the page asks the reader to write in the same way: the right wheel, the back caster."""
+    elements = "".join(re.findall(r"  <joint.*?</joint>\n|  <link.*?</link>\n", text, re.DOTALL))
+    if "left_" in elements:
+        return elements.replace("left", "right").replace("0.19", "-0.19")
+    return elements.replace("front", "back").replace("0.18", "-0.18") if "front_" in elements else ""
 
 
 def environment_of(installed: Path, home: Path) -> dict[str, str]:
-    """The variables of a reader who has Linkwright in an environment of their own, active."""
+    """Return the variables of a reader with Linkwright in an active virtual environment."""
     return {
         "PATH": f"{installed / 'bin'}:/usr/local/bin:/usr/bin:/bin",
         "VIRTUAL_ENV": str(installed),

@@ -1,4 +1,4 @@
-"""The examples of the API page run."""
+"""The examples of the API page."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ def test_api_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPat
             exec(compile(block.text, str(PAGE), "exec"), names)
             ran += 1
     assert ran >= 6
-    printed = capsys.readouterr().out
-    assert "/chatter std_msgs/msg/String 1" in printed
+    output = capsys.readouterr().out
+    assert "/chatter std_msgs/msg/String 1" in output
     assert (tmp_path / "balls" / "annotations").is_dir()
-    assert "arm.xacro:3:3" in printed
-    assert "length 0.4" in printed
-    assert "base_link revolute (0.0, 0.0, 0.2)" in printed
-    assert "root Link: base_link has 1 child(ren)" in printed
-    assert re.search(r"^5\.0+$|^5\.0000\d*$|^4\.99999\d*$", printed, re.MULTILINE), "0.5 x 0.1 x 0.1 m of water"
-    assert "position:\n- 0.3\n" in printed
-    assert "RIHS01_\nhello\n" in printed
-    assert "7200 3600.0 s" in printed
-    assert "120 True" in printed
-    assert "error[URDF" in printed
+    assert "arm.xacro:3:3" in output
+    assert "length 0.4" in output
+    assert "base_link revolute (0.0, 0.0, 0.2)" in output
+    assert "root Link: base_link has 1 child(ren)" in output
+    assert re.search(r"^5\.0+$|^5\.0000\d*$|^4\.99999\d*$", output, re.MULTILINE), "0.5 x 0.1 x 0.1 m of water"
+    assert "position:\n- 0.3\n" in output
+    assert "RIHS01_\nhello\n" in output
+    assert "7200 3600.0 s" in output
+    assert "120 True" in output
+    assert "error[URDF" in output
     assert len(names["many"]) == 1000  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""What the page about checking shows is so."""
+"""The examples of the page about checking."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ def test_shown_suppressions_work_and_are_needed(page, tmp_path, capsys):
     file = tmp_path / "robot.urdf"
     text = block(page, "robot.urdf")
     file.write_text(text, encoding="utf-8")
-    words = ["check", str(file), "--strict", "--format", "concise", "--select", "LW001,LW221"]
-    assert main(words) == 1
-    out = capsys.readouterr().out
-    assert "LW221" not in out
-    assert out.count("LW001") == 1
-    assert "'LW6'" in out
+    arguments = ["check", str(file), "--strict", "--format", "concise", "--select", "LW001,LW221"]
+    assert main(arguments) == 1
+    output = capsys.readouterr().out
+    assert "LW221" not in output
+    assert output.count("LW001") == 1
+    assert "'LW6'" in output
     file.write_text(text.replace("ignore", "look at"), encoding="utf-8")
-    main(words)
+    main(arguments)
     assert capsys.readouterr().out.count("LW221") == 2
 
 
 def test_shown_json_has_current_fields():
-    shown = json.loads(next(block.text for block in blocks(PAGES[0]) if block.language == "json"))
-    written = to_data(Diagnostic("LW221", "m", SourceText("f", "x").span(0, 1), hint="h"))
-    assert list(shown["diagnostics"][0]) == list(written)
+    documented = json.loads(next(block.text for block in blocks(PAGES[0]) if block.language == "json"))
+    current = to_data(Diagnostic("LW221", "m", SourceText("f", "x").span(0, 1), hint="h"))
+    assert list(documented["diagnostics"][0]) == list(current)

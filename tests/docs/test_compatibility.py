@@ -1,4 +1,4 @@
-"""The page of names is what the tables say."""
+"""The page of supported names, compared with the tables."""
 
 from __future__ import annotations
 

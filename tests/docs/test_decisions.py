@@ -1,4 +1,4 @@
-"""Every record of a decision has a number of its own, and a row in the table of them."""
+"""Decision records: unique numbers, and a row in the table for each."""
 
 from __future__ import annotations
 

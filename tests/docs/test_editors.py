@@ -1,4 +1,4 @@
-"""The lines for editors name the files of the language server, all of them, and start it."""
+"""The settings for editors: all file patterns of the language server, and its command."""
 
 from __future__ import annotations
 
@@ -83,13 +83,13 @@ def test_vscode_extension_sends_all_files():
     source = (EXTENSION / "src" / "server" / "documents.ts").read_text(encoding="utf-8")
     lists = re.search(r"DESCRIPTION_PATTERN =([^;]*);.*?PACKAGE_PATTERN =([^;]*);", source, re.DOTALL)
     assert lists is not None
-    named = {name for written in lists.groups() for name in re.sub(r'[*]{2}/|["+\s{}]', "", written).split(",")}
-    assert named == {pattern.removeprefix("*/") for pattern in ALL}
+    patterns = {name for written in lists.groups() for name in re.sub(r'[*]{2}/|["+\s{}]', "", written).split(",")}
+    assert patterns == {pattern.removeprefix("*/") for pattern in ALL}
 
 
 def test_patterns_match_supported_formats():
-    for ending in XML_FILES:
-        assert any(fnmatch.fnmatch(f"a{ending}", pattern) or ending == pattern for pattern in PATTERNS["xml"]), ending
+    for suffix in XML_FILES:
+        assert any(fnmatch.fnmatch(f"a{suffix}", pattern) or suffix == pattern for pattern in PATTERNS["xml"]), suffix
     for pattern in (*PATTERNS["yaml"], *PATTERNS["interface"], "package.xml", "*.srdf", "*launch.py", "*/launch/*.py"):
         assert any(file_format.covers(Path(example(pattern))) for file_format in FORMATS) or pattern == "*launch.py", (
             pattern

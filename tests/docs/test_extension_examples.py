@@ -1,4 +1,4 @@
-"""The classes that the pages show for packages of users: hardware, laser filters, detectors, substitutions."""
+"""The example classes for packages of users: hardware, laser filters, detectors, substitutions."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LANGUAGES = pytest.mark.parametrize("docs", [DOCS, DOCS / "zh"], ids=["en", "zh"
 
 @pytest.fixture
 def shown_class(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path, str], Any]:
-    """Return a function that returns a class that a page defines."""
+    """Return a function that returns a class from a page."""
 
     def find(page: Path, name: str) -> Any:
         (text,) = (block.text for block in blocks(page) if f"class {name}(" in block.text)
@@ -55,8 +55,8 @@ def test_the_hardware_approaches_its_commands(shown_class: Callable[[Path, str],
 def test_the_filter_keeps_every_second_range(shown_class: Callable[[Path, str], Any], docs: Path) -> None:
     ranges = np.array([1.0, 2.0, 3.0, 4.0], np.float32)
     scan = Scan(ranges, np.zeros(0, np.float32), 0.0, 0.3, 0.1, 0.0, 9.0, 0.0, 0, "laser")
-    filtered = shown_class(docs / "small-nodes.md", "EveryNth")(n=2).apply(scan, None)
-    np.testing.assert_array_equal(filtered.ranges, [1.0, np.nan, 3.0, np.nan])
+    scan_copy = shown_class(docs / "small-nodes.md", "EveryNth")(n=2).apply(scan, None)
+    np.testing.assert_array_equal(scan_copy.ranges, [1.0, np.nan, 3.0, np.nan])
 
 
 @LANGUAGES

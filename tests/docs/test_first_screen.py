@@ -1,4 +1,4 @@
-"""The commands that the README begins with, typed by somebody who has a checkout and nothing else."""
+"""The first commands of the README, typed by a user with only a checkout."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PAGE = Path("src", "linkwright", "page", "built")
 
 
 def first_screen(readme: Path) -> list[str]:
-    """The commands that a README begins with, without comments."""
+    """Return the commands at the start of a README, without comments."""
     return [re.sub(r"\s+#.*", "", line) for line in blocks(readme)[0].text.splitlines()]
 
 
@@ -33,9 +33,9 @@ def test_both_readmes_begin_with_same_commands() -> None:
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
-    """What git has of the repository, and the page, which takes a minute to build."""
+    """Return a copy of the repository's tracked files, and the page, which takes a minute to build."""
     if not (REPOSITORY / PAGE).is_dir() or not (REPOSITORY / ".git").exists():
-        pytest.skip("this is no checkout with a built page")
+        pytest.skip("this checkout has no built page")
     folder = tmp_path / "checkout"
     file_names = run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=REPOSITORY).stdout
     for name in file_names.split("\0")[:-1]:
@@ -46,8 +46,8 @@ def checkout(tmp_path: Path) -> Path:
     return folder
 
 
-def run(words: list[str], **options: Any) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(words, capture_output=True, text=True, check=False, **options)
+def run(command: list[str], **options: Any) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command, capture_output=True, text=True, check=False, **options)
 
 
 def program(path: Path, text: str) -> Path:
@@ -58,9 +58,9 @@ def program(path: Path, text: str) -> Path:
 
 @pytest.fixture
 def newcomer(tmp_path: Path) -> dict[str, str]:
-    """An environment with Python, an empty home, and a browser that only writes down what it is told to open.
+    """Return an environment with Python, an empty home, and a browser that only records the address.
 
-    Where there is uv it takes pip's place, as it has the wheels of the tests' own environment at hand.
+    If uv exists, it replaces pip, because it has the wheels of the tests' own environment in its cache.
     """
     programs = tmp_path / "programs"
     programs.mkdir()
@@ -86,9 +86,9 @@ def newcomer(tmp_path: Path) -> dict[str, str]:
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the block is for a shell of Unix")
 def test_first_readme_commands_run_in_fresh_checkout(checkout: Path, newcomer: dict[str, str]) -> None:
-    typed = "\n".join(first_screen(READMES[0]))
+    commands = "\n".join(first_screen(READMES[0]))
     with subprocess.Popen(
-        ["bash", "-e", "-c", typed],
+        ["bash", "-e", "-c", commands],
         cwd=checkout,
         env=newcomer,
         stdout=subprocess.PIPE,
@@ -107,13 +107,13 @@ def test_first_readme_commands_run_in_fresh_checkout(checkout: Path, newcomer: d
                 pytest.fail("".join(messages))
             with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(match[1]) as answer:
                 assert answer.status == 200
-            wait_until((checkout.parent / "opened").is_file, what="a browser that was told to open the page")
+            wait_until((checkout.parent / "opened").is_file, what="the browser with the page")
         finally:
             os.killpg(shell.pid, signal.SIGINT)
             remaining_output = shell.stdout.read()
     assert shell.returncode in (0, 130, -signal.SIGINT), "".join(messages) + remaining_output
 
-    # What the base lacks is told with the command that fits, and that works.
+    # A missing extra is reported with the command that installs it, and this command works.
     export = "linkwright export robot.glb robots/my_robot_description/urdf/mbot_with_kinect.urdf"
     output = run(["bash", "-c", f"source .venv/bin/activate; {export}"], cwd=checkout, env=newcomer)
     hint = re.search(r"hint: run (.*)", output.stderr)

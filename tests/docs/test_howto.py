@@ -1,4 +1,4 @@
-"""How-to pages: a reader who follows them, line by line, gets what they promise."""
+"""How-to pages, followed line by line."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from tests.docs.pages import DOCS, blocks
-from tests.docs.reader import Known
+from tests.docs.reader import Outcome
 
 CHECK = "linkwright check --strict src"
 PUBLISH = 'linkwright topic pub -r 10 /cmd_vel geometry_msgs/msg/Twist "{linear: {x: 0.3}, angular: {z: 0.5}}"'
@@ -28,7 +28,10 @@ def test_both_languages_show_same_files(page: Path) -> None:
 def test_drive_and_world_guides_complete_urdf_without_masses(follow: Callable[..., Path]) -> None:
     page = DOCS / "howto-drive.md"
     first_line = next(block.text.splitlines()[0] for block in blocks(page) if block.language == "text")
-    follow(page, {"linkwright drive cart.urdf": Known(shows=first_line), PUBLISH: Known(shows="publishing #1")})
+    follow(
+        page,
+        {"linkwright drive cart.urdf": Outcome(output_text=first_line), PUBLISH: Outcome(output_text="publishing #1")},
+    )
     home = follow(DOCS / "howto-world.md", {})
     cart = (home / "cart.urdf").read_text(encoding="utf-8")
     assert cart.count("<mass ") == 4
@@ -41,9 +44,9 @@ def test_ci_guide_fails_on_finding_and_fixes_it(follow: Callable[..., Path]) -> 
     home = follow(
         DOCS / "howto-ci.md",
         {
-            CHECK: Known(complains="LW201", may_fail=True, goes_on=False),
-            "linkwright check --diff --unsafe-fixes src": Known(
-                shows='+    <limit lower="-1.57"', may_fail=True, goes_on=False
+            CHECK: Outcome(error="LW201", may_fail=True, runs_on=False),
+            "linkwright check --diff --unsafe-fixes src": Outcome(
+                output_text='+    <limit lower="-1.57"', may_fail=True, runs_on=False
             ),
         },
     )
@@ -56,8 +59,10 @@ def test_review_guide_shows_changes_before_merge(follow: Callable[..., Path]) ->
     home = follow(
         DOCS / "howto-review.md",
         {
-            "linkwright review": Known(shows="link 'camera' renamed to 'camera_link'", goes_on=False),
-            "linkwright check --strict --changed main src": Known(shows="URDF190", may_fail=True, goes_on=False),
+            "linkwright review": Outcome(output_text="link 'camera' renamed to 'camera_link'", runs_on=False),
+            "linkwright check --strict --changed main src": Outcome(
+                output_text="URDF190", may_fail=True, runs_on=False
+            ),
         },
     )
     assert (home / "review.html").is_file()
@@ -71,7 +76,7 @@ def test_ci_workflow_and_hook_run_shown_commands() -> None:
         for block in blocks(DOCS / "howto-ci.md")
         if "yaml" in block.title or "yml" in block.title
     }
-    shown = [
+    documented = [
         line for block in blocks(DOCS / "howto-ci.md") if block.language == "bash" for line in block.text.splitlines()
     ]
     steps = files[".github/workflows/check.yml"]["jobs"]["descriptions"]["steps"]
@@ -80,4 +85,4 @@ def test_ci_workflow_and_hook_run_shown_commands() -> None:
     ]
     (hook,) = files[".pre-commit-config.yaml"]["repos"][0]["hooks"]
     assert hook["entry"] == CHECK
-    assert {hook["entry"], steps[-1]["run"]} <= set(shown)
+    assert {hook["entry"], steps[-1]["run"]} <= set(documented)

@@ -1,4 +1,4 @@
-"""What pages, messages and robots say about installing is what works, while no version is on a package index."""
+"""Installation commands on pages, in messages and in robots, while no version is on a package index."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.places import REPOSITORY
 from tests.toml_files import EXTRAS, TOGETHER
 
 WRITTEN = ("docs", "frontend/src", "robots", "src", "README.md", "README.zh-CN.md", "SECURITY.md", "SECURITY.zh-CN.md")
-KINDS = {".html", ".md", ".po", ".py", ".toml", ".ts", ".txt", ".xml", ".yaml"}
+COMMAND_KINDS = {".html", ".md", ".po", ".py", ".toml", ".ts", ".txt", ".xml", ".yaml"}
 RECORDS = REPOSITORY / "docs" / "decisions"
 INSTALLING = re.compile(r"\b(?:pip|pipx|uv tool) install (?P<what>(?:-e )?(?:'[^'\n]+'|[^\s`'）)]+))")
 OTHERS = {
@@ -28,17 +28,17 @@ OTHERS = {
     "path/to/linkwright/core",
     "ty",
 }
-"""What readers are told to install besides Linkwright, and Linkwright where they are not in its checkout."""
+"""The packages besides Linkwright in documented commands, and Linkwright itself outside a checkout."""
 
 
 @cache
 def install_commands() -> list[tuple[Path, str]]:
-    """Each command of pip, pipx and uv that users read or see printed: where, and what it installs."""
+    """Return each command of pip, pipx and uv for users: its location, and what it installs."""
     paths = [path for name in WRITTEN for path in sorted([REPOSITORY / name, *(REPOSITORY / name).rglob("*")])]
     return [
         (path.relative_to(REPOSITORY), match["what"])
         for path in paths
-        if path.suffix in KINDS and path.is_file() and RECORDS not in path.parents
+        if path.suffix in COMMAND_KINDS and path.is_file() and RECORDS not in path.parents
         for match in INSTALLING.finditer(path.read_text(encoding="utf-8"))
     ]
 
@@ -62,8 +62,8 @@ def test_install_commands_match_a_checkout(monkeypatch: pytest.MonkeyPatch, tmp_
             ]
             assert set(extras) <= {*EXTRAS, "all"}, (path, command)
             installation = Installation(Origin(str(tmp_path), command.startswith("-e ")), ("pip", "install"))
-            in_order = re.sub(r"\[.*\]", f"[{','.join(sorted(extras))}]", command)
-            assert f"pip install {in_order}" == installation.command_for_extras(*extras), (path, command)
+            normalized = re.sub(r"\[.*\]", f"[{','.join(sorted(extras))}]", command)
+            assert f"pip install {normalized}" == installation.command_for_extras(*extras), (path, command)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""The pages of URDF's and SDF's elements are generated and current."""
+"""The generated pages of URDF's and SDF's elements are current."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the page about launch files shows is so."""
+"""The examples of the page about launch files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def files(page: Path) -> list[Block]:
     return [block for block in blocks(page) if block.title]
 
 
-def written(page: Path, folder: Path) -> None:
+def write_files(page: Path, folder: Path) -> None:
     for block in files(page):
         path = folder / block.title
         path.parent.mkdir(exist_ok=True)
@@ -28,12 +28,12 @@ def written(page: Path, folder: Path) -> None:
 
 @pytest.mark.parametrize("language", PAGES)
 def test_python_xml_and_yaml_launch_files_are_equivalent(language: str, tmp_path: Path, capsys) -> None:
-    written(PAGES[language], tmp_path)
+    write_files(PAGES[language], tmp_path)
     messages = []
-    for ending in ("py", "xml", "yaml"):
-        words = ["launch", str(tmp_path / "launch" / f"robot.launch.{ending}")]
-        assert main([*words, "--show-args"]) == 0
-        assert main([*words, "--print"]) == 0
+    for suffix in ("py", "xml", "yaml"):
+        arguments = ["launch", str(tmp_path / "launch" / f"robot.launch.{suffix}")]
+        assert main([*arguments, "--show-args"]) == 0
+        assert main([*arguments, "--print"]) == 0
         messages.append(capsys.readouterr().out)
     assert messages[0] == messages[1] == messages[2]
     assert "'period'" in messages[0]
@@ -41,7 +41,7 @@ def test_python_xml_and_yaml_launch_files_are_equivalent(language: str, tmp_path
 
 
 def test_composed_launch_file_loads(tmp_path: Path, capsys) -> None:
-    written(PAGES["en"], tmp_path)
+    write_files(PAGES["en"], tmp_path)
     assert main(["launch", str(tmp_path / "composed.launch.py"), "--print"]) == 0
     assert "ComposableNodeContainer" in capsys.readouterr().out
 
@@ -49,6 +49,6 @@ def test_composed_launch_file_loads(tmp_path: Path, capsys) -> None:
 @pytest.mark.parametrize("language", PAGES)
 def test_shown_error_matches_output(language: str) -> None:
     page = PAGES[language]
-    words = next(shlex.split(line) for line in commands(page) if "bringup" in line)
-    printed = TOOL.output_of(words[1:], [(file.title, file.text) for file in files(page)], language)
-    assert printed in [block.text for block in blocks(page) if block.language == "text"]
+    arguments = next(shlex.split(line) for line in commands(page) if "bringup" in line)
+    output = TOOL.output_of(arguments[1:], [(file.title, file.text) for file in files(page)], language)
+    assert output in [block.text for block in blocks(page) if block.language == "text"]

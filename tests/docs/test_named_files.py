@@ -1,4 +1,4 @@
-"""Files, folders and modules that the documentation for developers names exist."""
+"""Files, folders and modules that developers' pages name must exist."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FOLDERS = (
     "robots", "src", "tests", "tools",
 )  # fmt: skip
 IGNORED = [line.strip("/") for line in (REPOSITORY / ".gitignore").read_text(encoding="utf-8").split()]
-"""What make makes, which a fresh clone lacks."""
+"""Results of make, which a fresh clone does not have."""
 
 _FENCE = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 _WORDS = re.compile(r"`([^`\n]+)`")
@@ -34,8 +34,8 @@ _PLACEHOLDER = re.compile(r"(?<![A-Za-z])[A-Z]{3,}(?![A-Za-z])")
 _MODULE = re.compile(r"linkwright(?:\.\w+)+")
 
 
-def named(page: Path) -> Iterator[str]:
-    """The paths and modules in a page's inline code; placeholders like NAME.py and what make makes are none."""
+def named_paths(page: Path) -> Iterator[str]:
+    """Return the paths and modules in a page's inline code, without placeholders like NAME.py and results of make."""
     for words in _WORDS.findall(_FENCE.sub("", page.read_text(encoding="utf-8"))):
         for word in words.split():
             is_ignored = word.split("/")[0] in IGNORED or any(
@@ -48,25 +48,25 @@ def named(page: Path) -> Iterator[str]:
 
 @functools.cache
 def tree() -> list[Path]:
-    """All files and folders of the repository that somebody wrote."""
-    inside = [
+    """Return all tracked files and folders of the repository."""
+    paths = [
         path
         for folder in FOLDERS
         for path in (REPOSITORY / folder).rglob("*")
         if not {"__pycache__", "node_modules"} & {*path.parts}
     ]
-    return [*inside, *(REPOSITORY / folder for folder in FOLDERS), *REPOSITORY.glob("*.*"), *REPOSITORY.glob(".ci/*")]
+    return [*paths, *(REPOSITORY / folder for folder in FOLDERS), *REPOSITORY.glob("*.*"), *REPOSITORY.glob(".ci/*")]
 
 
 @functools.cache
 def other_names() -> str:
-    """Where names are declared that look like files or modules: groups of entry points, packages of npm."""
+    """Return names that look like files or modules but are declared elsewhere: entry point groups, npm packages."""
     names = ("pyproject.toml", "core/pyproject.toml", "frontend/package.json")
     return "".join((REPOSITORY / name).read_text(encoding="utf-8") for name in names)
 
 
 def exists(word: str) -> bool:
-    """Whether there is such a module, or a file or folder whose path ends so: the text before may give the room."""
+    """Return whether a module exists, or a path that ends with this text; the text before it may give the folder."""
     if f'"{word}"' in other_names() or f'"{word.split("/")[0]}":' in other_names():
         return True
     if _MODULE.fullmatch(word):
@@ -77,7 +77,7 @@ def exists(word: str) -> bool:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(REPOSITORY)))
 def test_named_files_and_modules_exist(page: Path) -> None:
-    words = list(named(page))
+    words = list(named_paths(page))
     assert words
     assert [word for word in words if not exists(word)] == []
 

@@ -1,4 +1,4 @@
-"""The node of the page about own nodes runs, and so do its tests."""
+"""The node of the page about users' nodes, and its tests."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ PAGE = DOCS / "nodes.md"
 
 @pytest.fixture(scope="module")
 def sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder ``src`` of a reader who did what the page says."""
+    """Return the folder ``src`` after all steps of the page."""
     folder = tmp_path_factory.mktemp("ros2_ws") / "src"
     folder.mkdir()
     for line in commands(PAGE):
-        words = shlex.split(line)[1:]
-        if words[:2] == ["pkg", "create"]:
-            assert main([*words, "--destination-directory", str(folder)]) == 0
+        arguments = shlex.split(line)[1:]
+        if arguments[:2] == ["pkg", "create"]:
+            assert main([*arguments, "--destination-directory", str(folder)]) == 0
     for block in blocks(PAGE):
         if block.title:
             path = folder / block.title
@@ -52,8 +52,8 @@ def test_tests_of_page_pass(sources: Path) -> None:
 def test_interfaces_work_without_build(sources: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     monkeypatch.chdir(sources)
     assert main(["interface", "package", "my_interfaces"]) == 0
-    listed = "my_interfaces/action/Drive\nmy_interfaces/msg/Battery\nmy_interfaces/srv/SetSpeed\n"
-    assert capsys.readouterr().out == listed
+    interfaces = "my_interfaces/action/Drive\nmy_interfaces/msg/Battery\nmy_interfaces/srv/SetSpeed\n"
+    assert capsys.readouterr().out == interfaces
     assert main(["pkg", "executables", "my_nodes"]) == 0
     assert capsys.readouterr().out == "my_nodes robot\n"
 

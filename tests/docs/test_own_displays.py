@@ -1,4 +1,4 @@
-"""The display that the page about displays of one's own puts together works as the page says."""
+"""The example display of the page about users' displays."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ Visualization Manager:
 """
 
 
-def files(of: Path) -> dict[str, str]:
-    return {block.title: block.text for block in blocks(of) if block.title}
+def files(language: Path) -> dict[str, str]:
+    return {block.title: block.text for block in blocks(language) if block.title}
 
 
 @pytest.fixture(params=PAGES, ids=["en", "zh"])
 def street(request, tmp_path, monkeypatch):
-    """The workspace of the page, with its package installed."""
+    """Install the package of the page, and return its workspace."""
     texts = files(request.param)
     for name, text in texts.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
@@ -69,7 +69,7 @@ def car(number: int, x: float, *, label: str = "car", speed: float = 3.0, path: 
     return car
 
 
-def seen(*objects: Any) -> Any:
+def detections(*objects: Any) -> Any:
     cars = get_message("street_msgs/msg/TrackedObjects")(objects=list(objects))
     cars.header.frame_id = "street"
     return cars
@@ -88,13 +88,13 @@ def test_example_display_has_at_most_60_lines():
 async def test_example_display_draws_and_removes_tracked_objects(street):
     async with open_world(RvizConfig.parse(CONFIG)) as world, page(world.viewer) as client:
         await client.opened()
-        await client.send("ask_display_choices")
-        offered = (await client.until("display_choices"))["classes"]
-        assert {"cls": CLASS, "messages": ["street_msgs/msg/TrackedObjects"]} in offered
+        await client.send("request_display_choices")
+        choices = (await client.until("display_choices"))["classes"]
+        assert {"cls": CLASS, "messages": ["street_msgs/msg/TrackedObjects"]} in choices
         node = world.graph.create_node("perception")
         publisher = node.create_publisher("street_msgs/msg/TrackedObjects", "/objects", 10)
         await world.settle()
-        publisher.publish(seen(car(1, 5.0, path=3), car(2, -5.0, label="bicycle")))
+        publisher.publish(detections(car(1, 5.0, path=3), car(2, -5.0, label="bicycle")))
         await world.settle()
         (display,) = world.viewer.displays
         assert display.row().drawing == "rviz_default_plugins/MarkerArray"
@@ -116,11 +116,11 @@ async def test_example_display_draws_and_removes_tracked_objects(street):
         markers = shown_markers(display)
         assert sorted(markers) == ["boxes/1", "boxes/2", "paths/1"]
         assert markers["boxes/2"]["color"] == pytest.approx([1, 0.6, 0, 0.25])
-        publisher.publish(seen(car(2, -4.0, speed=math.inf)))
+        publisher.publish(detections(car(2, -4.0, speed=math.inf)))
         await world.settle()
         assert list(shown_markers(display)) == ["boxes/2"]
         assert world.status("TrackedObjects")["Speed"] == ("warn", "The speed of object 2 is impossible")
-        publisher.publish(seen(car(3, math.nan)))
+        publisher.publish(detections(car(3, math.nan)))
         await world.settle()
         status = world.status("TrackedObjects")
         assert status["boxes/3"] == ("error", "Contains invalid floating point values (nans or infs)")
@@ -142,7 +142,7 @@ async def test_the_objects_are_drawn_as_points_with_a_channel(street):
         )
         world.move({("base", "street"): (0, 0, 1, 0, 0, 0, 1)}, static=True)
         await world.settle()
-        publisher.publish(seen(car(1, 5.0), car(2, -5.0)))
+        publisher.publish(detections(car(1, 5.0), car(2, -5.0)))
         await world.settle()
         (display,) = world.viewer.displays
         assert display.row().drawing == "rviz_default_plugins/PointCloud2"

@@ -1,4 +1,4 @@
-"""The plugin that the page about simulation plugins of one's own shows works as the page says."""
+"""The example plugin of the page about users' simulation plugins."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PAGES = (DOCS / "own-plugins.md", DOCS / "zh" / "own-plugins.md")
 
 @pytest.fixture(params=PAGES, ids=["en", "zh"])
 def wind(request, tmp_path, monkeypatch):
-    """The package of the page, installed; returns its folder."""
+    """Install the package of the page, and return its folder."""
     for block in blocks(request.param):
         if block.title:
             (tmp_path / block.title).parent.mkdir(parents=True, exist_ok=True)
@@ -59,12 +59,12 @@ def test_wind_follows_topic_and_is_restored_on_reset(wind):
     from linkwright.testing import SteppedSimulation
 
     with SteppedSimulation("empty", "buoy.sdf") as test:
-        measured = test.record("/wind")
+        recording = test.record("/wind")
         test.advance(0.1)
-        assert measured.last.vector.x == pytest.approx(4.0, abs=0.1)
+        assert recording.last.vector.x == pytest.approx(4.0, abs=0.1)
         test.publish("/set_wind", get_message("geometry_msgs/msg/Vector3")(x=-4.0))
         test.advance(0.1)
-        assert measured.last.vector.x == pytest.approx(-4.0, abs=0.1)
+        assert recording.last.vector.x == pytest.approx(-4.0, abs=0.1)
         test.reset()
         test.advance(0.1)
-        assert measured.last.vector.x == pytest.approx(4.0, abs=0.1)
+        assert recording.last.vector.x == pytest.approx(4.0, abs=0.1)

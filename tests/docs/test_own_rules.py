@@ -1,4 +1,4 @@
-"""The rule that the page about rules of one's own shows works as the page says."""
+"""The example rule of the page about users' rules."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PAGES = (DOCS / "own-rules.md", DOCS / "zh" / "own-rules.md")
 
 @pytest.fixture(params=PAGES, ids=["en", "zh"])
 def team(request, tmp_path, monkeypatch):
-    """The package of the page, installed; returns its folder."""
+    """Install the package of the page, and return its folder."""
     for block in blocks(request.param):
         if block.title:
             (tmp_path / block.title).parent.mkdir(parents=True, exist_ok=True)
@@ -39,13 +39,13 @@ def team(request, tmp_path, monkeypatch):
 
 def _forget() -> None:
     sys.modules.pop("team_rules", None)
-    for cached in (extensions._all_groups, registry._all_rules, registry._index):
-        cached.cache_clear()
+    for function in (extensions._all_groups, registry._all_rules, registry._index):
+        function.cache_clear()
 
 
 def test_shown_tests_pass(team, tmp_path):
-    shown = runpy.run_path(str(team / "test_team_rules.py"))
-    tests = [value for name, value in shown.items() if name.startswith("test_")]
+    module = runpy.run_path(str(team / "test_team_rules.py"))
+    tests = [value for name, value in module.items() if name.startswith("test_")]
     assert len(tests) == 2
     for number, test in enumerate(tests):
         (tmp_path / str(number)).mkdir()

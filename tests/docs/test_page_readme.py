@@ -1,4 +1,4 @@
-"""The page's README explains code that is there."""
+"""The page's README names only existing code."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of pages that list what the code knows are generated and current."""
+"""Generated tables on pages are current."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The documentation says what the program does, in both languages."""
+"""The documentation matches the program, in both languages."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def identifier(page: Path) -> str:
 
 
 def leaves(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
-    """The parser, or in its place those of the commands below it."""
+    """Return the parser, or the parsers of its subcommands."""
     below = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
     if not below:
         yield parser
@@ -61,9 +61,9 @@ def test_all_options_are_documented(page: Path, verb: str) -> None:
 @pytest.mark.parametrize("page", pages(), ids=identifier)
 def test_documented_commands_are_accepted(page: Path) -> None:
     for line in commands(page):
-        words = shlex.split(line)
-        assert words[1] in help_texts(), line
-        parser_for(words[1]).parse_args(words[2:])
+        arguments = shlex.split(line)
+        assert arguments[1] in help_texts(), line
+        parser_for(arguments[1]).parse_args(arguments[2:])
 
 
 @pytest.mark.parametrize("page", pages(), ids=identifier)
@@ -77,7 +77,7 @@ def test_links_have_existing_targets(page: Path) -> None:
 def test_pages_have_chinese_translation_with_same_blocks(name: str) -> None:
     ours, theirs = blocks(DOCS / name), blocks(DOCS / "zh" / name)
     if name != "commands.md":
-        assert list(map(_written, theirs)) == list(map(_written, ours))
+        assert list(map(_common_text, theirs)) == list(map(_common_text, ours))
 
 
 def test_readmes_show_same_commands() -> None:
@@ -86,9 +86,11 @@ def test_readmes_show_same_commands() -> None:
 
 @pytest.mark.parametrize("page", pages(), ids=identifier)
 def test_ros_programs_are_not_run_with_plain_python(page: Path) -> None:
-    shown = blocks(page)
-    nodes = {block.title for block in shown if "import rclpy" in block.text or "nav2_simple_commander" in block.text}
-    lines = {line.strip() for block in shown if block.language == "bash" for line in block.text.splitlines()}
+    page_blocks = blocks(page)
+    nodes = {
+        block.title for block in page_blocks if "import rclpy" in block.text or "nav2_simple_commander" in block.text
+    }
+    lines = {line.strip() for block in page_blocks if block.language == "bash" for line in block.text.splitlines()}
     assert not lines & {f"{python} {name}" for python in ("python", "python3") for name in nodes if name}
 
 
@@ -98,8 +100,8 @@ def _documented_names(action: argparse.Action) -> list[str]:
     return re.findall(r"[A-Z]+", str(action.metavar))
 
 
-def _written(block: Block) -> tuple[str, list[str]]:
-    """What both languages share; what the program prints is in the language of the page."""
+def _common_text(block: Block) -> tuple[str, list[str]]:
+    """Return the language-independent part of a block; the program's output is in the language of the page."""
     return block.language, [] if block.language == "text" else _without_comments(block.text)
 
 

@@ -1,4 +1,4 @@
-"""Words that Linkwright does not use: the glossary and the list of refused patterns agree, and the tool finds them."""
+"""Words that Linkwright does not use: the glossary matches the list of refused patterns, and the tool finds them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ TOOL = load_tool("plain_words")
 
 
 def rows(text: str) -> list[list[str]]:
-    """The cells of all rows of the tables with four columns."""
+    """Return the cells of all rows of the tables with four columns."""
     found = [
         [cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("|")
     ]

@@ -1,4 +1,4 @@
-"""What a visitor sees first holds: badges, picture, the README on a package index, and `make demo`."""
+"""The first impression: badges, image, the README on a package index, and `make demo`."""
 
 from __future__ import annotations
 
@@ -84,25 +84,25 @@ def script(path, text):
 
 
 def make_demo(folder, *variables):
-    """`make demo` in a folder of its own and, as in a terminal, a process group of its own."""
+    """Run `make demo` in a folder of its own and, as in a terminal, in a process group of its own."""
     if shutil.which("make") is None or os.name == "nt":
         pytest.skip("there is no make here")
     shutil.copy(REPOSITORY / "Makefile", folder)
     (folder / "frontend").mkdir()
-    own = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "VERSION")  # of the make that runs the tests
+    make_variables = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "VERSION")  # of the make that runs the tests
     return subprocess.run(
         ["make", "demo", *variables],
         check=False,
         cwd=folder,
-        env={name: value for name, value in os.environ.items() if name not in own},
+        env={name: value for name, value in os.environ.items() if name not in make_variables},
         capture_output=True,
         text=True,
         start_new_session=True,
     )
 
 
-def installed(folder, linkwright):
-    """Variables and options with which make takes the program for installed."""
+def pretend_installed(folder, linkwright):
+    """Return the variables and options with which make considers the program installed."""
     script(folder / "bin" / "linkwright", linkwright)
     return [f"BIN={folder / 'bin'}", "VENV=.", "-o", "./.ready", f"PYTHON={sys.executable}"]
 
@@ -119,13 +119,13 @@ def test_make_reports_unsupported_python_in_one_line(tmp_path):
 def test_make_demo_interrupt_prints_no_make_error(tmp_path):
     """Ctrl-C reaches make, its shell and the program."""
     program = "trap 'echo ended; exit 130' INT\nkill -INT 0\nwhile :; do sleep 0.1; done"
-    result = make_demo(tmp_path, *installed(tmp_path, program))
+    result = make_demo(tmp_path, *pretend_installed(tmp_path, program))
     assert "ended" in result.stdout
     assert result.stderr == ""
 
 
 def test_make_demo_runs_playground_with_laser_and_camera(tmp_path):
-    result = make_demo(tmp_path, *installed(tmp_path, "echo $@"), "ARGS=--no-open")
+    result = make_demo(tmp_path, *pretend_installed(tmp_path, "echo $@"), "ARGS=--no-open")
     command, *words = result.stdout.split()
     assert command == "sim"
     arguments = parser_for("sim").parse_args(words)
@@ -135,4 +135,4 @@ def test_make_demo_runs_playground_with_laser_and_camera(tmp_path):
 
 
 def test_make_demo_reports_failure(tmp_path):
-    assert make_demo(tmp_path, *installed(tmp_path, "exit 1")).returncode == 2
+    assert make_demo(tmp_path, *pretend_installed(tmp_path, "exit 1")).returncode == 2

@@ -1,4 +1,4 @@
-"""The pages of the rules are generated and current; every rule has a Chinese title."""
+"""The generated pages of the rules are current; every rule has a Chinese title."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ def test_rules_have_chinese_titles() -> None:
 
 def test_rules_are_on_exactly_one_page() -> None:
     tool = load_tool("rule_reference")
-    whole = "".join(tool.generate().values())
+    all_pages = "".join(tool.generate().values())
     for rule in all_rules():
-        assert whole.count(f"{{#{rule.code.lower()}}}") == 1
-        assert all(f"`{option.name}` (default" in whole for option in rule.options)
+        assert all_pages.count(f"{{#{rule.code.lower()}}}") == 1
+        assert all(f"`{option.name}` (default" in all_pages for option in rule.options)
 
 
 def test_stale_rule_page_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""The documentation as a site: its parts, its two languages, their search, and links that lead nowhere."""
+"""The documentation as a site: its parts, two languages, search, and broken links."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ NAVIGATION = [
 
 
 def entries(items: list[Any]) -> Iterator[tuple[str, str]]:
-    """Each title and page of a navigation; sections have no page, and pages may lack a title."""
+    """Return each title and page of a navigation; sections have no page, and pages may have no title."""
     for item in items:
         title, below = next(iter(item.items())) if isinstance(item, dict) else ("", item)
         if isinstance(below, list):
@@ -57,9 +57,9 @@ def build(settings: Path, site: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
-def build_small(folder: Path, **changed: str) -> tuple[Path, subprocess.CompletedProcess[str]]:
-    """Build a site of a few pages with the settings of ours, some pages changed; returns its folder and the outcome."""
-    for name, text in {**PAGES, **{f"{name}.md": text for name, text in changed.items()}}.items():
+def build_small(folder: Path, **changed_pages: str) -> tuple[Path, subprocess.CompletedProcess[str]]:
+    """Build a site of a few pages with our settings and some changed pages; return its folder and the result."""
+    for name, text in {**PAGES, **{f"{name}.md": text for name, text in changed_pages.items()}}.items():
         (folder / "docs" / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / "docs" / name).write_text(text, encoding="utf-8")
     settings = {
@@ -74,7 +74,7 @@ def build_small(folder: Path, **changed: str) -> tuple[Path, subprocess.Complete
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A site of the pages above."""
+    """Build a site of the pages above."""
     folder, result = build_small(tmp_path_factory.mktemp("small"))
     assert result.returncode == 0, result.stderr
     return folder
@@ -87,7 +87,7 @@ def tabs(page: Path) -> list[str]:
 
 
 def languages(page: Path) -> dict[str, str]:
-    """Where the selector of the language leads to."""
+    """Return the targets of the language selector."""
     text = page.read_text(encoding="utf-8")
     links = re.findall(r'<a href="([^"]+)" hreflang="(\w+)" class="md-select__link"', text)
     return {language: os.path.relpath(page.parent / link, page.parent.parent) for link, language in links}
@@ -105,8 +105,8 @@ def test_navigation_has_tutorials_guides_reference_and_explanation() -> None:
 
 def test_english_pages_are_listed_once() -> None:
     pages = Counter(page for _, page in entries(SETTINGS["nav"]) if page)
-    there = {path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md") if "zh" not in path.parts}
-    assert dict(pages) == dict.fromkeys((name for name in there if not name.startswith("decisions/0")), 1)
+    existing = {path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md") if "zh" not in path.parts}
+    assert dict(pages) == dict.fromkeys((name for name in existing if not name.startswith("decisions/0")), 1)
 
 
 def test_navigation_titles_have_chinese_translation() -> None:

@@ -1,4 +1,4 @@
-"""The scenario of the page about sweeps."""
+"""The example scenario of the page about sweeps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The messages on the troubleshooting pages are those that the program prints."""
+"""The messages on the troubleshooting pages, compared with the program's messages."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ def test_both_languages_show_same_cases() -> None:
     assert [block.language for block in english].count("text") >= 6
     for ours, theirs in zip(english, chinese, strict=True):
         if ours.language == "text":
-            assert without_words(theirs.text) == without_words(ours.text)
+            assert language_independent(theirs.text) == language_independent(ours.text)
             assert theirs.text.startswith("错误[")
         else:
             assert theirs == ours
 
 
-def without_words(output: str) -> list[str]:
-    """What does not depend on the language: codes, places, the excerpt with its carets, how many notes and hints."""
+def language_independent(output: str) -> list[str]:
+    """Return the language-independent part: codes, locations, excerpts with carets, the number of notes and hints."""
     output = re.sub(r"^(\d+) (?:errors?, |个错误，)(\d+) (?:warnings?|个警告)$", r"\1 \2", output, flags=re.MULTILINE)
     lines = [re.sub(r"^\S+(\[\w+\]).*", r"\1", line) for line in output.splitlines()]
     return [re.sub(r"^   = .*?( \(\S+\))?$", r"=\1", line) for line in lines]

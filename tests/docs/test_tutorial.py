@@ -1,4 +1,4 @@
-"""A reader who follows the tutorial ends up with the robots that it promises."""
+"""The first chapter of the tutorial, followed by a reader: the robots at its end."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BASE = {"base_link", "left_wheel_link", "right_wheel_link", "front_caster_link",
 
 @pytest.fixture(params=LANGUAGES)
 def package(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The package as it is after the last step, of a reader whose name git knows."""
+    """Return the package after the last step, for a reader whose name git knows."""
     monkeypatch.chdir(tmp_path)
     git = tmp_path / "gitconfig"
     git.write_text("[user]\nname = Ada\nemail = ada@linkwright.dev\n", encoding="utf-8")
@@ -51,9 +51,9 @@ def test_urdf_and_xacro_models_match_tutorial(package: Path) -> None:
 def test_check_prints_tree_of_page(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert main(["check", str(package / "urdf" / "mbot_base.xacro")]) == 0
-    printed = capsys.readouterr().out
+    captured = capsys.readouterr().out
     for page in LANGUAGES.values():
-        assert printed in [block.text for block in blocks(page) if block.language == "text"]
+        assert captured in [block.text for block in blocks(page) if block.language == "text"]
 
 
 def test_check_of_package_finds_nothing(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -64,8 +64,8 @@ def test_check_of_package_finds_nothing(package: Path, capsys: pytest.CaptureFix
 
 def test_launch_file_lists_its_arguments(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", str(package / "launch" / "display.launch.py"), "--show-args"]) == 0
-    printed = capsys.readouterr().out
-    assert all(name in printed for name in ("'gui'", "'model'", "'rvizconfig'"))
+    captured = capsys.readouterr().out
+    assert all(name in captured for name in ("'gui'", "'model'", "'rvizconfig'"))
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""A reader who follows the tutorial's third chapter ends up with nodes that drive mbot, and tests that say so."""
+"""The third chapter of the tutorial, followed by a reader: nodes that drive mbot, and their tests."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from linkwright.cli import main
 from linkwright.standins import process
 from linkwright.testing import SteppedSimulation
 from tests.docs.pages import DOCS, blocks, commands
-from tests.docs.reader import Known, write
+from tests.docs.reader import Outcome, write
 
 pytest.importorskip("mujoco")
 
@@ -30,7 +30,7 @@ ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The package as it is after the last step."""
+    """Return the package after the last step."""
     folder = tmp_path_factory.mktemp("control_ws")
     page = LANGUAGES["en"]
     create = next(line for line in commands(page) if line.startswith("linkwright pkg create "))
@@ -44,7 +44,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def load(package: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
-    """Imports a module of the package."""
+    """Return a function that imports a module of the package."""
     standins.activate()
     monkeypatch.syspath_prepend(str(package))
     yield lambda name: import_module(f"my_control.{name}")
@@ -54,8 +54,8 @@ def load(package: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
 
 def test_first_node_has_at_most_twenty_lines() -> None:
     (node,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "my_control/first_move.py"]
-    written = [line for line in node.text.splitlines() if line]
-    assert len(written) <= 20
+    code_lines = [line for line in node.text.splitlines() if line]
+    assert len(code_lines) <= 20
 
 
 def test_first_node_drives_in_circle(load: Any) -> None:
@@ -143,13 +143,13 @@ def test_tutorial_commands_run_with_installed_wheel(follow: Callable[..., Path])
     follow(
         LANGUAGES["en"],
         {
-            "linkwright run my_control first_move": Known(node="/first_move"),
-            "linkwright run teleop_twist_keyboard teleop_twist_keyboard": Known(shows="stop"),
-            "linkwright run my_control one_meter --ros-args -p distance:=2.0": Known(node="/one_meter"),
-            "linkwright run my_control stop_ahead": Known(node="/stop_ahead"),
-            "linkwright launch my_control stop_ahead.launch.py": Known(node="/stop_ahead"),
+            "linkwright run my_control first_move": Outcome(node="/first_move"),
+            "linkwright run teleop_twist_keyboard teleop_twist_keyboard": Outcome(output_text="stop"),
+            "linkwright run my_control one_meter --ros-args -p distance:=2.0": Outcome(node="/one_meter"),
+            "linkwright run my_control stop_ahead": Outcome(node="/stop_ahead"),
+            "linkwright launch my_control stop_ahead.launch.py": Outcome(node="/stop_ahead"),
             **{
-                f"linkwright launch my_robot_control {name}.launch.py": Known(node=f"/{name}")
+                f"linkwright launch my_robot_control {name}.launch.py": Outcome(node=f"/{name}")
                 for name in ("drive_square", "follow_wall", "follow_line", "avoid_obstacles", "go_to_pose")
             },
         },

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.cli import main
 from tests.docs.pages import DOCS, commands
-from tests.docs.reader import Known
+from tests.docs.reader import Outcome
 
 LANGUAGES = {"en": DOCS / "tutorial-navigation.md", "zh": DOCS / "zh" / "tutorial-navigation.md"}
 
@@ -23,15 +23,15 @@ def test_launch_file_has_arguments_of_page(capsys):
 
 @pytest.mark.slow
 def test_tutorial_commands_run_with_installed_wheel(follow: Callable[..., Path]) -> None:
-    to_the_bedroom, into_a_wall = (line for line in commands(LANGUAGES["en"]) if "send_goal" in line)
+    bedroom_goal, wall_goal = (line for line in commands(LANGUAGES["en"]) if "send_goal" in line)
     home = follow(
         LANGUAGES["en"],
         {
-            "linkwright launch my_robot_navigation navigation.launch.py": Known(complains="the goal (-0.90, 2.40)"),
-            to_the_bedroom: Known(shows="distance_remaining"),
-            into_a_wall: Known(shows="ABORTED", goes_on=False),
-            "linkwright shell -- python patrol.py": Known(shows="m to the bedroom"),
-            "linkwright run teleop_twist_keyboard teleop_twist_keyboard": Known(shows="stop"),
+            "linkwright launch my_robot_navigation navigation.launch.py": Outcome(error="the goal (-0.90, 2.40)"),
+            bedroom_goal: Outcome(output_text="distance_remaining"),
+            wall_goal: Outcome(output_text="ABORTED", runs_on=False),
+            "linkwright shell -- python patrol.py": Outcome(output_text="m to the bedroom"),
+            "linkwright run teleop_twist_keyboard teleop_twist_keyboard": Outcome(output_text="stop"),
         },
     )
     assert (home / "my_house.pgm").stat().st_size > 1000

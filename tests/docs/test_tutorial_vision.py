@@ -1,4 +1,4 @@
-"""The chapter about vision; the nodes it tells of are tested in tests/vision/nodes."""
+"""The chapter about vision; its nodes are tested in tests/vision/nodes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright import standins
 from linkwright.cli import main
 from linkwright.nodes import EXECUTABLES
 from tests.docs.pages import DOCS, blocks
-from tests.docs.reader import Known
+from tests.docs.reader import Outcome
 from tests.vision.nodes.seeking_robot import SeekingRobot
 
 LANGUAGES = {"en": DOCS / "tutorial-vision.md", "zh": DOCS / "zh" / "tutorial-vision.md"}
@@ -54,9 +54,9 @@ def test_tutorial_commands_run_with_installed_wheel(follow: Callable[..., Path])
     follow(
         LANGUAGES["en"],
         {
-            "linkwright topic hz /yolo/detections": Known(shows="average rate"),
-            "linkwright shell -- python follow_color.py": Known(node="/follow_color"),
-            "linkwright launch my_robot_vision follow_object.launch.py model:=colors thing:=red": Known(
+            "linkwright topic hz /yolo/detections": Outcome(output_text="average rate"),
+            "linkwright shell -- python follow_color.py": Outcome(node="/follow_color"),
+            "linkwright launch my_robot_vision follow_object.launch.py model:=colors thing:=red": Outcome(
                 node="/follow_object"
             ),
         },

@@ -1,4 +1,4 @@
-"""The chapter about voice: what a reader says is understood, and their own commands move mbot."""
+"""The chapter about voice: its utterances are understood, and custom commands move mbot."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.speech.commands.command_file import parse_commands, read_command
 from linkwright.speech.nodes.voice_commander import VoiceCommander
 from linkwright.testing import AsyncSteppedSimulation
 from tests.docs.pages import DOCS, blocks, commands
-from tests.docs.reader import Known
+from tests.docs.reader import Outcome
 from tests.places import GAZEBO_PACKAGE, VOICE_PACKAGE
 
 LANGUAGES = {"en": DOCS / "tutorial-voice.md", "zh": DOCS / "zh" / "tutorial-voice.md"}
@@ -32,8 +32,8 @@ def test_shown_utterances_are_understood(language: str) -> None:
     page = LANGUAGES[language].read_text(encoding="utf-8")
     ours = read_command_file(VOICE_PACKAGE / "config" / "commands.yaml")
     table = [cell for row in re.findall(r"^\| (`.+?) \| (.+?) \|$", page, re.MULTILINE) for cell in row]
-    shown = [text for cell in table[:8] for text in re.findall(r"`([^`]+)`", cell) or cell.split("、")]
-    shown += [
+    utterances = [text for cell in table[:8] for text in re.findall(r"`([^`]+)`", cell) or cell.split("、")]
+    utterances += [
         "forward half a meter",
         "前进半米",
         "后退半米",
@@ -44,7 +44,7 @@ def test_shown_utterances_are_understood(language: str) -> None:
         "stop",
         "停",
     ]
-    shown += [
+    utterances += [
         "turn right forty five degrees",
         "右转四十五度",
         "turn left",
@@ -54,16 +54,18 @@ def test_shown_utterances_are_understood(language: str) -> None:
         "forward",
         "前进",
     ]
-    assert len(shown) > 22
-    assert [text for text in shown if ours.match_command(text) is None] == []
+    assert len(utterances) > 22
+    assert [text for text in utterances if ours.match_command(text) is None] == []
 
 
 def test_launch_file_has_arguments_of_page(capsys: pytest.CaptureFixture[str]) -> None:
-    used = {word.partition(":=")[0] for line in commands(LANGUAGES["en"]) for word in line.split() if ":=" in word}
-    assert used >= {"commands_file", "engine", "language", "navigation", "open_listening", "wav"}
+    documented = {
+        word.partition(":=")[0] for line in commands(LANGUAGES["en"]) for word in line.split() if ":=" in word
+    }
+    assert documented >= {"commands_file", "engine", "language", "navigation", "open_listening", "wav"}
     assert main(["launch", "my_robot_voice", "voice.launch.py", "--show-args"]) == 0
     output = capsys.readouterr().out
-    for argument in used:
+    for argument in documented:
         assert f"'{argument}':\n" in output
 
 
@@ -74,7 +76,7 @@ async def test_custom_command_file_moves_mbot(tmp_path: Path) -> None:
     file.write_text(block.text, encoding="utf-8")
     async with AsyncSteppedSimulation(WORLD, ROBOT, period=0.02) as playground:
         parameters = {"engine": "", "commands_file": str(file), "use_sim_time": True}
-        running = VoiceCommander(playground.graph, NodeOptions(parameters=parameters))
+        commander = VoiceCommander(playground.graph, NodeOptions(parameters=parameters))
         text = playground.node.create_publisher(STRING, "/voice/text_input", 10)
         responses = playground.record("/voice/response")
         turned = playground.record("/odom")
@@ -94,7 +96,7 @@ async def test_custom_command_file_moves_mbot(tmp_path: Path) -> None:
         assert math.hypot(*playground.robot_pose()[:2]) < 0.1
         assert await tell("yes", 8.0) == "race one meter"
         assert math.hypot(*playground.robot_pose()[:2]) == pytest.approx(1.0, abs=0.12)
-        running.close()
+        commander.close()
 
 
 def test_command_file_of_voice_page_is_valid() -> None:
@@ -115,15 +117,15 @@ def test_command_file_of_voice_page_is_valid() -> None:
 
 @pytest.mark.slow
 def test_tutorial_commands_run_with_installed_wheel(follow: Callable[..., Path], tmp_path: Path) -> None:
-    with wave.open(str(tmp_path / "my_recording.wav"), "wb") as recording:  # two seconds in which nobody speaks
+    with wave.open(str(tmp_path / "my_recording.wav"), "wb") as recording:  # two seconds of silence
         recording.setparams((1, 2, 16000, 0, "NONE", ""))
         recording.writeframes(bytes(2 * 2 * 16000))
     follow(
         LANGUAGES["en"],
         {
-            "linkwright topic echo /voice/command": Known(hears="/voice/command", shows="backward_by"),
-            "linkwright topic echo /cmd_vel": Known(hears="/cmd_vel", shows="linear"),
-            "linkwright models get vosk-en": Known(goes_on=False, may_fail=True),
-            "linkwright models get vosk-zh": Known(goes_on=False, may_fail=True),
+            "linkwright topic echo /voice/command": Outcome(topic="/voice/command", output_text="backward_by"),
+            "linkwright topic echo /cmd_vel": Outcome(topic="/cmd_vel", output_text="linear"),
+            "linkwright models get vosk-en": Outcome(runs_on=False, may_fail=True),
+            "linkwright models get vosk-zh": Outcome(runs_on=False, may_fail=True),
         },
     )

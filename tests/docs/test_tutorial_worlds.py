@@ -1,4 +1,4 @@
-"""A reader who follows the tutorial's second chapter ends up with a world, and a package that loads mbot into it."""
+"""The second chapter of the tutorial, followed by a reader: a world, and a package that loads mbot into it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LANGUAGES = {"en": DOCS / "tutorial-worlds.md", "zh": DOCS / "zh" / "tutorial-wo
 
 @pytest.fixture(params=LANGUAGES)
 def package(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The package as it is after the last step."""
+    """Return the package after the last step."""
     monkeypatch.chdir(tmp_path)
     git = tmp_path / "gitconfig"
     git.write_text("[user]\nname = Ada\nemail = ada@linkwright.dev\n", encoding="utf-8")
@@ -43,8 +43,8 @@ def test_check_of_world_and_package_finds_nothing(package: Path, capsys: pytest.
 
 def test_launch_file_includes_simulation(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", str(package / "launch" / "load_mbot.launch.py"), "--show-args"]) == 0
-    printed = capsys.readouterr().out
-    assert all(name in printed for name in ("'world'", "'gui'", "'pause'"))
+    captured = capsys.readouterr().out
+    assert all(name in captured for name in ("'world'", "'gui'", "'pause'"))
 
 
 def test_both_languages_show_same_files() -> None:

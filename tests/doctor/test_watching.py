@@ -27,7 +27,7 @@ class RemoteTransport(Transport):
     def __init__(self, *endpoints: EndpointInfo) -> None:
         self.endpoints = list(endpoints)
 
-    def look_around(self) -> None:
+    def start_discovery(self) -> None:
         pass
 
     def remote_nodes(self) -> list[NodeIdentity]:
@@ -80,7 +80,7 @@ async def test_unnamed_endpoint_is_waited_for_one_second_at_most(joined: Graph) 
 
 
 async def test_contradictory_velocity_publishers_are_recorded(joined: Graph) -> None:
-    """Whoever is silent, and whoever says the same, does not contradict."""
+    """Silent publishers, and publishers of equal commands, do not contradict."""
     node, other, alike = (joined.create_node(name) for name in ("keys", "planner", "alike"))
     idle = joined.create_node("idle")
     idle.create_publisher(TWIST, "/cmd_vel", 10)
@@ -150,7 +150,7 @@ async def test_bridged_transforms_have_one_sender_and_no_delay(joined: Graph) ->
 
 
 async def test_simulator_stamps_have_no_delay_and_world_poses_are_not_frames(joined: Graph) -> None:
-    """It makes the time that it stamps by, and tells where models are on a topic of transforms that are no frames."""
+    """The simulator publishes the time of its stamps, and the world's poses on a topic of transforms are not frames."""
     simulator = joined.create_node("gazebo")
     clock = simulator.create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
     poses, frames = (simulator.create_publisher(TRANSFORMS, topic, 10) for topic in ("/world_poses", "/robot1/tf"))

@@ -90,7 +90,7 @@ def test_rotation_from_z_maps_z_to_axis(axis):
 
 def test_zero_quaternion_normalizes_to_identity():
     assert normalized(0, 0, 0, 0) == (0, 0, 0, 1)
-    assert normalized(0, 1e-9, 0, 0, least=1e-16) == (0, 0, 0, 1)
+    assert normalized(0, 1e-9, 0, 0, min_squared_norm=1e-16) == (0, 0, 0, 1)
     assert normalized(0, 3, 0, 4) == (0, 0.6, 0, 0.8)
 
 

@@ -20,7 +20,7 @@ def log() -> list[LogRecord]:
 
 @pytest.fixture
 async def graph(clock: JumpClock, log: list[LogRecord]) -> AsyncIterator[Graph]:
-    """A graph on a clock that stands still; after it nothing may be left on the loop."""
+    """Return a graph on a stopped clock; nothing may be left on the loop afterwards."""
     graph = Graph(clock=clock, on_log=log.append)
     yield graph
     await graph.close()

@@ -44,7 +44,7 @@ async def test_five_hundred_nodes_exchange_messages():
 
 
 def test_graph_can_change_while_other_threads_use_it():
-    """Nodes come and go in some threads while others publish, ask and look."""
+    """Some threads create and destroy nodes while others publish, call and query."""
     graph = Graph(threads=True, on_log=lambda _record: None)
     steady = graph.create_node("steady")
     received = []
@@ -101,7 +101,7 @@ def test_graph_can_change_while_other_threads_use_it():
 
 
 async def test_thread_loses_no_reliable_messages_to_event_loop():
-    """A hundred thousand messages into a queue that holds them."""
+    """A hundred thousand messages into a queue that holds all of them."""
     graph = Graph(on_log=print)
     node = graph.create_node("node")
     numbers, all_received = [], asyncio.Event()

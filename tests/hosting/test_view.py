@@ -1,4 +1,4 @@
-"""A model that is shown without a launch file."""
+"""Viewing of a model without a launch file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwright.hosting.plans import HostOptions
 from linkwright.hosting.view import ModelView, run_view
 from linkwright.hosting.xacro_calls import XacroCall
 from linkwright.packages import PackageFinder
-from linkwright.page.protocol.description import NOTHING_ASKED, ArgumentForm, GiveArguments
+from linkwright.page.protocol.description import NO_ARGUMENT_FORM, ArgumentForm, SetArguments
 from linkwright.panels.description import ArgumentsFeature
 from tests.waiting import eventually
 
@@ -203,11 +203,11 @@ async def test_arguments_from_page_complete_the_robot(tmp_path: Path) -> None:
         viewer = view._viewer
         assert viewer is not None
         feature = viewer.add_feature(ArgumentsFeature)
-        await eventually(lambda: feature.opening_messages() != [NOTHING_ASKED])
+        await eventually(lambda: feature.opening_messages() != [NO_ARGUMENT_FORM])
         (form,) = feature.opening_messages()
         assert isinstance(form, ArgumentForm)
         assert form.names == ["side"]
-        feature.receive(None, GiveArguments({"side": "left", "other": "x"}))  # type: ignore[arg-type]
+        feature.receive(None, SetArguments({"side": "left", "other": "x"}))  # type: ignore[arg-type]
         await until("[robot_state_publisher-3]: started")
-        assert feature.opening_messages() == [NOTHING_ASKED]
+        assert feature.opening_messages() == [NO_ARGUMENT_FORM]
         assert viewer.manager.fixed_frame == "left_link"

@@ -1,4 +1,4 @@
-"""A running world is paused and resumed, and never against the user's will."""
+"""Pausing and resuming of a running world, and never against the user's choice."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from linkwright.simulation.actuators import Motor
 from linkwright.simulation.simulation import Simulation
 from linkwright.urdf import read
 from tests.inference.test_robots import CASES, read_and_inferred
-from tests.simulation.worlds import GROUND, simulated
+from tests.simulation.worlds import GROUND, make_simulation
 
 pytestmark = pytest.mark.extra("sim")
 
@@ -30,7 +30,7 @@ def standing(title: str) -> tuple[Simulation, Drive]:
     robot = read(complete_description(document, inference)).robot
     assert robot is not None
     assert inference.drive is not None
-    simulation = simulated(GROUND)
+    simulation = make_simulation(GROUND)
     model = model_from_robot(robot, lump_fixed_joints=True).model
     simulation.spawn(model, "r", (0.0, 0.0, -inference.ground, 0.0, 0.0, 0.0, 1.0))
     return simulation, inference.drive
@@ -45,7 +45,7 @@ def motors(simulation: Simulation, drive: Drive) -> tuple[list[Motor], list[Moto
     return left, right
 
 
-def driven(simulation: Simulation, sides: tuple[list[Motor], list[Motor]], left: float, right: float) -> None:
+def drive_straight(simulation: Simulation, sides: tuple[list[Motor], list[Motor]], left: float, right: float) -> None:
     """Accelerate the wheels to velocities in rad/s within a second, slowly enough to avoid slip."""
     for hundredth in range(1, 101):
         for motor in sides[0]:
@@ -67,7 +67,7 @@ TWO_WHEELS = "Visuals only, two wheels and two balls"
 def test_robot_with_visuals_only_drives_one_meter_straight():
     simulation, drive = standing(TWO_WHEELS)
     sides = motors(simulation, drive)
-    driven(simulation, sides, 0.5 / drive.radius, 0.5 / drive.radius)
+    drive_straight(simulation, sides, 0.5 / drive.radius, 0.5 / drive.radius)
     start = simulation.model_pose("r")
     simulation.advance(2 * SECOND)
     end = simulation.model_pose("r")
@@ -80,7 +80,7 @@ def test_turn_in_place_follows_wheel_separation():
     simulation, drive = standing(TWO_WHEELS)
     sides = motors(simulation, drive)
     rate = 1.0 * drive.separation / 2 / drive.radius
-    driven(simulation, sides, -rate, rate)
+    drive_straight(simulation, sides, -rate, rate)
     start = yaw(simulation.model_pose("r"))
     simulation.advance(SECOND)
     assert (yaw(simulation.model_pose("r")) - start) % (2 * pi) == pytest.approx(1.0, abs=0.01)
@@ -90,7 +90,7 @@ def test_turn_in_place_follows_wheel_separation():
 def test_equal_wheel_velocities_drive_forward(title):
     simulation, drive = standing(title)
     sides = motors(simulation, drive)
-    driven(simulation, sides, 0.3 / drive.radius, 0.3 / drive.radius)
+    drive_straight(simulation, sides, 0.3 / drive.radius, 0.3 / drive.radius)
     x, y = simulation.model_pose("r")[:2]
     assert x > 0.1
     assert y == pytest.approx(0.0, abs=1e-3)

@@ -19,7 +19,7 @@ from linkwright.language.xml_hover import explain_at
 from linkwright.lint.extension_names import CHILDREN
 from linkwright.loading.extensions import extensions
 from linkwright.simulation.plugins.registry import PLUGINS
-from linkwright.xacro.expressions.symbols import global_names
+from linkwright.xacro.expressions.builtin_names import global_names
 from linkwright.xacro.session import Inputs
 
 MANIFEST = "<package format='3'><name>{name}</name><version>0.1.0</version><description>d</description></package>"

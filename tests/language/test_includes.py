@@ -47,7 +47,10 @@ def names(folder: Path, files: list[Path]) -> list[str]:
 def test_include_is_resolved_within_its_own_package(folder, index, package):
     file = folder / package / "urdf" / "wheel.xacro"
     assert names(folder, index.entries(file, {})) == [f"{package}/urdf/robot.xacro"]
-    assert names(folder, index.related(file, {})) == [f"{package}/urdf/robot.xacro", f"{package}/urdf/wheel.xacro"]
+    assert names(folder, index.related_files(file, {})) == [
+        f"{package}/urdf/robot.xacro",
+        f"{package}/urdf/wheel.xacro",
+    ]
 
 
 def test_related_files_start_with_the_file_and_its_includes(tmp_path):
@@ -63,14 +66,14 @@ def test_related_files_start_with_the_file_and_its_includes(tmp_path):
     index = IncludeIndex([real_path(tmp_path)])
     index.refresh()
     folder = real_path(tmp_path) / "arms" / "urdf"
-    related = index.related(folder / "one.xacro", {})
+    related = index.related_files(folder / "one.xacro", {})
     assert [file.stem for file in related] == ["one", "middle", "right", "left"]
-    assert index.related(folder / "left.xacro", {})[0] == folder / "left.xacro"
+    assert index.related_files(folder / "left.xacro", {})[0] == folder / "left.xacro"
 
 
 def test_unknown_package_does_not_match_known_files(folder, index):
     file = folder / "tool" / "urdf" / "robot.xacro"
-    assert index.related(file, {}) == [file]
+    assert index.related_files(file, {}) == [file]
     installed = Path("/opt/other/urdf/wheel.xacro")
     assert index.entries(installed, {installed: WHEEL}) == [file]
 

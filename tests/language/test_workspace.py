@@ -37,7 +37,7 @@ def workspace(folder: Path) -> Workspace:
 
 
 def codes(workspace: Workspace, file: Path, texts=None) -> dict[str, list[str]]:
-    """Check what a change of a file concerns, and return the codes of the findings by file."""
+    """Check the files that a change affects, and return the codes of the findings by file."""
     texts = texts or {}
     found = {}
     for subject in workspace.subjects(file, texts):

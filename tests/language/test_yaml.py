@@ -256,4 +256,4 @@ def test_completion_follows_open_description(typing):
 def test_catalog_contains_nodes_and_plugins_with_types():
     assert {"amcl", "slam_toolbox", "ekf_filter_node", "robot_state_publisher", "map_server"} <= set(node_names())
     assert all(parameter.name for node in node_names() for parameter in node_parameters(node))
-    assert plugins()["nav2_costmap_2d/VoxelLayer"].listed == "plugins"
+    assert plugins()["nav2_costmap_2d/VoxelLayer"].list_parameter == "plugins"

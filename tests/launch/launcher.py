@@ -35,7 +35,7 @@ except LinkwrightError as error:
 
 
 class Running:
-    """A launch in a process of its own; what it writes is collected in files.
+    """A launch in a separate process; its output is collected in files.
 
     Attributes:
         identity: a number by which a test knows it again.

@@ -34,7 +34,7 @@ from launch_ros.actions import *
 
 @pytest.fixture
 def file(write: Any) -> Any:
-    """A launch file of package ``bot``."""
+    """Write a launch file of package ``bot``."""
     write("src/bot/package.xml", MANIFEST.format("bot"))
 
     def written(text: str, name: str = "a.launch.py", head: str = HEAD) -> Path:

@@ -40,7 +40,7 @@ from launch.substitutions import *
 
 @pytest.fixture
 def robot(write: Any, tmp_path: Path) -> Path:
-    """A package with a model, parameters and launch files."""
+    """Write a package with a model, parameters and launch files."""
     write("src/bot/package.xml", "<package format='3'><name>bot</name><version>1.0.0</version></package>")
     write("src/bot/urdf/bot.urdf.xacro", '<robot name="bot" xmlns:xacro="x"><link name="base"/></robot>')
     write(

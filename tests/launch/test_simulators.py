@@ -122,7 +122,7 @@ async def test_launch_files_missing_in_unbuilt_sources_are_substituted(
     write: Write,
     tmp_path: Path,
 ) -> None:
-    """As beside a clone of ros_gz, whose gz_sim.launch.py its build makes; what the clone has stays the clone's."""
+    """As beside a clone of ros_gz, whose build generates gz_sim.launch.py; the clone's own files take precedence."""
     folder = write("ws/src/ros_gz/ros_gz_sim/package.xml", "<package><name>ros_gz_sim</name></package>").parent
     write("ws/src/ros_gz/ros_gz_sim/CMakeLists.txt", COMPILED)
     write("ws/src/ros_gz/ros_gz_sim/launch/gz_sim.launch.py.in", "@GZ_SIM_VER@")
@@ -252,7 +252,7 @@ async def test_gz_sim_command_starts_server(
 async def test_gazebo_gui_opens_one_viewer(
     launch: Callable[..., Any], simulators: Simulators, entities: list[LaunchDescriptionEntity], pages: int
 ) -> None:
-    """That of RViz where there is one; else one that is there as long as the program which opens the window."""
+    """RViz's viewer is reused; otherwise a viewer runs as long as the program that opens the window."""
     simulators.spawned = []  # the server goes on
 
     def look(context: LaunchContext) -> None:

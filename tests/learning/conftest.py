@@ -1,4 +1,4 @@
-"""Processes of checks and supervisors of sandboxes, whose coverage counts; that of confined programs does not."""
+"""Fixtures for check processes and sandbox supervisors, which count for coverage; confined programs do not."""
 
 import sys
 

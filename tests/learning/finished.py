@@ -1,4 +1,4 @@
-"""The workspace of a learner who has done lessons of a course."""
+"""The workspace of a learner after some lessons of a course."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ def test_solution_of_number_step_is_the_number(workspace, capsys, tmp_path):
 
 @pytest.fixture
 def grown_course(tmp_path, long_course):
-    """The same course, whose steps write a file each, and the lesson b another one to begin with."""
+    """Return the same course, in which each step writes a file, and lesson b another one at its start."""
     for step in ("a/one", "a/two", "b/one"):
         lesson, name = step.split("/")
         folder = tmp_path / "long" / lesson / "solution" / name
@@ -153,7 +153,7 @@ def test_malformed_progress_file_is_rejected_and_kept(workspace, capsys):
 
 @pytest.fixture
 def long_course(tmp_path):
-    """A course with the steps a/one, a/two, b/one and b/two, whose checks all pass."""
+    """Return a course with the steps a/one, a/two, b/one and b/two, whose checks all pass."""
     folder = tmp_path / "long"
     for lesson in ("a", "b"):
         (folder / lesson).mkdir(parents=True)

@@ -1,4 +1,4 @@
-"""An exercise as pages see it: its text, the state of the judge in the running world, and the scores of the program."""
+"""An exercise in pages: its text, the state of the judge in the running world, and the scores of the program."""
 
 from __future__ import annotations
 

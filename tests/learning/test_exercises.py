@@ -41,7 +41,7 @@ def test_exercise_texts_exist_in_both_languages(name):
 
 @cache
 def reference_result(name: str, seed: int) -> RunResult:
-    """The result of the reference solution, which several tests look at."""
+    """Return the result of the reference solution, which several tests use."""
     exercise = find_exercise(name)
     return next(judge_program(exercise, exercise.solution("reference"), [seed]))
 

@@ -42,7 +42,7 @@ LIMITS = ["--seconds", "60", "--cpu-seconds", "3", "--memory", "256", "--disk", 
 
 @pytest.fixture
 def folder(class_folder, monkeypatch):  # noqa: F811
-    """A class with a course whose check runs the student's program."""
+    """Return a class with a course whose check runs the student's program."""
     lesson = class_folder / "course" / "01-program"
     lesson.mkdir(parents=True)
     (class_folder / "course/course.toml").write_text('lessons = ["01-program"]\ntitle.en = "A program"\n')

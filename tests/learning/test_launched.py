@@ -1,4 +1,4 @@
-"""Checks of a launch see its nodes, messages and transforms, and say what is missing without a long wait."""
+"""Checks of a launch: they find nodes, messages and transforms, and report missing ones after a short wait."""
 
 import shutil
 import time

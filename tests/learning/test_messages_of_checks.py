@@ -1,4 +1,4 @@
-"""Checks say where a mistake is and what to do: of files, links, programs, and topics without messages."""
+"""Messages of checks name the place of a mistake and its fix: files, links, programs, and topics without messages."""
 
 import sys
 
@@ -71,7 +71,7 @@ def test_a_package_that_cannot_be_built_is_refused(package, file, text, message)
     [
         ("<package format='3'><name>q</name></package>", r"has the name 'q'; write <name>p</name>"),
         ("<package format='3'></package>", r"has no <name>; write <name>p</name>"),
-        ("<package format='3'>＜name>p</name></package>", r"package\.xml, line 1, .*English keyboard"),
+        ("<package format='3'>＜name>p</name></package>", r"package\.xml, line 1, .*ASCII character"),
     ],
 )
 def test_package_with_another_name_than_its_folder_is_explained(package, manifest, message):
@@ -180,7 +180,7 @@ def test_build_depend_alone_is_not_enough(package):
         ("'move = p.move.main'", "the entry names no function; write 'move = p.move:main'"),
         ("'move = p.move:start'", r"move\.py has no function 'start'; it has 'main'"),
         ("'other = p.move:main'\n'move = p.move:main'", "line 2: a comma is missing at the end of the line"),
-        ("‘move = p.move:main’", "English keyboard"),
+        ("‘move = p.move:main’", "ASCII character"),
     ],
 )
 def test_entry_point_error_of_setup_py_is_explained(package, entries, message):

@@ -1,4 +1,4 @@
-"""A course as pages see it: steps, checks when files change, hints, answers, solutions, and hostile requests."""
+"""A course in pages: steps, checks after changes, hints, answers, solutions, and hostile requests."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ async def classroom(workspace: Path, shown: Shown | None = None) -> AsyncIterato
 
 
 async def results(client: Any, *, step: str = "01-one-link/one-link") -> dict[str, Any]:
-    """The next results of a step."""
+    """Return the next results of a step."""
     message: dict[str, Any] = await client.until("step_checks", address=step, is_running=False)
     return message
 
@@ -289,7 +289,7 @@ async def test_earlier_steps_are_taken_over_after_confirmation(tmp_path: Path) -
         await client.send("open_step", address="01-one-link/mass")
         step = await client.until("course_step", address="01-one-link/mass")
         assert step["missing_count"] == 1
-        await client.send("ask_catch_up")
+        await client.send("request_catch_up")
         files = await client.until("catch_up_files")
         assert (files["new"], files["replaced"]) == ([str(workspace / "robot.urdf")], [])
         assert not (workspace / "robot.urdf").exists()

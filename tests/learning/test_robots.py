@@ -1,4 +1,4 @@
-"""Checks see the robot, however it was written, and say in one sentence what is not yet so."""
+"""Checks of robots: they accept any notation, and report a missing part in one sentence."""
 
 import pytest
 

@@ -14,7 +14,7 @@ BOX = '<visual><geometry><box size="{0} {0} {0}"/></geometry></visual>'
 
 @pytest.fixture
 def codes_of(tmp_path):
-    """Return the codes of the findings about the text of a robot, with other files beside it."""
+    """Return the codes of the findings about a robot's text, with other files in its folder."""
 
     def check(text, *selectors, name="r.urdf", **files):
         for file, content in files.items():

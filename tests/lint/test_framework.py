@@ -26,7 +26,7 @@ def test_rule_codes_and_names_are_unique_and_sorted():
 
 
 def test_package_rules_are_in_separate_modules():
-    """A check of a file imports the modules of other rules alone, by their names."""
+    """A check of a file imports the modules of other rules only by their names."""
     modules = {type(rule).__module__.rpartition(".")[2]: rule.scope is Scope.PACKAGE for rule in all_rules()}
     assert {name for name, is_of_packages in modules.items() if is_of_packages} == {
         name for name in modules if name.startswith(("launch_", "package_"))

@@ -1,4 +1,4 @@
-"""A manifest has an error exactly if catkin_pkg, which colcon uses, refuses it."""
+"""Manifests have an error exactly if catkin_pkg, which colcon uses, rejects them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.lint.settings import Settings
 
 pytestmark = pytest.mark.extra("colcon")
 
-_PARTS = {
+_VALUES_BY_TAG = {
     "name": [
         *("my_robot", "depthai-ros", "My-Robot", "MyRobot", "2d_nav", "a", "a__b", "class", "my robot", "my.robot"),
         *("_robot", "-robot", "räder", "", " my_robot "),
@@ -22,7 +22,7 @@ _PARTS = {
     "description": ["A robot.", "", "<b>A robot.</b>"],
     "license": ["MIT", "", "Apache License 2.0"],
 }
-_WHOLE = [
+_REMAINDERS = [
     '<maintainer email="a@b.cc"/>',
     '<maintainer email="a@b.cc"></maintainer>',
     '<maintainer email="a@b.c">A</maintainer>',
@@ -40,15 +40,15 @@ _WHOLE = [
 ]
 
 
-def _manifest(rest: str = '<maintainer email="lee@my-lab.org">Lee</maintainer>', **values: str | None) -> str:
-    parts = {"name": "my_robot", "version": "0.1.0", "description": "A robot.", "license": "MIT", **values}
-    written = "".join(f"<{tag}>{text}</{tag}>" for tag, text in parts.items() if text is not None)
-    return f'<package format="3">{written}{rest}</package>'
+def _manifest(remainder: str = '<maintainer email="lee@my-lab.org">Lee</maintainer>', **values: str | None) -> str:
+    values_by_tag = {"name": "my_robot", "version": "0.1.0", "description": "A robot.", "license": "MIT", **values}
+    elements = "".join(f"<{tag}>{text}</{tag}>" for tag, text in values_by_tag.items() if text is not None)
+    return f'<package format="3">{elements}{remainder}</package>'
 
 
 _CASES = [
-    *(_manifest(**{tag: text}) for tag, texts in _PARTS.items() for text in (*texts, None)),
-    *map(_manifest, _WHOLE),
+    *(_manifest(**{tag: text}) for tag, texts in _VALUES_BY_TAG.items() for text in (*texts, None)),
+    *map(_manifest, _REMAINDERS),
     _manifest("").replace("package", "pkg"),
 ]
 

@@ -32,7 +32,7 @@ FOUND = {
     # "default_inertial" for every link: one cause.
     "urdf_tutorial@ros2/urdf/08-macroed.urdf.xacro": {"LW315"},
 }
-"""What is warned of in robots besides their missing meshes: each is a mistake of the description."""
+"""Expected warnings about robots besides missing meshes: each is a mistake of the description."""
 
 
 @pytest.mark.parametrize("model", MODELS, ids=str)

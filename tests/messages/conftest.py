@@ -18,7 +18,7 @@ _MANIFEST = """<?xml version="1.0"?>
 
 
 class InterfacePackage:
-    """A package that is found; each has another name, because what was read of one is kept."""
+    """A package of interface files; each has another name, because the interfaces of a name are cached."""
 
     def __init__(self, folder: Path, name: str) -> None:
         self.folder = folder / "src" / name

@@ -17,7 +17,7 @@ TEXTS = ("", "a", "base_link", "é漢", "two words", "x" * 300, "multi\nline\n",
 
 
 def random_message(cls: type[Any], seed: int) -> Any:
-    """A message of a class; the same for the same seed."""
+    """Return a message of a class; it is the same for the same seed."""
     return _message(cls, random.Random(seed))
 
 
@@ -53,13 +53,13 @@ def _primitive(kind: FieldType, primitive: Primitive, draw: random.Random) -> An
 
 @cache
 def rosbags_store() -> Any:
-    """The messages of Humble as rosbags knows them; whoever asks for them is skipped where there is no rosbags."""
+    """Return the messages of Humble in rosbags; skip the test without rosbags."""
     typesys = pytest.importorskip("rosbags.typesys")
     return typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
 
 
 def rosbags_object(message: Any) -> Any:
-    """The same message as an object of rosbags."""
+    """Return the same message as an object of rosbags."""
     values = {
         field.name: _rosbags_value(field.type, getattr(message, field.name)) for field in message._definition.fields
     }

@@ -1,4 +1,4 @@
-"""The hashes are those that ROS 2 Jazzy publishes (taken from its nodes by several public projects)."""
+"""Type hashes, compared with those of ROS 2 Jazzy (published by several projects)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Interface files of the workspace: what is understood, and where it is said what is wrong."""
+"""Interface files of the workspace: accepted syntax, and the positions of mistakes."""
 
 from __future__ import annotations
 

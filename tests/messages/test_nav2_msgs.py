@@ -1,4 +1,4 @@
-"""nav2_msgs has the fields of Humble, or those of Jazzy where ROS_DISTRO says so."""
+"""nav2_msgs has the fields of Humble, or those of Jazzy if ROS_DISTRO selects it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Messages as YAML, as CSV and as dictionaries: what rosidl_runtime_py and PyYAML make of them."""
+"""Messages as YAML, CSV and dictionaries, compared with rosidl_runtime_py and PyYAML."""
 
 from __future__ import annotations
 

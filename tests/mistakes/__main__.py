@@ -1,4 +1,4 @@
-"""Write what is said now into the Markdown files: ``python -m tests.mistakes``; read the difference afterwards."""
+"""Write the current findings into the Markdown files: ``python -m tests.mistakes``; read the difference afterwards."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .cases import read_cases
 
 
 def renew(page: Path) -> None:
-    """Write what is said now into one file."""
+    """Write the current findings into one file."""
     text = page.read_text(encoding="utf-8")
     for case in read_cases(page):
         with tempfile.TemporaryDirectory() as folder:

@@ -37,11 +37,11 @@ class Case:
 
     @property
     def file(self) -> str:
-        """The file that is checked: the first one changed."""
+        """Return the checked file, which is the first changed one."""
         return self.changes[0][0]
 
     def check(self, folder: Path) -> str:
-        """Make the mistake in a copy of the package below a folder, and return what is said of it."""
+        """Make the mistake in a copy of the package below a folder, and return the findings."""
         package = folder / PACKAGE.name
         shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
         for name, change in self.changes:
@@ -59,7 +59,7 @@ class Case:
 
 
 def read_cases(path: Path) -> list[Case]:
-    """The cases of a Markdown file."""
+    """Return the cases of a Markdown file."""
     cases = []
     for title, blocks in read_sections(path):
         changes, arguments, expected = [], [], ""
@@ -104,7 +104,7 @@ def _place(finding: dict[str, Any]) -> str:
 
 
 def _marked(finding: dict[str, Any]) -> str:
-    """The text that a finding marks, with its further lines left out."""
+    """Return the text that a finding marks, without its further lines."""
     if finding["file"] is None or not Path(finding["file"]).is_file():
         return ""
     lines = Path(finding["file"]).read_text(encoding="utf-8").splitlines()

@@ -1,4 +1,4 @@
-"""What is said of realistic mistakes: the place to the column, the words, and a hint that names the fix."""
+"""Findings about realistic mistakes: the position to the column, the wording, and a hint with the fix."""
 
 from __future__ import annotations
 

@@ -2,13 +2,13 @@ from __future__ import annotations
 
 import pytest
 
-from tests.model_files.shop import open_shop
+from tests.model_files.model_server import run_model_server
 
 
 @pytest.fixture
-def shop():
-    with open_shop() as opened:
-        yield opened
+def model_server():
+    with run_model_server() as server:
+        yield server
 
 
 @pytest.fixture(autouse=True)

@@ -1,4 +1,4 @@
-"""The table of models says all that is needed to fetch them, and nothing that cannot be checked."""
+"""The table of models: entries have all facts for the download, and checksums for each file."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ def test_table_entries_have_address_license_and_checksums(entry):
 
 
 def test_unknown_model_suggests_similar_names():
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         model_entry("vosk-cn")
-    (diagnostic,) = caught.value.diagnostics
+    (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "MODEL101"
     assert "vosk-en" in str(diagnostic.hint)
     assert "vosk-zh" in str(diagnostic.hint)

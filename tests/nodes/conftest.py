@@ -14,7 +14,7 @@ def stage(graph, clock, log) -> Stage:  # noqa: F811
 
 @pytest.fixture
 def logged(log):  # noqa: F811
-    """What was logged at a level."""
+    """Return a function that returns the log's texts of a level."""
 
     def texts(level: str) -> list[str]:
         return [record.text for record in log if record.level is LogLevel[level]]

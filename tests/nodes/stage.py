@@ -1,4 +1,4 @@
-"""A graph with an audience: starts nodes, and keeps what they publish."""
+"""A graph for tests of nodes: it starts them, and records their messages."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def joint(
     xyz: str = "0 0 0",
     axis: str = "0 0 1",
 ) -> str:
-    """A joint, and the link it carries, named after it unless `child` says otherwise."""
+    """Return a joint and its child link, which by default has the joint's name."""
     child = child or f"{name}_link"
     needs_limit = kind in ("revolute", "prismatic") and limit is not None
     return (
@@ -47,12 +47,12 @@ def joint(
 
 
 def robot(*joints: str) -> str:
-    """A robot with a link ``base`` and these joints."""
+    """Return a robot with a link ``base`` and these joints."""
     return f"<robot name='test'><link name='base'/>{''.join(joints)}</robot>"
 
 
 def mimic(master: str, rest: str = "") -> str:
-    """A mimic tag."""
+    """Return a mimic tag."""
     return f"<mimic joint='{master}' {rest}/>"
 
 
@@ -93,7 +93,7 @@ class Stage:
         await self.graph.settle()
 
     async def move(self, positions: dict[str, float], *, stamp_ns: int | None = None) -> None:
-        """Publish joint states, stamped now unless it is said otherwise."""
+        """Publish joint states, by default with the current time."""
         stamp = Time.from_nanoseconds(self.clock.now_ns() if stamp_ns is None else stamp_ns)
         self._joint_states.publish(
             JointState(header=Header(stamp=stamp), name=list(positions), position=list(positions.values()))
@@ -110,11 +110,11 @@ class Stage:
         return [(result.successful, result.reason) for result in results]
 
     def moved_frames(self) -> list[list[str]]:
-        """The child frames of each message on ``/tf``."""
+        """Return the child frames of each message on ``/tf``."""
         return [sorted(message.batch.children) for message in self.tf]
 
     def positions(self) -> dict[str, float]:
-        """Those in the last joint states."""
+        """Return the positions in the last joint states."""
         message: JointState = self.joint_states[-1]
         values: Sequence[float] = list(message.position)
         return dict(zip(message.name, values, strict=True))

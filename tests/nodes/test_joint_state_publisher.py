@@ -165,7 +165,7 @@ class TestDependentJoints:
         assert stage.positions() == {"c": 0.0, "b": 0.0, "a": 0.0}
 
     async def test_dependent_joints_override_mimic_tags(self, stage):
-        """In joint_state_publisher 2.4 the tag of the description overwrites the parameter."""
+        """In joint_state_publisher 2.4, the description's tag overrides the parameter."""
         dependent = {"b": {"parent": "a", "factor": 5.0}, "dotted.name": {"parent": "a", "offset": 1}}
         stage.joint_state_publisher(zeros={"a": 1.0}, dependent_joints=dependent)
         for _ in range(2):

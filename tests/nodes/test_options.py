@@ -44,7 +44,7 @@ NEED_A_TERMINAL = ("teleop_twist_keyboard",)
 
 @pytest.fixture
 def terminal():
-    """The terminal of nodes that need one."""
+    """Return the terminal of nodes that need one."""
     if sys.platform == "win32":
         yield None
         return
@@ -56,7 +56,7 @@ def terminal():
 
 @pytest.fixture(autouse=True)
 def microphone(monkeypatch):
-    """That of a machine which has one."""
+    """Return the microphone of a machine that has one."""
     monkeypatch.setitem(sys.modules, "sounddevice", fake_sounddevice)
 
 

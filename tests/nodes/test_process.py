@@ -46,7 +46,7 @@ class Program:
         raise AssertionError(f"'{text}' did not come: {self.lines}")
 
     def end(self, number: signal.Signals = signal.SIGINT) -> int:
-        """The exit status."""
+        """Return the exit status."""
         if self.process.poll() is None:
             self.process.send_signal(number)
         status = self.process.wait(SECONDS)

@@ -212,7 +212,7 @@ class TestBadMessages:
 
 class TestThrottle:
     async def moves(self, stage, times):
-        """Move joint a at these milliseconds; the x of a prismatic joint tells which move was published when."""
+        """Move joint a at these milliseconds; the x of a prismatic joint identifies each published move."""
         now = 0
         for number, at in enumerate(times, 1):
             await stage.clock.advance((at - now) / 1000)

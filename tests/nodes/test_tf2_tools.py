@@ -174,7 +174,7 @@ async def test_describe_keeps_negative_zeros_like_tf2(stage, send):
 
 @pytest.fixture
 def send_lookup_goal(stage):
-    """Asks a buffer server; gives the result."""
+    """Send a goal to a buffer server, and return the result."""
     Tf2BufferServer(stage.graph, NodeOptions())
     client = ActionClient(stage.node, "tf2_msgs/action/LookupTransform", "tf2_buffer_server")
     goal_class = get_action("tf2_msgs/action/LookupTransform").Goal

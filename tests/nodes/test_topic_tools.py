@@ -280,7 +280,7 @@ async def test_stop_is_sent_when_velocity_publisher_is_lost(test, kind, words):
     message = twist()
     message.linear.x = 0.3
     driver.send(message)
-    driver.be_lost()
+    driver.disappear()
     await test.settle()
     assert driven.last.linear.x == 0.0
     (line,) = logged(test, "WARN")

@@ -20,7 +20,7 @@ def copied(text: str, package: Path) -> dict[str, str]:
     """Return the source and destination of all copied files; nothing may be unknown."""
     install_rules = rules(text, package)
     assert install_rules.is_complete, install_rules.unknown
-    return {file.source: file.destination for file in install_rules.installed(package)}
+    return {file.source: file.destination for file in install_rules.installed_files(package)}
 
 
 @pytest.fixture
@@ -68,7 +68,7 @@ def test_install_patterns_select_files(package: Path) -> None:
 def test_excluded_missing_folder_is_not_required(package: Path, more: str, is_required: bool) -> None:
     # As file(INSTALL) of CMake 3.25 does: what no pattern takes is passed over, there or not.
     install_rules = rules(f"install(DIRECTORY include/ DESTINATION include {more})")
-    assert [item.text for item in install_rules.required] == (["include/"] if is_required else [])
+    assert [item.text for item in install_rules.required_paths] == (["include/"] if is_required else [])
 
 
 def test_install_programs_and_rename(package: Path) -> None:
@@ -92,7 +92,7 @@ def test_interfaces_and_python_packages_are_found() -> None:
 
 def test_auto_package_installs_to_share(package: Path) -> None:
     cmake = read_cmake(SourceText("CMakeLists.txt", "project(arm)\nament_auto_package(INSTALL_TO_SHARE launch)\n"))
-    assert [file.destination for file in cmake.installed(package)] == ["share/arm/launch/show.launch.py"]
+    assert [file.destination for file in cmake.installed_files(package)] == ["share/arm/launch/show.launch.py"]
 
 
 @pytest.mark.parametrize(
@@ -170,7 +170,7 @@ def test_configured_files_are_installed(package: Path) -> None:
         "install(FILES ${CMAKE_CURRENT_BINARY_DIR}/limits.yaml DESTINATION share/arm)",
         package,
     )
-    (file,) = install_rules.installed(package)
+    (file,) = install_rules.installed_files(package)
     assert (file.source, file.destination) == ("limits.yaml.in", "share/arm/limits.yaml")
     assert file.text(package) == "arm: 2\n"
 
@@ -180,7 +180,7 @@ def test_compiled_targets_are_listed_and_other_rules_read(package: Path) -> None
     install_rules = rules(text + "install(DIRECTORY launch DESTINATION share/arm)", package)
     assert install_rules.compiled == ["move", "kinematics"]
     assert install_rules.executables == {"move"}
-    assert [file.source for file in install_rules.installed(package)] == ["launch/show.launch.py"]
+    assert [file.source for file in install_rules.installed_files(package)] == ["launch/show.launch.py"]
 
 
 @pytest.mark.parametrize(
@@ -200,7 +200,7 @@ def test_unknown_values_are_reported(package: Path, text: str, message: str) -> 
 
 def test_missing_files_are_reported_unless_optional(package: Path) -> None:
     with pytest.raises(FileNotFoundError, match="meshes"):
-        list(rules("install(DIRECTORY meshes DESTINATION share/arm)").installed(package))
+        list(rules("install(DIRECTORY meshes DESTINATION share/arm)").installed_files(package))
     for text in ("install(FILES none DESTINATION x OPTIONAL)", "if(A)\ninstall(FILES none DESTINATION x)\nendif()"):
         assert copied(text, package) == {}
 
@@ -398,7 +398,7 @@ _DONE_BY_CMAKE = [
 def test_supported_cmake_commands_match_cmake(package: Path, text: str, destinations: list[str]) -> None:
     install_rules = rules(text, package)
     assert install_rules.is_complete, install_rules.unknown
-    assert sorted(file.destination for file in install_rules.installed(package)) == destinations
+    assert sorted(file.destination for file in install_rules.installed_files(package)) == destinations
 
 
 @pytest.mark.parametrize(
@@ -424,7 +424,7 @@ def test_files_generated_by_build_are_installed(package: Path) -> None:
         "install(FILES ${PROJECT_BINARY_DIR}/note DESTINATION share/arm)",
         package,
     )
-    written = {file.destination: file.text(package) for file in install_rules.installed(package)}
+    written = {file.destination: file.text(package) for file in install_rules.installed_files(package)}
     assert written == {"share/arm/made/a.urdf": "a", "share/arm/made/b.urdf": "b", "share/arm/note": "arm is built"}
 
 
@@ -439,7 +439,7 @@ def test_ament_commands_install_files(package: Path) -> None:
         "ament_python_install_module(scripts/run.py)",
         package,
     )
-    files = {file.destination: file for file in install_rules.installed(package)}
+    files = {file.destination: file for file in install_rules.installed_files(package)}
     index = "share/ament_index/resource_index"
     assert sorted(files) == [
         f"{index}/controllers__pluginlib__plugin/arm",

@@ -96,7 +96,7 @@ def test_layout_places_files_moved_by_cmake(moved: Path) -> None:
     share = finder_of(moved).share("arm")
     assert os.path.realpath(share / "urdf" / "arm.xacro") == str(moved / "description" / "urdf" / "arm.xacro")
     cmake = read_cmake(SourceText("CMakeLists.txt", CMAKE), moved)
-    installed = {file.destination.removeprefix("share/arm/") for file in cmake.installed(moved)}
+    installed = {file.destination.removeprefix("share/arm/") for file in cmake.installed_files(moved)}
     assert installed == {
         *("urdf/arm.xacro", "meshes/base.stl", "launch/show.launch.py", "config/arm.rviz", "config/limits.yaml"),
         "rviz/arm.rviz",
@@ -128,7 +128,7 @@ def test_only_moved_folders_are_searched(write: Callable[..., Path], monkeypatch
 
     monkeypatch.setattr(Path, "rglob", rglob)
     cmake = read_cmake(SourceText("CMakeLists.txt", STAYING), package)
-    sources = {file.destination: file.source for file in cmake.moved(package, "share/arm")}
+    sources = {file.destination: file.source for file in cmake.moved_files(package, "share/arm")}
     assert sources == {"share/arm/base.stl": "meshes/base.stl", "share/arm/rviz/other.rviz": "rviz/arm.rviz"}
     assert read == ["meshes"]
 

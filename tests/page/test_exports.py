@@ -20,7 +20,9 @@ async def served(tmp_path):
 
 
 async def exported(client, kind: str = "glb") -> dict:
-    await client.send("ask_export", format=kind, view={"cls": "rviz_default_plugins/Orbit", "name": "", "values": {}})
+    await client.send(
+        "request_export", format=kind, view={"cls": "rviz_default_plugins/Orbit", "name": "", "values": {}}
+    )
     while True:
         message = await client.receive()
         if isinstance(message, dict) and message["type"] in ("export_ready", "export_failed"):

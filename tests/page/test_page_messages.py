@@ -71,6 +71,6 @@ async def test_viewer_survives_random_page_messages(seed, tmp_path, monkeypatch)
             await client.drain(0.01)
             failures = [line for line in world.logged().splitlines() if "failed" in line or "Traceback" in line]
             assert failures == [], sent
-        await client.send("ask_configuration_text")
+        await client.send("request_configuration_text")
         text = (await client.until("configuration_text"))["text"]
         assert RvizConfig.parse(text).text() == text

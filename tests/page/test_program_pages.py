@@ -140,7 +140,7 @@ async def test_page_without_terminals_receives_no_program_pages(tmp_path, monkey
     monkeypatch.setattr("linkwright.page.server.may_be_own_user", lambda _: False)
     async with classroom(tmp_path) as world, page(world.viewer) as client, program() as server:
         await client.send("watch_program_pages")
-        assert "browser of the user" in (await client.until("terminals", folder=""))["why_not"]
+        assert "browser of the user" in (await client.until("terminals", folder=""))["refusal_reason"]
         assert not await server.embed(environment(world), "")
         assert "frame-ancestors 'none'" in await policy(server)
 

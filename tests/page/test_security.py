@@ -161,7 +161,7 @@ async def test_paths_do_not_lead_out_of_page_folder(served, target):
 
 
 async def test_only_static_page_is_served_without_token(served):
-    """What every wheel has in it; not one byte of what is shown."""
+    """The files of every wheel, and no data of the viewer."""
     for query in ("", "?token=", "?token=wrong"):
         status, body, _ = await raw(served.viewer, f"/ws{query}", token=False)
         assert status == 401
@@ -181,14 +181,14 @@ async def test_web_socket_requires_token(served):
 
 
 async def test_responses_set_no_cookies(served):
-    """Browsers would send it to every port of this host."""
+    """Browsers would send it to all ports of this host."""
     for target in ("/", "/ws", "/nothing", mesh_url(served.viewer)):
         for proto in ("http", "https"):
             assert "set-cookie" not in (await raw(served.viewer, target, X_Forwarded_Proto=proto))[2]
 
 
 async def test_mesh_url_contains_secret(served, robot, monkeypatch):
-    """Textures are fetched by image elements, which can show no token: their addresses are told to pages only."""
+    """Image elements fetch textures without a token: their addresses are sent to pages only."""
     address = mesh_url(served.viewer)
     assert (await raw(served.viewer, address, token=False))[:2] == (200, "solid arm")
     label, _, secret = address.split("/")[2].partition("~")
@@ -370,7 +370,7 @@ async def test_connected_page_does_not_time_out(served, monkeypatch):
 
 
 async def test_clients_that_read_nothing_use_little_memory(served, tmp_path, monkeypatch):
-    """The page is for everybody: its files are in memory once, and its readers make room for who has the token."""
+    """The page's files are public: they are in memory once, and their readers make room for clients with the token."""
     (tmp_path / "assets").mkdir()
     (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (4 << 20))
     server = served.viewer._server.web
@@ -401,7 +401,7 @@ async def test_clients_that_read_nothing_use_little_memory(served, tmp_path, mon
 
 
 async def test_slow_download_of_page_does_not_time_out(served, tmp_path, monkeypatch):
-    """Its files are fetched without the token: a slow line takes longer for them than a stranger has."""
+    """These files are fetched without the token, and a slow line takes longer than the limit for other clients."""
     monkeypatch.setattr("linkwright.page.access.PATIENCE", 0.1)
     (tmp_path / "assets").mkdir()
     (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (16 << 20))
@@ -530,7 +530,7 @@ async def test_message_flood_slows_only_its_sender(served):
 
 
 async def test_page_that_reads_nothing_uses_little_memory(served):
-    """Its outbox keeps the newest of each kind only."""
+    """Its outbox keeps only the newest message of each kind."""
     address = urlsplit(served.viewer.url)
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
     key = "dGhlIHNhbXBsZSBub25jZQ=="

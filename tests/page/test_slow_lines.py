@@ -140,7 +140,7 @@ async def publish_all(world, seconds: float, *, rate: float = 50.0, points: int 
 )
 @skipping
 async def test_robot_keeps_moving_over_one_megabit(answers, latest, seconds):
-    """Of a page that acknowledges nothing, as other programs, less is known."""
+    """Less is known about a page that acknowledges nothing, such as another program."""
     async with open_world(RvizConfig.parse(FILE)) as world, slow_line(world.viewer.url, MEGABIT) as url:
         async with watching(url, answers=answers) as watcher:
             began = watcher.now()

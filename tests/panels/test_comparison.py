@@ -182,7 +182,7 @@ async def test_source_text_of_both_descriptions_can_be_requested(tmp_path):
         assert message["items"] == []
         for side, name in (("old", "old.urdf"), ("new", "new.urdf")):
             file = str(tmp_path / name)
-            await client.send("ask_description_text", display=message[side]["display"], file=file)
+            await client.send("request_description_text", display=message[side]["display"], file=file)
             assert (await client.until("description_text", file=file))["text"] == NEW
         assert both.world.library.packages(both.world.display("RobotModel").text) is None
 

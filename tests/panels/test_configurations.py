@@ -99,7 +99,7 @@ async def test_configuration_is_loaded_from_text():
     async with opened() as (_, client):
         await client.send("load_configuration", name="mine.rviz", text="\ufeff" + TEXT, discard=False)
         await client.until("configuration", opened=2)
-        await client.send("ask_configuration_text")
+        await client.send("request_configuration_text")
         answer = await client.until("configuration_text")
         assert (answer["name"], answer["text"]) == ("untitled.rviz", TEXT)
 
@@ -118,15 +118,15 @@ async def test_folders_are_listed(tmp_path):
     (tmp_path / "b.rviz").touch()
     (tmp_path / "notes.txt").touch()
     async with opened(path=tmp_path / "a.rviz") as (_, client):
-        await client.send("ask_folder", path=None)
+        await client.send("request_folder", path=None)
         folder = await client.until("folder")
         assert (folder["path"], folder["parent"]) == (str(tmp_path), str(tmp_path.parent))
         assert folder["folders"][-1] == "deeper"
         assert (".hidden" in folder["folders"], folder["files"]) == (False, ["a.rviz", "b.rviz"])
-        await client.send("ask_folder", path="deeper")
+        await client.send("request_folder", path="deeper")
         assert (await client.until("folder"))["files"] == []
         for nowhere in ("/nowhere/at/all", "~nobody-at-all", "a\0b"):
-            await client.send("ask_folder", path=nowhere)
+            await client.send("request_folder", path=nowhere)
             assert "cannot list the folder" in (await client.until("configuration_refused"))["message"]
 
 

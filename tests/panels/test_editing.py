@@ -67,7 +67,7 @@ async def ask(client: Any, kind: str, answer: str, **fields: Any) -> dict[str, A
 
 
 async def parts(client: Any, link: str) -> dict[str, Any]:
-    return await ask(client, "ask_editable_parts", "editable_parts", display=DISPLAY, link=link)
+    return await ask(client, "request_editable_parts", "editable_parts", display=DISPLAY, link=link)
 
 
 async def preview(client: Any, number: int, part: str, name: str, **fields: Any) -> dict[str, Any]:
@@ -82,7 +82,7 @@ async def test_link_parts_have_numbers_and_locations(file: Path) -> None:
         describe(world, file)
         await client.until("description_changed")
         answer = await parts(client, "mast")
-        assert answer["why_not"] == ""
+        assert answer["refusal_reason"] == ""
         part_facts = [(part["part"], part["name"], part["title"], part["xyz"], part["rpy"]) for part in answer["parts"]]
         assert part_facts == [
             ("joint", "turn", "continuous", [0, 0, 0.25], [0, 0, 0.5]),
@@ -111,10 +111,10 @@ async def test_sdf_robot_cannot_be_edited(tmp_path: Path) -> None:
         describe(world, file)
         await client.until("description_changed")
         answer = await parts(client, "base")
-        assert "described in SDF" in answer["why_not"]
+        assert "described in SDF" in answer["refusal_reason"]
         refused = await preview(client, 1, "visual", "base", xyz=[0, 0, 1])
         assert refused["files"] == []
-        assert refused["refusal"]["message"] == answer["why_not"]
+        assert refused["refusal"]["message"] == answer["refusal_reason"]
 
 
 async def test_edit_is_previewed_written_and_undone(file: Path) -> None:
@@ -191,7 +191,7 @@ async def test_description_without_file_cannot_be_edited(file: Path) -> None:
         world.describe(ARM)
         await client.until("description_changed")
         answer = await parts(client, "base")
-        assert "linkwright view FILE" in answer["why_not"]
+        assert "linkwright view FILE" in answer["refusal_reason"]
         assert (await preview(client, 1, "joint", "shoulder", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT101"
 
 
@@ -206,7 +206,7 @@ async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pyte
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        assert "open on the machine with the files" in (await parts(client, "mast"))["why_not"]
+        assert "open on the machine with the files" in (await parts(client, "mast"))["refusal_reason"]
         assert (await preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT109"
         assert (await ask(client, "undo_edit", "edit_written"))["refusal"]["code"] == "EDIT109"
     assert content(file) == ROBOT

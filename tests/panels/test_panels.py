@@ -14,7 +14,7 @@ from tests.viewer.scene import page
 
 DISPLAYS = "Visualization Manager:\n  Displays: []\n"
 FIRST_OF_RVIZ = {"Selection": False, "Tool Properties": False}
-"""What is hidden in the window that RViz opens with."""
+"""The hidden panels of RViz's first window."""
 
 
 def parsed(geometry: str = "", panels: str = RVIZ_PANELS) -> RvizConfig:

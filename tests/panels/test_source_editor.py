@@ -63,9 +63,9 @@ async def save(client: Any, path: Path, version: int, text: str) -> dict[str, An
 async def test_source_file_is_read_written_and_undone(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         answer = await opened(world, client, file)
-        assert (answer["folder"], answer["why_not"]) == (str(file.parents[3]), "")
-        shown = await ask(client, "ask_source_file", "source_file", path=str(file))
-        assert (shown["text"], shown["version"], shown["why_not"]) == (ROBOT, 1, "")
+        assert (answer["folder"], answer["refusal_reason"]) == (str(file.parents[3]), "")
+        shown = await ask(client, "request_source_file", "source_file", path=str(file))
+        assert (shown["text"], shown["version"], shown["refusal_reason"]) == (ROBOT, 1, "")
         assert shown["uri"] == file.as_uri()
         written = await save(client, file, 1, ROBOT.replace("base", "body"))
         assert (written["refusal"], written["version"]) == (None, 2)
@@ -79,7 +79,7 @@ async def test_source_file_is_read_written_and_undone(file: Path) -> None:
 async def test_external_change_is_sent_and_not_overwritten(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         await opened(world, client, file)
-        await ask(client, "ask_source_file", "source_file", path=str(file))
+        await ask(client, "request_source_file", "source_file", path=str(file))
         write(file, ROBOT + "<!-- theirs -->")
         refused = await save(client, file, 1, "mine")
         assert refused["refusal"]["code"] == "EDIT107"
@@ -97,7 +97,7 @@ async def test_folder_is_listed_and_file_is_created(file: Path) -> None:
     (folder / "arm.stl").write_bytes(b"")
     async with open_world() as world, page(world.viewer) as client:
         await opened(world, client, file)
-        listed = await ask(client, "ask_source_folder", "source_folder", path=str(folder))
+        listed = await ask(client, "request_source_folder", "source_folder", path=str(folder))
         assert (listed["folders"], listed["files"]) == (["urdf"], ["package.xml"])
         new = folder / "config" / "arm.yaml"
         created = await ask(client, "create_source_file", "source_file_written", number=1, path=str(new))
@@ -111,14 +111,14 @@ async def test_missing_file_is_created_with_first_text(file: Path) -> None:
     new, other = (file.parents[1] / "launch" / name for name in ("new.launch.py", "other.launch.py"))
     async with open_world() as world, page(world.viewer) as client:
         await opened(world, client, file)
-        begun = await ask(client, "ask_source_file", "source_file", path=str(new))
+        begun = await ask(client, "request_source_file", "source_file", path=str(new))
         assert (begun["text"], begun["is_new"]) == (None, True)
         assert not new.parent.exists()
         written = await save(client, new, begun["version"], "x = 1\n")
         assert (written["refusal"], new.read_text()) == (None, "x = 1\n")
         written = await save(client, new, written["version"], "x = 2\n")
         assert (written["refusal"], new.read_text()) == (None, "x = 2\n")
-        begun = await ask(client, "ask_source_file", "source_file", path=str(other))
+        begun = await ask(client, "request_source_file", "source_file", path=str(other))
         write(other, "of another program\n")
         written = await save(client, other, begun["version"], "mine\n")
         assert written["refusal"] is not None
@@ -133,12 +133,12 @@ async def test_files_outside_sources_are_neither_read_nor_created(file: Path, pa
     path = path.format(ws=workspace)
     async with open_world() as world, page(world.viewer) as client:
         await opened(world, client, file)
-        shown = await ask(client, "ask_source_file", "source_file", path=path)
+        shown = await ask(client, "request_source_file", "source_file", path=path)
         assert shown["text"] is None
-        assert "outside the workspace" in shown["why_not"]
+        assert "outside the workspace" in shown["refusal_reason"]
         created = await ask(client, "create_source_file", "source_file_written", number=1, path=path + "x")
         assert created["refusal"]["code"] == "EDIT106"
-        assert (await ask(client, "ask_source_folder", "source_folder", path=str(Path(path).parent)))["files"] == []
+        assert (await ask(client, "request_source_folder", "source_folder", path=str(Path(path).parent)))["files"] == []
 
 
 def test_symlink_out_of_workspace_is_not_followed(file: Path, tmp_path: Path) -> None:
@@ -152,7 +152,7 @@ async def test_workspace_can_be_edited_without_description(tmp_path: Path) -> No
     async with open_world() as world, page(world.viewer) as client:
         world.viewer.add_feature(SourceEditorFeature).edit_workspace(tmp_path)
         answer = await ask(client, "open_editor", "editor_opened", file=str(tmp_path))
-        assert (answer["folder"], answer["why_not"]) == (real(tmp_path), "")
+        assert (answer["folder"], answer["refusal_reason"]) == (real(tmp_path), "")
         new = tmp_path / "src" / "new.py"
         created = await ask(client, "create_source_file", "source_file_written", number=1, path=str(new))
         assert (created["refusal"], new.read_text()) == (None, "")
@@ -165,14 +165,14 @@ async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pyte
     monkeypatch.setattr("linkwright.page.server.is_local_connection", lambda _: False)
     async with open_world() as world, page(world.viewer) as client:
         answer = await opened(world, client, file)
-        assert "only in pages that are open on the machine" in answer["why_not"]
+        assert "only in pages that are open on the machine" in answer["refusal_reason"]
 
 
 async def test_missing_lsp_extra_is_reported(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(extras.EXTRAS, "lsp", "no_such_module")
     async with open_world() as world, page(world.viewer) as client:
         answer = await opened(world, client, file)
-        assert answer["why_not"].startswith("the editor needs the language server: run ")
+        assert answer["refusal_reason"].startswith("the editor needs the language server: run ")
 
 
 async def test_description_without_file_cannot_be_edited() -> None:
@@ -180,7 +180,7 @@ async def test_description_without_file_cannot_be_edited() -> None:
         world.describe(ARM)
         await client.until("description_changed")
         answer = await ask(client, "open_editor", "editor_opened", file="<robot_description>")
-        assert "linkwright view FILE" in answer["why_not"]
+        assert "linkwright view FILE" in answer["refusal_reason"]
 
 
 async def test_language_server_answers_through_page(file: Path) -> None:
@@ -188,8 +188,8 @@ async def test_language_server_answers_through_page(file: Path) -> None:
         answer = await opened(world, client, file)
         request = {"jsonrpc": "2.0", "id": 1, "method": "initialize"}
         params = {"processId": None, "rootUri": answer["uri"], "capabilities": {}}
-        await client.send("ask_language_server", content=json.dumps({**request, "params": params}))
-        reply = json.loads((await client.until("language_server_answer"))["content"])
+        await client.send("language_server_input", content=json.dumps({**request, "params": params}))
+        reply = json.loads((await client.until("language_server_output"))["content"])
         assert reply["id"] == 1
         assert reply["result"]["capabilities"]["hoverProvider"]
 

@@ -17,16 +17,16 @@ from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, Madgwic
 
 angles = st.floats(-1.4, 1.4)
 DIP = 1.0
-"""How far below the horizon the magnetic field points, rad."""
+"""The angle of the magnetic field below the horizon, in rad."""
 
 
 def acceleration_at_rest(orientation, world=WorldFrame.ENU):
-    """What an accelerometer measures at rest."""
+    """Return the reading of an accelerometer at rest."""
     return rotate(quaternion_inverse(orientation), (0.0, 0.0, GRAVITY * world.up))
 
 
 def field(orientation, world=WorldFrame.ENU):
-    """What a magnetometer measures."""
+    """Return the reading of a magnetometer."""
     level, down = cos(DIP), -sin(DIP) * world.up
     return rotate(
         quaternion_inverse(orientation), (0.0, level, down) if world is WorldFrame.ENU else (level, 0.0, down)

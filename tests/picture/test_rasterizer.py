@@ -9,7 +9,7 @@ from linkwright.picture.rasterizer import DepthBuffer, ScreenTriangles, fragment
 
 def triangles(points: list[tuple[float, float, float]]) -> ScreenTriangles:
     x, y, nearness = np.array(points, float).T
-    return ScreenTriangles.of(x, y, nearness, np.arange(len(points)).reshape(-1, 3))
+    return ScreenTriangles.from_faces(x, y, nearness, np.arange(len(points)).reshape(-1, 3))
 
 
 def test_adjacent_triangles_cover_each_sample_once() -> None:
@@ -40,7 +40,7 @@ def test_nearest_triangle_is_kept_at_each_sample() -> None:
         buffer = DepthBuffer(20, 0, 20, 1.0, 0.0)
         for index in order:
             buffer.add(crossing, np.array([index]))
-        seen = buffer.seen(1)
+        seen = buffer.visible_triangles(1)
         assert seen is not None
         row = seen.triangles[seen.y == 0.5]
         assert row.tolist() == [1] * 10 + [0] * 10 or row.tolist() == [1] * 10 + [0] * 9
@@ -49,7 +49,7 @@ def test_nearest_triangle_is_kept_at_each_sample() -> None:
 def test_triangles_are_clipped_at_borders() -> None:
     buffer = DepthBuffer(10, 5, 8, 1.0, 0.0)
     buffer.add(triangles([(-1e6, -1e6, 0.5), (1e6, -1e6, 0.5), (0, 1e6, 0.5)]), np.array([0]))
-    seen = buffer.seen(1)
+    seen = buffer.visible_triangles(1)
     assert seen is not None
     assert seen.mask.all()
     assert seen.mask.shape == (3, 10)
@@ -58,4 +58,4 @@ def test_triangles_are_clipped_at_borders() -> None:
 def test_triangle_seen_edge_on_has_no_samples() -> None:
     buffer = DepthBuffer(10, 0, 10, 1.0, 0.0)
     buffer.add(triangles([(1, 1, 0.0), (9, 9, 1.0), (5, 5, 0.5)]), np.array([0]))
-    assert buffer.seen(1) is None
+    assert buffer.visible_triangles(1) is None

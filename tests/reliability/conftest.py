@@ -23,7 +23,7 @@ ROS_VARIABLES = (
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Where there is no DDS wheel, processes do not meet."""
+    """Skip tests with several processes if there is no DDS wheel."""
     if not dds.is_available():
         for item in items:
             if Path(__file__).parent in item.path.parents:
@@ -32,7 +32,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture
 def machine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Machine]:
-    """Processes in a domain of this worker's; none of them outlives the test."""
+    """Return the processes in a domain of this worker; all end with the test."""
     for name in ROS_VARIABLES:
         monkeypatch.delenv(name, raising=False)
     machine = Machine(tmp_path, own_domain())

@@ -24,7 +24,7 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from linkwright.wire.dds.settings import read_settings
-from tests.wire.ros_peer import described, raw, text
+from tests.wire.ros_peer import as_bytes, make_type, text
 
 ROUNDS = 40
 HEADER = b"\0\1\0\0"
@@ -37,7 +37,7 @@ def writer(participant: DomainParticipant, topic: str, kind: type, qos: Qos) -> 
 
 
 def bodies(lottery: random.Random) -> list[bytes]:
-    """Bytes that are hardly any message, each with an encapsulation header that Cyclone lets through."""
+    """Return bytes that are hardly a message, each with an encapsulation header that Cyclone accepts."""
     packets = [HEADER + lottery.randbytes(4 * lottery.randrange(1, 40)) for _ in range(ROUNDS)]
     packets += [HEADER + struct.pack("<I", length) + bytes(4) for length in (2**32 - 1, 2**31, 10_000_000, 0)]
     packets += [HEADER + struct.pack("<I", 3) + bytes([0xFF, byte, 0, 0]) for byte in range(1, 60)]
@@ -46,7 +46,7 @@ def bodies(lottery: random.Random) -> list[bytes]:
 
 
 def announcements(participant: bytes) -> list[bytes]:
-    """What a participant might say of its nodes, in the layout of Humble, with names that no node can have."""
+    """Return possible announcements of a participant in the layout of Humble, with impossible node names."""
 
     def name(value: bytes) -> bytes:
         return struct.pack("<I", len(value) + 1) + value + bytes(4 - len(value) % 4)
@@ -59,8 +59,8 @@ def announcements(participant: bytes) -> list[bytes]:
     return messages
 
 
-def shout(lottery: random.Random, first_port: int) -> None:
-    """Datagrams to the ports of the first participants of the domain."""
+def send_datagrams(lottery: random.Random, first_port: int) -> None:
+    """Send datagrams to the ports of the first participants of the domain."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         for port in range(first_port, first_port + 20):
             for _ in range(20):
@@ -74,15 +74,15 @@ def main() -> None:
     domain = Domain(number, read_settings(domain_id=number).configurations[0])
     participant = DomainParticipant(number)
     header = {"client_guid": types.uint64, "sequence_number": types.int64}
-    string = raw(described("std_msgs.msg.dds_.String_", {"data": str}))
-    request = raw(described("std_srvs.srv.dds_.SetBool_Request_", {**header, "data": bool}))
+    string = as_bytes(make_type("std_msgs.msg.dds_.String_", {"data": str}))
+    request = as_bytes(make_type("std_srvs.srv.dds_.SetBool_Request_", {**header, "data": bool}))
     prefix = "rmw_dds_common.msg.dds_."
-    gid = described(prefix + "Gid_", {"data": types.array[types.uint8, 24]})
+    gid = make_type(prefix + "Gid_", {"data": types.array[types.uint8, 24]})
     names = {"node_namespace": types.bounded_str[256], "node_name": types.bounded_str[256]}
     gids = {"reader_gid_seq": types.sequence[gid], "writer_gid_seq": types.sequence[gid]}
-    node = described(prefix + "NodeEntitiesInfo_", {**names, **gids})
+    node = make_type(prefix + "NodeEntitiesInfo_", {**names, **gids})
     members = {"gid": gid, "node_entities_info_seq": types.sequence[node]}
-    info = raw(described(prefix + "ParticipantEntitiesInfo_", members))
+    info = as_bytes(make_type(prefix + "ParticipantEntitiesInfo_", members))
     lottery = random.Random(7)
     writers = {
         "rt/words": writer(participant, "rt/words", string, RELIABLE),
@@ -93,7 +93,7 @@ def main() -> None:
     while time.monotonic() < limit and not all(writer.get_matched_subscriptions() for writer in writers.values()):
         time.sleep(0.02)
     print("matched", *(name for name, writer in writers.items() if writer.get_matched_subscriptions()), flush=True)
-    shout(lottery, 7400 + 250 * number + 10)
+    send_datagrams(lottery, 7400 + 250 * number + 10)
     for name, data_writer in writers.items():
         written = 0
         for body in bodies(lottery) + announcements(participant.guid.bytes):

@@ -1,4 +1,4 @@
-"""Real processes: the `linkwright` command and users' programs, and what is left of them."""
+"""Real processes: the `linkwright` command and users' programs, and the processes that they leave."""
 
 from __future__ import annotations
 
@@ -76,11 +76,11 @@ class Running:
         return "".join(self.lines)
 
     def count(self, text: str) -> int:
-        """How many lines have a text in them."""
+        """Return the number of lines that contain a text."""
         return sum(text in line for line in self.lines)
 
     def last_number(self, word: str) -> int:
-        """The number behind a word in the last line that begins with it; -1 when there is none."""
+        """Return the number after a word in the last line that begins with it, or -1."""
         rows = [line.split() for line in tuple(self.lines) if line.split()[:1] == [word]]
         return int(rows[-1][1]) if rows else -1
 
@@ -95,7 +95,7 @@ class Running:
         return self.wait()
 
     def kill(self) -> None:
-        """As ``kill -9`` does."""
+        """Kill the process as ``kill -9`` does."""
         self.process.kill()
         self.process.wait()
 
@@ -106,11 +106,11 @@ class Running:
         return status
 
     def left_behind(self) -> list[psutil.Process]:
-        """Processes that it started and that live on, wherever they are now, itself included."""
+        """Return the processes that it started and that still run, including itself."""
         return [process for process in psutil.process_iter() if _is_marked(process, self.mark)]
 
     def clean_up(self) -> None:
-        """Let nothing outlive the test, and close what was open."""
+        """End all remaining processes, and close all files."""
         for process in self.left_behind():
             with suppress(psutil.Error):
                 process.kill()
@@ -146,7 +146,7 @@ class Machine:
         }
         self._started: list[Running] = []
         self.before: tuple[str, ...] = ()
-        """What command lines begin with, such as a shell that prepares something and becomes the command."""
+        """The start of command lines, such as a shell that prepares something and becomes the command."""
 
     def command(self, *words: object, **variables: str) -> Running:
         """Start ``linkwright WORDS``."""
@@ -160,7 +160,7 @@ class Machine:
         return running
 
     def verb(self, *words: object, seconds: float = SECONDS, **variables: str) -> str:
-        """What ``linkwright WORDS`` prints; it must succeed in time."""
+        """Return the output of ``linkwright WORDS``, which must succeed in time."""
         running = self.command(*words, **variables)
         status = running.wait(seconds)
         assert status == 0, running.text
@@ -195,12 +195,12 @@ class Machine:
 
 
 def program(text: str) -> str:
-    """The text of a program around its class ``Program``."""
+    """Return the text of a program around its class ``Program``."""
     return PROGRAM.replace("{program}", textwrap.dedent(text).strip())
 
 
 def launch_file(*actions: str) -> str:
-    """A launch file with actions; ``rclpy_node(name, path)`` runs a program with respawn."""
+    """Return a launch file with actions; ``rclpy_node(name, path)`` runs a program with respawn."""
     lines = ",\n        ".join(actions)
     return (
         "import sys\nfrom launch import LaunchDescription\nfrom launch.actions import *\n"

@@ -39,13 +39,13 @@ COMMANDS = {
 
 @pytest.fixture
 def background(machine: Machine) -> Machine:
-    """Starts each process as a script does with ``&``."""
+    """Start each process as a script does with ``&``."""
     machine.before = ("sh", "-c", 'trap "" INT; exec "$@"', "sh")
     return machine
 
 
 def catches_interrupts(process: int) -> bool:
-    """Whether a process has a handler for SIGINT, by what Linux knows of it."""
+    """Return whether a process has a handler for SIGINT, according to Linux."""
     status = Path("/proc", str(process), "status").read_text(encoding="ascii")
     caught = next(line for line in status.splitlines() if line.startswith("SigCgt"))
     return bool(int(caught.split()[1], 16) & 1 << (signal.SIGINT - 1))
@@ -81,7 +81,7 @@ def test_background_user_node_ends_on_sigint(background: Machine) -> None:
 
 
 def test_process_in_background_launch_can_be_interrupted_alone(background: Machine) -> None:
-    """It is started as in a terminal, with SIGINT as the system has it, whoever started the launch."""
+    """It starts as in a terminal, with the system's default for SIGINT, however the launch was started."""
     path = background.write("speaker.py", program(SPEAKING))
     action = f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], output='screen')"
     running = background.launch(background.write("a.launch.py", launch_file(action)))

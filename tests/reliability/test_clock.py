@@ -81,7 +81,7 @@ def test_clock_jump_back_keeps_timers_and_clears_tf_buffer(machine: Machine) -> 
 
 
 def _after_jump(lines: list[str]) -> str:
-    """What was said since the clock jumped back."""
+    """Return the output since the clock jumped back."""
     lines = list(lines)
     ticks = [number for number, line in enumerate(lines) if line.startswith("tick") and int(line.split()[1]) >= 100_000]
     return "".join(lines[ticks[-1] :]) if ticks else ""

@@ -59,7 +59,7 @@ def test_flooded_topic_does_not_starve_another(machine: Machine) -> None:
 
 
 def test_blocking_subscriber_does_not_delay_others(machine: Machine) -> None:
-    """Its own process sleeps; the publisher's other subscribers and other topics go on."""
+    """Only its own process sleeps; other subscribers and topics continue."""
     sleeper = machine.program(
         """
         class Program(Node):
@@ -112,7 +112,7 @@ def test_blocking_subscriber_does_not_delay_others(machine: Machine) -> None:
 
 @pytest.mark.parametrize("size", [10, 20_000])
 def test_reliable_messages_are_not_lost_with_slow_subscriber(machine: Machine, size: int) -> None:
-    """A queue without an end: the flood is over long before the subscriber has read it."""
+    """An unlimited queue: the flood ends long before the subscriber has read it."""
     listener = machine.program(
         """
         class Program(Node):
@@ -218,7 +218,7 @@ def test_service_answers_while_process_is_flooded(machine: Machine) -> None:
 
 
 def test_stopped_process_does_not_block_publisher(machine: Machine) -> None:
-    """Stopped as a debugger stops it: the publisher goes on, and once it runs again it hears what comes then."""
+    """Stopped as by a debugger: the publisher continues, and the resumed process receives new messages."""
     talker = machine.program(
         """
         class Program(Node):

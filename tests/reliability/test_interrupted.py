@@ -1,4 +1,4 @@
-"""Ctrl-C at every moment: the end comes at once, with the right status, and nothing is left behind."""
+"""Ctrl-C at every moment: the program ends at once with the right status, and leaves nothing behind."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def test_launch_interrupted_at_random_startup_moments_ends_cleanly(machine: Mach
 @pytest.mark.slow
 @pytest.mark.parametrize("delay", [0.1, 0.2, 0.35, 0.6, 1.2])
 def test_interrupt_restores_terminal_settings(machine: Machine, delay: float) -> None:
-    """A launch and a recording, which reads keys, on a terminal of their own; Ctrl-C is typed there."""
+    """A launch and a recording, which reads keys, each on its own terminal, on which Ctrl-C is typed."""
     path = machine.write("a.launch.py", launch_file("Node(package='demo_nodes_cpp', executable='talker')"))
     bag = machine.folder / f"bag_{delay}"
     for words in (["launch", str(path)], ["bag", "record", "-a", "-o", str(bag)]):
@@ -223,7 +223,7 @@ def test_interrupted_recording_is_complete(machine: Machine) -> None:
 
 
 def test_interrupt_during_service_call_ends_client_and_server(machine: Machine) -> None:
-    """Both sides: who waits for the answer ends, and who is asked goes on and ends when told to."""
+    """The waiting client ends at once; the server continues, and ends when it is interrupted."""
     leave = machine.folder / "leave"
     server = machine.program(
         """

@@ -66,7 +66,7 @@ def test_busy_command_ends_on_interrupt(words: list[str], tmp_path: Path) -> Non
 
 
 def _work(process: psutil.Process) -> float:
-    """Seconds of the processor that a process and its children took until now."""
+    """Return the processor time of a process and its children so far, in seconds."""
     total = 0.0
     for worker in (process, *process.children(recursive=True)):
         with suppress(psutil.NoSuchProcess):

@@ -1,4 +1,4 @@
-"""What happens to the others when a process is killed with -9."""
+"""The other processes after a process was killed with -9."""
 
 from __future__ import annotations
 

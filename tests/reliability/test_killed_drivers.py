@@ -1,4 +1,4 @@
-"""A robot that is driven by another process: it stops when that is killed, and goes on when that has left."""
+"""A robot driven by another process: it stops when that is killed, and continues when that has left."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Launches beside each other, large ones, and what they show to others."""
+"""Simultaneous launches, large launches, and their visibility to other processes."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_late_subscriber_receives_description_and_static_transforms(machine: Mac
 
 
 def test_process_without_dds_works_in_isolation(machine: Machine) -> None:
-    """LINKWRIGHT_DDS=0: it works, has no socket that others could reach, and sees nobody."""
+    """LINKWRIGHT_DDS=0: the process works, has no socket for others, and discovers no nodes."""
     path = machine.write(
         "a.launch.py",
         launch_file(
@@ -127,7 +127,7 @@ def test_process_without_dds_works_in_isolation(machine: Machine) -> None:
 
 
 def test_launch_leaves_no_threads_or_processes(machine: Machine) -> None:
-    """Threads and processes of one that was started, looked at from outside, and interrupted."""
+    """The threads and processes of a started launch, seen from outside after it was interrupted."""
     program = machine.write("p.py", "import time\nprint('up', flush=True)\ntime.sleep(60)\n")
     path = machine.write(
         "a.launch.py",

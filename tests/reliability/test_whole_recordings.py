@@ -50,7 +50,7 @@ class Program(Node):
 
 
 def count(path) -> int:
-    """How many messages a recording has that is whole."""
+    """Return the number of messages in a complete recording."""
     with BagReader(path) as bag:
         message_count = sum(1 for _ in bag.messages())
         assert not bag.findings

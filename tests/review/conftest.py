@@ -18,7 +18,7 @@ def repository(tmp_path: Path) -> Repository:
 
 @pytest.fixture
 def package(repository: Repository) -> Repository:
-    """A repository with a commit of a package of an arm."""
+    """Return a repository with a commit of a package of an arm."""
     repository.commit(PACKAGE)
     return repository
 

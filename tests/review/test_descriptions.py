@@ -1,4 +1,4 @@
-"""What a review says of descriptions: with which arguments, what moved, what breaks, and what cannot be read."""
+"""Changes of descriptions in a review: arguments, moved parts, breaking changes, unreadable files."""
 
 from __future__ import annotations
 

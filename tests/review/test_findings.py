@@ -38,7 +38,7 @@ def test_new_and_fixed_findings_are_reported(package, compare):
     assert codes(compare(package, "HEAD~1..HEAD").fixed_findings) == ["LW705"]
 
 
-def test_nothing_is_fixed_in_a_robot_that_cannot_be_read_any_more(package, compare):
+def test_unreadable_robot_has_no_fixed_findings(package, compare):
     package.commit({SEGMENT: UNUSED, PATH: WITH_UNUSED})
     package.commit({PATH: WITH_UNUSED.replace("</robot>", "<</robot>")})
     result = compare(package, "HEAD~1..HEAD")
@@ -47,7 +47,7 @@ def test_nothing_is_fixed_in_a_robot_that_cannot_be_read_any_more(package, compa
     assert [finding.code for finding in result.new_findings if not finding.code.startswith("XML")] == []
 
 
-def test_nothing_is_new_in_a_robot_that_can_be_read_now(package, compare):
+def test_readable_robot_has_no_new_findings(package, compare):
     package.commit({SEGMENT: UNUSED, PATH: WITH_UNUSED.replace("</robot>", "<</robot>")})
     package.commit({PATH: WITH_UNUSED})
     result = compare(package, "HEAD~1..HEAD")
@@ -132,8 +132,8 @@ def generate_launch_description():
         {"arm_description/launch/arm_launch.py": None, "arm_description/launch/arm.launch.py": launch("alpha")}
     )
     result = compare(package, "HEAD~1..HEAD")
-    lost = "names 'launch/arm_launch.py' of 'arm_description', which does not exist any more"
-    assert sorted(subject.path for subject, change in result.breaking_changes if str(change.sentence) == lost) == [
+    sentence = "names 'launch/arm_launch.py' of 'arm_description', which does not exist any more"
+    assert sorted(subject.path for subject, change in result.breaking_changes if str(change.sentence) == sentence) == [
         "arm_description/launch/all.launch.py",
         "arm_description/launch/all.launch.xml",
     ]
@@ -156,9 +156,9 @@ def test_finding_that_moves_to_another_file_is_neither_new_nor_fixed(package, co
 def test_checks_that_stop_at_different_errors_find_nothing_new_in_unchanged_files(package, compare):
     bare = MACRO.replace("</robot>", '<property name="length" value="1"/></robot>')
     broken = ARM.replace("<xacro:include", 30 * '<link name="${lost_name}"/>' + "<xacro:include", 1)
-    lost = '<xacro:include filename="$(find lost_description)/lost.xacro"/>'
+    missing_include = '<xacro:include filename="$(find lost_description)/lost.xacro"/>'
     package.commit({PATH: broken, SEGMENT: bare})
-    package.commit({PATH: ARM.replace("<xacro:include", f"{lost}<xacro:include", 1)})
+    package.commit({PATH: ARM.replace("<xacro:include", f"{missing_include}<xacro:include", 1)})
     assert codes(compare(package, "HEAD~1..HEAD").new_findings) == ["PKG101"]
 
 

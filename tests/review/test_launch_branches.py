@@ -1,4 +1,4 @@
-"""What a review says of ``if`` statements in launch files in Python: they are conditions of the actions in them."""
+"""Changes of ``if`` statements in Python launch files in a review: they are conditions of the actions in them."""
 
 from __future__ import annotations
 

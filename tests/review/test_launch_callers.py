@@ -1,4 +1,4 @@
-"""What a review says of launch files that others include, move, require or write otherwise."""
+"""Changes of launch files that others include in a review: moved, with new requirements, or in another language."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a review says of actions of launch files in Python, XML and YAML, and of functions that make them."""
+"""Changes of launch actions in Python, XML and YAML in a review, and of functions that create actions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a review says of the nodes that a launch file starts: conditions, scripts and names that are not known."""
+"""Changes of the nodes in launch files in a review: conditions, scripts and unknown names."""
 
 from __future__ import annotations
 

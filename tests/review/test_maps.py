@@ -1,4 +1,4 @@
-"""What a review says of maps: the YAML file and the image are one thing."""
+"""Changes of maps in a review: the YAML file and its image belong together."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a review says of files that move inside their package, and of plugin descriptions that nobody finds."""
+"""Files that move inside their package in a review, and plugin descriptions without an export."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a review says of literal names in the sources of nodes."""
+"""Changes of literal names in the sources of nodes in a review."""
 
 from __future__ import annotations
 
@@ -60,14 +60,16 @@ FILES = {
         ("arm/arm/driver.py", '"home"', '"go_home"',
          ["service client 'home' (Trigger) renamed to 'go_home' (Trigger)"], False),
         ("arm/arm/driver.py", '"driver"', '"arm_driver"', ["node 'driver' renamed to 'arm_driver'"], True),
-        ("arm/arm/driver.py", '"enable"', 'self.name', [], False),
-        ("arm/arm/driver.py", "self.enable, 10", "self.enable, 1", [], False),
+        ("arm/arm/driver.py", '"enable"', 'self.name',
+         ["subscription 'enable' (Bool) has a computed name now: self.name"], False),
+        ("arm/arm/driver.py", "self.enable, 10", "self.enable, 1", ["subscription 'enable': QoS 10 -> 1"], False),
         ("arm/src/camera.cpp", '"image"', '"image_raw"',
          ["publisher 'image' (Image) renamed to 'image_raw' (Image)"], True),
         ("arm/src/camera.cpp", '"camera"', '"left_camera"', ["node 'camera' renamed to 'left_camera'"], True),
         ("arm/src/camera.cpp", '"rate", 10.0', '"rate", 20.0', ["parameter 'rate': default 10.0 -> 20.0"], False),
         ("arm/src/camera.cpp", "<Reach>", "<Grasp>", ["action 'reach': type Reach -> Grasp"], True),
-        ("arm/src/camera.cpp", '"image", rclcpp', "name_, rclcpp", [], False),
+        ("arm/src/camera.cpp", '"image", rclcpp', "name_, rclcpp",
+         ["publisher 'image' (Image) has a computed name now: name_"], False),
         ("arm/src/camera.cpp", '"old"', '"older"', [], False),
         ("arm/src/camera.cpp", "    service_ =", '    create_publisher<Bool>("ready", 1);\n    service_ =',
          ["publishers added: 'ready' (Bool)"], False),

@@ -1,4 +1,4 @@
-"""What a review says of launch files, worlds, parameters, interfaces, manifests, maps and meshes."""
+"""Changes of launch files, worlds, parameters, interfaces, manifests, maps and meshes in a review."""
 
 from __future__ import annotations
 

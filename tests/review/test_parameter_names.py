@@ -1,4 +1,4 @@
-"""Which changes of controllers' parameters and of bridges are breaking, and what they are called."""
+"""Breaking changes of the parameters of controllers and bridges, and their wording."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a review says of unexpanded descriptions: macros, arguments, and the elements that no robot shows."""
+"""Changes of unexpanded descriptions in a review: macros, arguments, and elements that no robot uses."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ GONE = "descriptions that call the macro cannot be expanded"
 
 @pytest.fixture
 def library(package):
-    """The package with a macro that none of its robots calls."""
+    """Return the package with a macro that none of its robots calls."""
     package.commit({TOOL: GRIPPER})
     return package
 

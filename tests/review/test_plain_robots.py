@@ -1,4 +1,4 @@
-"""What a review says of plain URDF: expressions for xacro, added links, and meshes under other paths."""
+"""Changes of plain URDF in a review: expressions for xacro, added links, and meshes under other paths."""
 
 from __future__ import annotations
 

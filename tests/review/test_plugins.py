@@ -1,4 +1,4 @@
-"""What a review says of plugins that a description gains or loses: their names and topics."""
+"""Plugins that a description gains or loses in a review, with their names and topics."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a review reads and computes only once, or not at all, so that it takes seconds in large repositories."""
+"""Work that a review does only once or not at all, so that large repositories take seconds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a review says of packages with new names and folders: what follows from these alone is one change."""
+"""Packages with new names and folders in a review: all consequences are one change."""
 
 from __future__ import annotations
 

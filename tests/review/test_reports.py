@@ -25,7 +25,7 @@ HOSTILE = "<img src=x onerror=alert(1)> @octocat #12 [link](http://x) `code` | *
 
 @pytest.fixture
 def changed(package):
-    """A repository whose last commit changes a macro that two robots share, and renames a link of one."""
+    """Return a repository whose last commit changes a macro of two robots, and renames a link of one."""
     package.commit({"arm_description/urdf/other.urdf.xacro": OTHER})
     package.commit(
         {

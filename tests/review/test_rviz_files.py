@@ -1,4 +1,4 @@
-"""What a review says of configurations of RViz."""
+"""Changes of RViz configurations in a review."""
 
 from __future__ import annotations
 

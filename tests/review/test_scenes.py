@@ -37,7 +37,7 @@ def stl(height: float) -> bytes:
 
 @pytest.fixture
 def boxed(repository: Repository) -> Repository:
-    """A repository with a robot whose mesh has changed in the last commit but one."""
+    """Return a repository with a robot whose mesh changed in the last commit but one."""
     repository.commit({**PACKAGE, PATH: URDF.format(uri=URI), "arm_description/meshes/a.stl": stl(1.0)})
     repository.commit({"arm_description/meshes/a.stl": stl(2.0)})
     repository.commit({"README.md": "Later."})

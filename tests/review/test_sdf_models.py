@@ -1,4 +1,4 @@
-"""What a review says of models in SDF: mass properties, totals, the values of added elements, and images."""
+"""Changes of SDF models in a review: mass properties, totals, values of added elements, and images."""
 
 from __future__ import annotations
 

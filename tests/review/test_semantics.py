@@ -1,4 +1,4 @@
-"""What a review says of semantic descriptions (SRDF)."""
+"""Changes of semantic descriptions (SRDF) in a review."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which versions a range names, and repositories that are shallow, hostile or incomplete."""
+"""The versions that a range names, and shallow, hostile or incomplete repositories."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a review says of worlds and models in SDF: renamed elements, topics, prefixes."""
+"""Changes of SDF worlds and models in a review: renamed elements, topics, prefixes."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ STEP = 0.1
 
 
 def flat(nested: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Parameters by names with dots."""
+    """Return parameters by dotted names."""
     parameters: dict[str, Any] = {}
     for name, value in nested.items():
         parameters.update(flat(value, f"{prefix}{name}.") if isinstance(value, dict) else {prefix + name: value})
@@ -64,7 +64,7 @@ class House(SteppedSimulation):
         return options
 
     def advance_and_watch(self, seconds: float) -> None:
-        """Let time pass, and note what mbot's body and wheels touch but the ground."""
+        """Advance the time, and record the contacts of mbot's body and wheels except with the ground."""
         for _ in range(round(seconds / STEP)):
             self.advance(STEP)
             model, data = self.simulation.model, self.simulation.data
@@ -91,7 +91,7 @@ class House(SteppedSimulation):
         return results
 
     def go_to(self, x: float, y: float, yaw: float = 0.0, *, seconds: float = 120.0) -> GoalStatus:
-        """Go to a pose; what became of it."""
+        """Navigate to a pose, and return the result."""
         results = self.send(x, y, yaw)
         for _ in range(round(seconds)):
             self.advance_and_watch(1.0)
@@ -100,10 +100,10 @@ class House(SteppedSimulation):
         return GoalStatus.EXECUTING
 
     def place(self) -> tuple[float, float]:
-        """Where mbot really is."""
+        """Return mbot's true position."""
         x, y, *_ = self.robot_pose()
         return x, y
 
     def logged(self) -> list[str]:
-        """What the nodes logged."""
+        """Return the log of the nodes."""
         return [record.text for record in self.log]

@@ -1,4 +1,4 @@
-"""Real colcon builds the robot package, and what it installs is complete."""
+"""The robot package in real colcon: it is built, and its installed files are complete."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ INSTALLED_FOLDERS = ("launch", "meshes", "rviz", "urdf")
 
 @pytest.fixture(scope="module", params=["copied", "symlinked"])
 def workspace(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A workspace with a copy of the package, built both ways."""
+    """Return a workspace with a copy of the package, built both ways."""
     workspace = tmp_path_factory.mktemp("ros2_ws")
     source = workspace / "src" / PACKAGE.name
     shutil.copytree(PACKAGE, source, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))

@@ -1,4 +1,4 @@
-"""The package of control nodes: each drives mbot through a simulated world and is judged by what came of it."""
+"""The package of control nodes: each drives mbot through a simulated world, and its motion is checked."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ RADIUS = 0.2
 
 @pytest.fixture
 def load(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
-    """Imports a module of the package, as a workspace that is sourced would."""
+    """Return a function that imports a module of the package, as a sourced workspace does."""
     standins.activate()
     monkeypatch.syspath_prepend(str(CONTROL_PACKAGE))
 
@@ -48,7 +48,7 @@ def world(name: str) -> Path:
 
 
 def place(test: SteppedSimulation) -> tuple[float, float]:
-    """Where the robot really is."""
+    """Return the robot's true position."""
     x, y, *_ = test.robot_pose()
     return x, y
 
@@ -258,7 +258,7 @@ def test_colcon_installs_package_completely(tmp_path: Path) -> None:
 
 
 def _pieces() -> list[tuple[float, float]]:
-    """The middles of the pieces of the line, x and y in m."""
+    """Return the centers of the line's pieces, x and y in m."""
     model = ET.parse(world("line_track")).find(".//model[@name='line']")
     assert model is not None
     poses = [pose.text.split() for pose in model.iterfind(".//visual/pose") if pose.text]

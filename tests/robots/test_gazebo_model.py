@@ -76,8 +76,12 @@ def test_single_sensor_is_mounted_as_in_tutorial(sensor: str) -> None:
 def test_base_matches_tutorial() -> None:
     base, ours = load(PACKAGE / "urdf" / "mbot_base.urdf"), robot_of({})
     for link in base.links.values():
-        assert [visual.geometry for visual in ours.links[link.name].visuals] == [visual.geometry for visual in link.visuals]
-        assert [collision.geometry for collision in ours.links[link.name].collisions] == [visual.geometry for visual in link.visuals]
+        assert [visual.geometry for visual in ours.links[link.name].visuals] == [
+            visual.geometry for visual in link.visuals
+        ]
+        assert [collision.geometry for collision in ours.links[link.name].collisions] == [
+            visual.geometry for visual in link.visuals
+        ]
     for joint in base.joints.values():
         assert ours.joints[joint.name].origin == joint.origin
 
@@ -110,7 +114,7 @@ def test_optical_frames_look_along_sensor_x_axis() -> None:
 
 
 def height(robot: Robot, link: str) -> float:
-    """How high a link's frame is above the footprint, in meters; the model's fixed joints are not turned."""
+    """Return the height of a link's frame above the footprint in meters; the model's fixed joints are not rotated."""
     by_child = {joint.child: joint for joint in robot.joints.values()}
     above = 0.0
     while link in by_child:
@@ -120,7 +124,7 @@ def height(robot: Robot, link: str) -> float:
 
 
 def extents(robot: Robot) -> dict[str, tuple[float, float]]:
-    """The lowest and the highest point of each link's collision above the ground, in meters."""
+    """Return the lowest and the highest point of each link's collision above the ground, in meters."""
     extents_by_link = {}
     for link in robot.links.values():
         for collision in link.collisions:

@@ -158,7 +158,7 @@ def _numbers(geometry: Any) -> list[Any]:
 
 
 def _approximately(value: Any) -> Any:
-    """The same structure with every number replaced by one that accepts a difference of a ten-millionth."""
+    """Return the same structure; each number accepts a difference of a ten-millionth."""
     if isinstance(value, dict):
         return {key: _approximately(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):

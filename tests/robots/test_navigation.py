@@ -1,4 +1,4 @@
-"""mbot goes to poses in the house, with the parameters and the launch file of my_robot_navigation."""
+"""Navigation of mbot in the house, with the parameters and the launch file of my_robot_navigation."""
 
 from __future__ import annotations
 

@@ -15,21 +15,23 @@ import pytest
 from linkwright import standins
 from linkwright.cli.command import main
 from linkwright.nodes import EXECUTABLES
-from tests.vision.nodes.seeking_robot import SeekingRobot
 from tests.places import CONTROL_PACKAGE, VISION_PACKAGE
 from tests.robots.workspaces import colcon_build
+from tests.vision.nodes.seeking_robot import SeekingRobot
 
 pytest.importorskip("mujoco")
 
 
 @pytest.fixture
 def follow_object(monkeypatch: pytest.MonkeyPatch) -> Iterator[ModuleType]:
-    """The module of the package, imported as a workspace that is sourced would."""
+    """Import the module of the package, as a sourced workspace does."""
     standins.activate()
     for package in (CONTROL_PACKAGE, VISION_PACKAGE):
         monkeypatch.syspath_prepend(str(package))
     yield importlib.import_module("my_robot_vision.follow_object")
-    for name in [module for module in sys.modules if module.partition(".")[0] in ("my_robot_control", "my_robot_vision")]:
+    for name in [
+        module for module in sys.modules if module.partition(".")[0] in ("my_robot_control", "my_robot_vision")
+    ]:
         del sys.modules[name]
 
 

@@ -1,4 +1,4 @@
-"""mbot does what it is told in the playground, with the commands and the launch file of my_robot_voice."""
+"""Voice commands for mbot in the playground, with the commands and the launch file of my_robot_voice."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import pytest
 from linkwright.cli import main
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
-from linkwright.speech.nodes.voice_commander import VoiceCommander
 from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
+from linkwright.speech.nodes.voice_commander import VoiceCommander
 from linkwright.testing import AsyncSteppedSimulation
 from tests.places import GAZEBO_PACKAGE, VOICE_PACKAGE
 from tests.robots.workspaces import colcon_build, sourced

@@ -34,7 +34,7 @@ def colcon_build(workspace: Path, package: str, *options: str) -> None:
 
 
 def sourced(workspace: Path, variable: str) -> str:
-    """The value of an environment variable after ``source install/setup.bash``."""
+    """Return the value of an environment variable after ``source install/setup.bash``."""
     script = f'source install/setup.bash && printf %s "${variable}"'
     environment = {"PATH": os.environ["PATH"], "HOME": str(workspace)}
     result = subprocess.run(

@@ -43,7 +43,7 @@ def poses(draw) -> Pose:
 
 
 def _workflow(others: tuple[str, ...]) -> SearchStrategy[Workflow | None]:
-    fields = {name: of(Workflow, name) for name in Workflow.__slots__ if name not in others}
+    fields = {name: values_of(Workflow, name) for name in Workflow.__slots__ if name not in others}
     return st.none() | st.builds(Workflow, **fields)
 
 
@@ -65,7 +65,7 @@ def _hints(kind: type) -> dict[str, Any]:
     return get_type_hints(kind)
 
 
-def of(kind: type, name: str) -> SearchStrategy[Any]:
+def values_of(kind: type, name: str) -> SearchStrategy[Any]:
     """Generate the values of a field; usual values are frequent."""
     if (kind, name) in _SPECIAL:
         return _SPECIAL[kind, name]
@@ -99,5 +99,5 @@ def objects(kind: type) -> SearchStrategy[Any]:
     if kind is Pbr:
         return st.builds(Pbr, metal=_workflow(_SPECULAR), specular=_workflow(_METAL))
     return st.deferred(
-        lambda: st.builds(kind, **{field.name: of(kind, field.name) for field in dataclasses.fields(kind)})
+        lambda: st.builds(kind, **{field.name: values_of(kind, field.name) for field in dataclasses.fields(kind)})
     )

@@ -41,7 +41,7 @@ NAMES = {
 pytestmark = pytest.mark.skipif(not ITEMS, reason="the collection of worlds is not beside the repository")
 
 
-def examined(item):
+def examine_item(item):
     path = WORLDS / item["entry"]
     folders = dict.fromkeys(str(WORLDS / path) for path in item["model_paths"])
     finder = PackageFinder(start=path.parent, environment={})
@@ -58,12 +58,14 @@ def _is_ours(known) -> bool:
 @pytest.mark.parametrize("item", FILES)
 def test_corpus_world_contents_match_known_facts(item):
     facts = item["facts"]
-    reading = examined(item)
+    reading = examine_item(item)
     assert reading.sdf is not None
     world = reading.sdf.worlds[0]
     links = list(placed_links(world))
-    collisions = Counter(NAMES[type(collision.geometry)] for place in links for collision in place.link.collisions)
-    visuals = Counter(NAMES[type(visual.geometry)] for place in links for visual in place.link.visuals)
+    collisions = Counter(
+        NAMES[type(collision.geometry)] for placed_link in links for collision in placed_link.link.collisions
+    )
+    visuals = Counter(NAMES[type(visual.geometry)] for placed_link in links for visual in placed_link.link.visuals)
     assert len(links) == facts["links"]
     assert (dict(collisions), dict(visuals)) == (facts["collisions"], facts["visuals"])
     assert Counter(light.type for light in world.lights) == Counter(facts["lights"])
@@ -73,26 +75,28 @@ def test_corpus_world_contents_match_known_facts(item):
 
 @pytest.mark.parametrize("item", FILES)
 def test_corpus_model_poses_match_known_facts(item):
-    reading = examined(item)
+    reading = examine_item(item)
     assert reading.sdf is not None
     world = with_saved_state(reading.sdf.worlds[0])
     frames = Frames(world)
-    known = {model["name"]: model for model in item["facts"]["top_level_models"] if not model.get("pose_attributes")}
+    facts_by_name = {
+        model["name"]: model for model in item["facts"]["top_level_models"] if not model.get("pose_attributes")
+    }
     for model in world.models:
-        if model.name in known:
-            pose = known[model.name]["pose"]
+        if model.name in facts_by_name:
+            pose = facts_by_name[model.name]["pose"]
             expected = transform_of(Pose(tuple(pose[:3]), tuple(pose[3:])))
             place = frames.pose(model.name)
             sign = 1.0 if sum(a * b for a, b in zip(place[3:], expected[3:], strict=True)) > 0 else -1.0
             assert place[:3] == pytest.approx(expected[:3], abs=1e-9)
             assert [sign * angle for angle in place[3:]] == pytest.approx(expected[3:], abs=1e-9)
-    there = {model.name for model in (*world.models, *world.lights)}
+    names = {model.name for model in (*world.models, *world.lights)}
     left_out = {include.uri for include in world.includes}
     assert {
-        name for name, model in known.items() if model.get("include") not in left_out and not _is_ours(model)
-    } <= there
+        name for name, model in facts_by_name.items() if model.get("include") not in left_out and not _is_ours(model)
+    } <= names
 
 
 @pytest.mark.parametrize("item", FILES)
 def test_corpus_world_accepted_by_simulators_has_no_errors(item):
-    assert [diagnostic for diagnostic in examined(item).diagnostics if diagnostic.severity.value == "error"] == []
+    assert [diagnostic for diagnostic in examine_item(item).diagnostics if diagnostic.severity.value == "error"] == []

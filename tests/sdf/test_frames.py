@@ -11,10 +11,10 @@ from linkwright.sdf.frames import FrameError, Frames, placed_links
 from tests.sdf.worlds import model, world
 
 LINKS = '<link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link>'
-TURN = f"0 0 0 0 0 {pi / 2}"
+QUARTER_TURN = f"0 0 0 0 0 {pi / 2}"
 
 
-def near(transform: Transform, *xyz: float) -> bool:
+def is_at(transform: Transform, *xyz: float) -> bool:
     return transform[:3] == pytest.approx(xyz, abs=1e-12)
 
 
@@ -26,9 +26,9 @@ def test_link_pose_is_relative_to_model_or_named_frame():
             <link name="c"><pose relative_to="__model__">0 0 1 0 0 0</pose></link>"""
         )
     )
-    assert near(frames.pose("a"), 1, 0, 0)
-    assert near(frames.pose("b"), 1, 1, 0)
-    assert near(frames.pose("c"), 0, 0, 1)
+    assert is_at(frames.pose("a"), 1, 0, 0)
+    assert is_at(frames.pose("b"), 1, 1, 0)
+    assert is_at(frames.pose("c"), 0, 0, 1)
     assert frames.pose("b")[3:] == pytest.approx((0, 0, sqrt(0.5), sqrt(0.5)))
 
 
@@ -41,8 +41,8 @@ def test_joint_pose_is_relative_to_child():
             </joint>"""
         )
     )
-    assert near(frames.pose("j"), 1, 1, 0)
-    assert near(frames.pose("k"), 2, 1, 0)
+    assert is_at(frames.pose("j"), 1, 1, 0)
+    assert is_at(frames.pose("k"), 2, 1, 0)
 
 
 def test_frame_pose_is_relative_to_attached_or_named_frame():
@@ -53,9 +53,9 @@ def test_frame_pose_is_relative_to_attached_or_named_frame():
             <frame name="g" attached_to="f"><pose relative_to="a">0 0 5 0 0 0</pose></frame><frame name="h"/>"""
         )
     )
-    assert near(frames.pose("f"), 1, 0, 1)
-    assert near(frames.pose("g"), 0, 0, 5)
-    assert near(frames.pose("h"), 0, 0, 0)
+    assert is_at(frames.pose("f"), 1, 0, 1)
+    assert is_at(frames.pose("g"), 0, 0, 5)
+    assert is_at(frames.pose("h"), 0, 0, 0)
     assert (frames.link("f"), frames.link("g"), frames.link("h")) == ("b", "b", "a")
 
 
@@ -67,9 +67,9 @@ def test_nested_names_are_resolved():
             <link name="lamp"><pose relative_to="arm::hand::tip">0 0 1 0 0 0</pose></link>"""
         )
     )
-    assert near(frames.pose("arm::b"), 0, 1, 1)
-    assert near(frames.pose("arm::hand::tip"), 0, 2, 2)
-    assert near(frames.pose("lamp"), 0, 2, 3)
+    assert is_at(frames.pose("arm::b"), 0, 1, 1)
+    assert is_at(frames.pose("arm::hand::tip"), 0, 2, 2)
+    assert is_at(frames.pose("lamp"), 0, 2, 3)
     assert frames.link("arm") == "arm::a"
     assert "arm::hand::tip" in frames
     assert "arm::hand::top" not in frames
@@ -86,18 +86,18 @@ def test_model_frame_is_attached_to_canonical_link():
 def test_placement_frame_is_placed_at_model_pose():
     parsed_world = world(f"""<model name="m" placement_frame="b"><pose>5 0 0 0 0 {pi / 2}</pose>{LINKS}</model>""")
     frames = Frames(parsed_world)
-    assert near(frames.pose("m"), 5, -1, 0)
-    assert near(frames.pose("m::b"), 5, 0, 0)
+    assert is_at(frames.pose("m"), 5, -1, 0)
+    assert is_at(frames.pose("m::b"), 5, 0, 0)
 
 
 def test_axis_is_expressed_in_joint_frame():
-    for written in (
+    for axis_text in (
         '<xyz expressed_in="__model__">1 0 0</xyz>',
         "<xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame>",
     ):
         owner = model(
-            f"""<link name="a"/><link name="b"><pose>{TURN}</pose></link>
-            <joint name="j" type="revolute"><parent>a</parent><child>b</child><axis>{written}</axis></joint>"""
+            f"""<link name="a"/><link name="b"><pose>{QUARTER_TURN}</pose></link>
+            <joint name="j" type="revolute"><parent>a</parent><child>b</child><axis>{axis_text}</axis></joint>"""
         )
         joint = owner.joints[0]
         assert joint.axis is not None
@@ -107,7 +107,7 @@ def test_axis_is_expressed_in_joint_frame():
 def test_long_chain_of_frames_is_resolved():
     frames = [f'<frame name="f{at}"><pose relative_to="f{at - 1}">1 0 0 0 0 0</pose></frame>' for at in range(1, 5001)]
     chain = Frames(model("".join(reversed(frames)) + '<frame name="f0"/><link name="a"/>'))
-    assert near(chain.pose("f5000"), 5000, 0, 0)
+    assert is_at(chain.pose("f5000"), 5000, 0, 0)
 
 
 def test_unknown_frames_are_errors():

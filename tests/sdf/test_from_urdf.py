@@ -24,27 +24,27 @@ SHARED = Path(__file__).parents[3] / "shared"
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
 
 
-def robot_of(inside):
-    description = examine(f'<robot name="r">{inside}</robot>')
+def robot_of(elements):
+    description = examine(f'<robot name="r">{elements}</robot>')
     assert description.diagnostics == ()
     return description.robot
 
 
-def converted(inside, *, lump=False):
+def converted(elements, *, lump=False):
     """Return the model of a robot without errors."""
-    conversion = model_from_robot(robot_of(inside), lump_fixed_joints=lump)
+    conversion = model_from_robot(robot_of(elements), lump_fixed_joints=lump)
     assert conversion.diagnostics == ()
     return conversion.model
 
 
-def link(name, inside="", *, inertial=INERTIAL):
-    return f'<link name="{name}">{inertial}{inside}</link>'
+def link(name, elements="", *, inertial=INERTIAL):
+    return f'<link name="{name}">{inertial}{elements}</link>'
 
 
-def joint(name, parent, child, *, kind="fixed", origin="0 0 0", rpy="0 0 0", inside=""):
+def joint(name, parent, child, *, kind="fixed", origin="0 0 0", rpy="0 0 0", elements=""):
     return (
         f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
-        f'<origin xyz="{origin}" rpy="{rpy}"/>{inside}</joint>'
+        f'<origin xyz="{origin}" rpy="{rpy}"/>{elements}</joint>'
     )
 
 
@@ -70,8 +70,8 @@ def test_links_are_placed_at_joints():
     ],
 )
 def test_movable_joint_has_axis_limits_and_dynamics(kind, expected, lower, upper):
-    inside = f'<axis xyz="0 1 0"/>{LIMIT}<dynamics damping="0.5" friction="0.25"/>'
-    converted_joint = converted(link("a") + link("b") + joint("j", "a", "b", kind=kind, inside=inside)).joints[0]
+    elements = f'<axis xyz="0 1 0"/>{LIMIT}<dynamics damping="0.5" friction="0.25"/>'
+    converted_joint = converted(link("a") + link("b") + joint("j", "a", "b", kind=kind, elements=elements)).joints[0]
     assert converted_joint.type == expected
     assert converted_joint.axis is not None
     assert converted_joint.axis.xyz == (0.0, 1.0, 0.0)
@@ -81,10 +81,10 @@ def test_movable_joint_has_axis_limits_and_dynamics(kind, expected, lower, upper
 
 
 def test_mimic_joint_is_converted():
-    turning = joint("j", "a", "b", kind="revolute", inside=LIMIT)
-    inside = LIMIT + '<mimic joint="j" multiplier="-2" offset="0.5"/>'
+    leader = joint("j", "a", "b", kind="revolute", elements=LIMIT)
+    elements = LIMIT + '<mimic joint="j" multiplier="-2" offset="0.5"/>'
     model = converted(
-        link("a") + link("b") + link("c") + turning + joint("k", "a", "c", kind="revolute", inside=inside)
+        link("a") + link("b") + link("c") + leader + joint("k", "a", "c", kind="revolute", elements=elements)
     )
     axis = next(joint.axis for joint in model.joints if joint.name == "k")
     assert axis is not None
@@ -114,8 +114,8 @@ def test_floating_and_planar_links_move_freely():
 
 
 def test_shape_names_match_gz():
-    inside = f"<visual>{BOX}</visual><visual>{BOX}</visual>" + f'<visual name="a_top">{BOX}</visual>'
-    model = converted(link("a", inside + f'<visual name="lid">{BOX}</visual>' + f"<collision>{BOX}</collision>"))
+    elements = f"<visual>{BOX}</visual><visual>{BOX}</visual>" + f'<visual name="a_top">{BOX}</visual>'
+    model = converted(link("a", elements + f'<visual name="lid">{BOX}</visual>' + f"<collision>{BOX}</collision>"))
     names = [visual.name for visual in model.links[0].visuals]
     assert names == ["a_visual", "a_visual_1", "a_top_visual_2", "a_fixed_joint_lump__lid_visual_3"]
     assert [collision.name for collision in model.links[0].collisions] == ["a_collision"]
@@ -157,14 +157,14 @@ def test_gazebo_material_overrides_visual_color():
 
 
 def test_gazebo_elements_apply_to_links_and_collisions():
-    words = {
+    texts_by_tag = {
         "mu1": "0.1", "mu2": "0.2", "fdir1": "1 0 0", "kp": "1000", "kd": "2", "minDepth": "0.003", "maxVel": "4",
         "maxContacts": "5", "laserRetro": "6", "selfCollide": "Yes", "turnGravityOff": "true", "dampingFactor": "0.7",
         "canonicalBody": "a",
     }  # fmt: skip
-    shown = "".join(f"<{word}>{text}</{word}>" for word, text in words.items())
+    elements = "".join(f"<{tag}>{text}</{tag}>" for tag, text in texts_by_tag.items())
     converted_model = converted(link("a", SHAPED + f'<collision name="own">{BOX}</collision>')
-                      + f'<gazebo reference="a">{shown}</gazebo>').links[0]  # fmt: skip
+                      + f'<gazebo reference="a">{elements}</gazebo>').links[0]  # fmt: skip
     for collision in converted_model.collisions:
         friction, contact = collision.surface.friction, collision.surface.contact
         assert friction is not None
@@ -216,8 +216,8 @@ def test_gazebo_elements_and_sensors_apply_to_joints():
         "<springReference>0.5</springReference><implicitSpringDamper>true</implicitSpringDamper><stopErp>0.2</stopErp>"
         '<sensor name="ft" type="force_torque"/></gazebo>'
     )
-    turning = joint("j", "a", "b", kind="revolute", inside=LIMIT + '<dynamics damping="2"/>')
-    converted_joint = converted(link("a") + link("b") + turning + text).joints[0]
+    revolute = joint("j", "a", "b", kind="revolute", elements=LIMIT + '<dynamics damping="2"/>')
+    converted_joint = converted(link("a") + link("b") + revolute + text).joints[0]
     assert converted_joint.axis is not None
     dynamics = converted_joint.axis.dynamics
     assert (dynamics.spring_stiffness, dynamics.spring_reference, dynamics.damping) == (3.0, 0.5, 2.0)
@@ -227,7 +227,7 @@ def test_gazebo_elements_and_sensors_apply_to_joints():
 
 def test_gazebo_joint_can_close_loop():
     loop = '<gazebo><joint name="loop" type="revolute"><parent>a</parent><child>b</child></joint></gazebo>'
-    model = converted(link("a") + link("b") + joint("j", "a", "b", kind="revolute", inside=LIMIT) + loop)
+    model = converted(link("a") + link("b") + joint("j", "a", "b", kind="revolute", elements=LIMIT) + loop)
     assert [joint.name for joint in model.joints] == ["j", "loop"]
 
 
@@ -294,28 +294,30 @@ def test_lumped_masses_are_combined():
 
 
 def test_lumped_inertia_keeps_axes_of_first_link():
-    turned = (
+    rotated_link = (
         f'<inertial><origin rpy="0 0 {pi / 2}"/><mass value="1"/>'
         '<inertia ixx="1" ixy="0" ixz="0" iyy="2" iyz="0" izz="2.5"/></inertial>'
     )
-    nothing = '<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
-    model = converted(link("a", inertial=turned) + link("b", inertial=nothing) + joint("j", "a", "b"), lump=True)
+    no_inertia = '<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
+    model = converted(
+        link("a", inertial=rotated_link) + link("b", inertial=no_inertia) + joint("j", "a", "b"), lump=True
+    )
     inertial = model.links[0].inertial
     assert inertial is not None
     assert (inertial.inertia.ixx, inertial.inertia.iyy, inertial.inertia.izz) == pytest.approx((1.0, 2.0, 2.5))
 
 
 def test_child_of_lumped_link_is_attached_to_merged_link():
-    turning = joint("j", "b", "c", kind="revolute", origin="0 1 0", inside=LIMIT)
-    model = converted(link("a") + link("b") + link("c") + joint("k", "a", "b", origin="1 0 0") + turning, lump=True)
+    revolute = joint("j", "b", "c", kind="revolute", origin="0 1 0", elements=LIMIT)
+    model = converted(link("a") + link("b") + link("c") + joint("k", "a", "b", origin="1 0 0") + revolute, lump=True)
     assert [link.name for link in model.links] == ["a", "c"]
     assert (model.joints[0].parent, model.joints[0].pose.pose.xyz) == ("a", (1.0, 1.0, 0.0))
     assert Frames(model).pose("c")[:3] == (1.0, 1.0, 0.0)
 
 
-@pytest.mark.parametrize(("word", "kind"), [("preserveFixedJoint", "fixed"), ("disableFixedJointLumping", "revolute")])
-def test_fixed_joint_can_be_preserved(word, kind):
-    text = f'<gazebo reference="j"><{word}>true</{word}></gazebo>'
+@pytest.mark.parametrize(("tag", "kind"), [("preserveFixedJoint", "fixed"), ("disableFixedJointLumping", "revolute")])
+def test_fixed_joint_can_be_preserved(tag, kind):
+    text = f'<gazebo reference="j"><{tag}>true</{tag}></gazebo>'
     converted_joint = converted(link("a") + link("b") + joint("j", "a", "b") + text, lump=True).joints[0]
     assert converted_joint.type == kind
     if converted_joint.axis is not None:
@@ -369,12 +371,12 @@ def test_long_chain_of_links_is_converted():
 
 def _robots():
     """Return real robots outside the repository: name, file, arguments, packages, known facts."""
-    for folder, where in (("worlds", ""), ("corpus", "robots")):
+    for folder, subfolder in (("worlds", ""), ("corpus", "robots")):
         manifest = SHARED / folder / "manifest.json"
         if not manifest.is_file():
             continue
         data = json.loads(manifest.read_text(encoding="utf-8"))
-        root = SHARED / folder / where
+        root = SHARED / folder / subfolder
         named = data.get("packages") or {
             name: path for source in data["sources"].values() for name, path in source["packages"].items()
         }
@@ -400,7 +402,7 @@ def test_corpus_robots_are_converted(entry, arguments, packages, facts):
         model = conversion.model
         assert [diagnostic for diagnostic in conversion.diagnostics if diagnostic.severity.value == "error"] == []
         references = {check_reference.code for check_reference in check_references(Sdf("1.11", models=(model,)))}
-        assert references <= {"SDF132"}, "what nothing in it has a mass has no links left"
+        assert references <= {"SDF132"}, "a robot without masses has no links"
         frames = Frames(model)
         for name in robot.links:
             if name != "world" and (name in frames.elements_by_name or not lump):
@@ -410,9 +412,9 @@ def test_corpus_robots_are_converted(entry, arguments, packages, facts):
             assert len(model.links) == facts["links"] - ("world" in robot.links)
             assert len(model.joints) == sum(facts["joints"].values())
             assert {sensor.name for sensor in sensors} == {sensor["name"] for sensor in facts["sensors"]}
-            written = sum(element.tag == "plugin" for gazebo in robot.extensions if "reference" not in gazebo.attributes
+            plugins = sum(element.tag == "plugin" for gazebo in robot.extensions if "reference" not in gazebo.attributes
                           for element in gazebo.elements())  # fmt: skip
-            assert len(model.plugins) == written
+            assert len(model.plugins) == plugins
             assert sum(len(link.visuals) for link in model.links) == sum(facts["visuals"].values())
             assert sum(len(link.collisions) for link in model.links) == sum(facts["collisions"].values())
 

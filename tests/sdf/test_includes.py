@@ -9,28 +9,28 @@ import pytest
 from linkwright.packages import PackageFinder
 from linkwright.sdf.frames import Frames, placed_links
 from linkwright.sdf.resources import Missing, ResourceFinder, model_file
-from tests.sdf.worlds import examined, write
+from tests.sdf.worlds import examine_world_in, write
 
 
-def sdf(inside: str, version: str = "1.9") -> str:
-    return f'<sdf version="{version}">{inside}</sdf>'
+def sdf(elements: str, version: str = "1.9") -> str:
+    return f'<sdf version="{version}">{elements}</sdf>'
 
 
 BOX = sdf('<model name="box"><link name="l"/></model>')
 
 
-def models(reading) -> list[str]:
-    return [model.name for model in reading.sdf.worlds[0].models]
+def models(world_reading) -> list[str]:
+    return [model.name for model in world_reading.sdf.worlds[0].models]
 
 
 def test_model_is_found_through_each_environment_variable(tmp_path):
     for variable in ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH"):
         write(tmp_path, {f"{variable}/box/model.sdf": BOX.replace("box", variable)})
-        reading = examined(
+        world_reading = examine_world_in(
             tmp_path, "<include><uri>model://box</uri></include>", **{variable: f"/nowhere:{tmp_path / variable}"}
         )
-        assert (models(reading), reading.diagnostics) == ([variable], ())
-        assert reading.files[1] == tmp_path / variable / "box" / "model.sdf"
+        assert (models(world_reading), world_reading.diagnostics) == ([variable], ())
+        assert world_reading.files[1] == tmp_path / variable / "box" / "model.sdf"
 
 
 def test_model_is_found_in_packages(tmp_path):
@@ -50,9 +50,9 @@ def test_model_is_found_in_packages(tmp_path):
     addresses = ["model://in_assets", "model://in_more", "model://in_models", "model://two/any", "package://two/any"]
     addresses += ["two/any", "two/any/model.sdf", f"file://{tmp_path}/two/any/model.sdf"]
     names = [f"<include><uri>{address}</uri><name>m{at}</name></include>" for at, address in enumerate(addresses)]
-    reading = examined(tmp_path, "".join(names))
-    assert reading.diagnostics == ()
-    assert len(models(reading)) == len(addresses)
+    world_reading = examine_world_in(tmp_path, "".join(names))
+    assert world_reading.diagnostics == ()
+    assert len(models(world_reading)) == len(addresses)
 
 
 @pytest.mark.parametrize(
@@ -69,10 +69,10 @@ def test_model_is_found_in_packages(tmp_path):
 )
 def test_model_is_found_through_package_hook_or_export(tmp_path, file, text):
     files = {"one/package.xml": "<package><name>one</name></package>", "one/assets/box/model.sdf": BOX}
-    written = f"<package><name>one</name>{text}</package>" if file == "package.xml" else text
-    write(tmp_path, {**files, f"one/{file}": written})
-    reading = examined(tmp_path, "<include><uri>model://box</uri></include>")
-    assert (models(reading), reading.diagnostics) == (["box"], ())
+    file_text = f"<package><name>one</name>{text}</package>" if file == "package.xml" else text
+    write(tmp_path, {**files, f"one/{file}": file_text})
+    world_reading = examine_world_in(tmp_path, "<include><uri>model://box</uri></include>")
+    assert (models(world_reading), world_reading.diagnostics) == (["box"], ())
 
 
 def test_share_folder_hook_is_used_and_unreadable_hook_ignored(tmp_path):
@@ -81,14 +81,14 @@ def test_share_folder_hook_is_used_and_unreadable_hook_ignored(tmp_path):
     (tmp_path / "one/hooks/b.dsv").write_bytes(b"\xff;GZ_SIM_RESOURCE_PATH\x00")
     (tmp_path / "one/hooks/c.dsv").mkdir()
     write(tmp_path, {"box/model.sdf": BOX})
-    assert models(examined(tmp_path, "<include><uri>model://box</uri></include>")) == ["box"]
+    assert models(examine_world_in(tmp_path, "<include><uri>model://box</uri></include>")) == ["box"]
 
 
 def test_model_is_found_near_including_file(tmp_path):
     write(tmp_path, {"models/box/model.sdf": BOX, "worlds/x": ""})
     finder = ResourceFinder(PackageFinder(start=tmp_path / "worlds", environment={}), {"HOME": "/nowhere"})
-    for beside in (tmp_path, tmp_path / "worlds", tmp_path / "models", tmp_path / "models/box"):
-        assert finder.model("model://box", beside) == tmp_path / "models/box/model.sdf"
+    for folder in (tmp_path, tmp_path / "worlds", tmp_path / "models", tmp_path / "models/box"):
+        assert finder.model("model://box", folder) == tmp_path / "models/box/model.sdf"
 
 
 def test_relative_file_uri_is_found_in_search_path(tmp_path):
@@ -106,9 +106,9 @@ def test_relative_file_uri_is_found_in_search_path(tmp_path):
 
 @pytest.mark.parametrize(("address", "severity"), [("media/models/walk.dae", "INFO"), ("meshes/walk.dae", "WARNING")])
 def test_missing_gazebo_classic_media_is_info(tmp_path, address, severity):
-    missing = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {}).file(f"file://{address}", tmp_path)
-    assert isinstance(missing, Missing)
-    assert missing.severity.name == severity
+    finding = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {}).file(f"file://{address}", tmp_path)
+    assert isinstance(finding, Missing)
+    assert finding.severity.name == severity
 
 
 def test_newest_supported_model_version_is_used(tmp_path):
@@ -123,12 +123,12 @@ def test_newest_supported_model_version_is_used(tmp_path):
 
 
 def test_fuel_models_are_found_in_gz_cache(tmp_path):
-    place = "fuel.gazebosim.org/openrobotics/models/cafe table"
+    cache_path = "fuel.gazebosim.org/openrobotics/models/cafe table"
     write(
         tmp_path,
         {
-            f".gz/fuel/{place}/2/model.sdf": BOX.replace("box", "two"),
-            f".gz/fuel/{place}/10/model.sdf": BOX.replace("box", "ten"),
+            f".gz/fuel/{cache_path}/2/model.sdf": BOX.replace("box", "two"),
+            f".gz/fuel/{cache_path}/10/model.sdf": BOX.replace("box", "ten"),
             ".ignition/fuel/fuel.ignitionrobotics.org/someone/models/old/1/model.sdf": BOX,
         },
     )
@@ -141,28 +141,28 @@ def test_fuel_models_are_found_in_gz_cache(tmp_path):
         ("https://fuel.ignitionrobotics.org/1.0/someone/models/Old", "box"),
         ("https://fuel.gazebosim.org/1.0/OpenRobotics/models/Ground Plane", "ground_plane"),
     ):
-        reading = examined(tmp_path, f"<include><uri>{address}</uri></include>")
-        assert (models(reading), reading.diagnostics) == ([name], ())
+        world_reading = examine_world_in(tmp_path, f"<include><uri>{address}</uri></include>")
+        assert (models(world_reading), world_reading.diagnostics) == ([name], ())
 
 
 def test_built_in_sun_and_ground_plane_are_included(tmp_path):
-    inside = "<include><uri>model://sun</uri></include><include><uri>model://ground_plane</uri></include>"
-    reading = examined(tmp_path, inside)
-    assert reading.sdf is not None
-    world = reading.sdf.worlds[0]
+    includes = "<include><uri>model://sun</uri></include><include><uri>model://ground_plane</uri></include>"
+    world_reading = examine_world_in(tmp_path, includes)
+    assert world_reading.sdf is not None
+    world = world_reading.sdf.worlds[0]
     assert [light.name for light in world.lights] == ["sun"]
     assert [(model.name, model.static) for model in world.models] == [("ground_plane", True)]
 
 
 def test_include_overrides_name_pose_and_static(tmp_path):
     write(tmp_path, {"box/model.sdf": sdf('<model name="box"><pose>1 1 1 0 0 0</pose><link name="l"/></model>')})
-    reading = examined(
+    world_reading = examine_world_in(
         tmp_path,
         """<include><uri>box</uri></include><include><uri>box</uri><name>other</name><pose>0 0 2 0 0 0</pose>
         <static>true</static><plugin filename="p"/></include>""",
     )
-    assert reading.sdf is not None
-    first, second = reading.sdf.worlds[0].models
+    assert world_reading.sdf is not None
+    first, second = world_reading.sdf.worlds[0].models
     assert (first.name, first.pose.pose.xyz, first.static, first.plugins) == ("box", (1, 1, 1), False, ())
     assert (second.name, second.pose.pose.xyz, second.static) == ("other", (0, 0, 2), True)
     assert [plugin.filename for plugin in second.plugins] == ["p"]
@@ -180,12 +180,12 @@ def test_nested_includes_are_placed(tmp_path):
             "models/wheel/model.sdf": sdf('<model name="wheel"><link name="rim"/></model>'),
         },
     )
-    inside = "<include><uri>model://car</uri><pose>5 0 0 0 0 0</pose></include>"
-    reading = examined(tmp_path, inside, GZ_SIM_RESOURCE_PATH=str(tmp_path / "models"))
-    assert reading.diagnostics == ()
-    assert reading.sdf is not None
-    places = {placed_link.name: placed_link.pose[:3] for placed_link in placed_links(reading.sdf.worlds[0])}
-    assert places == {"car::body": (5, 0, 0), "car::left::rim": (5, 1, 0)}
+    includes = "<include><uri>model://car</uri><pose>5 0 0 0 0 0</pose></include>"
+    world_reading = examine_world_in(tmp_path, includes, GZ_SIM_RESOURCE_PATH=str(tmp_path / "models"))
+    assert world_reading.diagnostics == ()
+    assert world_reading.sdf is not None
+    positions = {placed_link.name: placed_link.pose[:3] for placed_link in placed_links(world_reading.sdf.worlds[0])}
+    assert positions == {"car::body": (5, 0, 0), "car::left::rim": (5, 1, 0)}
 
 
 def test_merged_include_joins_enclosing_model(tmp_path):
@@ -200,14 +200,14 @@ def test_merged_include_joins_enclosing_model(tmp_path):
             )
         },
     )
-    reading = examined(
+    world_reading = examine_world_in(
         tmp_path,
         """<model name="m"><link name="base"/><include merge="true"><uri>mast</uri><pose>0 0 5 0 0 0</pose></include>
         <joint name="j" type="fixed"><parent>base</parent><child>pole</child></joint></model>""",
     )
-    assert reading.diagnostics == ()
-    assert reading.sdf is not None
-    model = reading.sdf.worlds[0].models[0]
+    assert world_reading.diagnostics == ()
+    assert world_reading.sdf is not None
+    model = world_reading.sdf.worlds[0].models[0]
     assert [link.name for link in model.links] == ["base", "pole", "lamp"]
     frames = Frames(model)
     assert frames.pose("pole")[:3] == pytest.approx((-1, 0, 6))
@@ -219,36 +219,36 @@ def test_merged_include_joins_enclosing_model(tmp_path):
 
 def test_failed_include_in_merged_model_is_reported_once(tmp_path):
     write(tmp_path, {"mast/model.sdf": sdf('<model name="mast"><include><uri>model://pole</uri></include></model>')})
-    reading = examined(
+    world_reading = examine_world_in(
         tmp_path,
         """<model name="m"><include merge="true"><uri>mast</uri></include>
         <joint name="j" type="fixed"><parent>world</parent><child>pole::link</child></joint></model>""",
     )
-    assert [diagnostic.code for diagnostic in reading.diagnostics] == ["SDF160"]
+    assert [diagnostic.code for diagnostic in world_reading.diagnostics] == ["SDF160"]
 
 
 def test_missing_placement_frame_of_merged_model_is_reported(tmp_path):
     write(tmp_path, {"mast/model.sdf": sdf('<model name="mast" placement_frame="foot"><link name="pole"/></model>')})
-    reading = examined(
+    world_reading = examine_world_in(
         tmp_path,
         """<model name="m"><link name="base"/><include merge="true"><uri>mast</uri><pose>0 0 5 0 0 0</pose></include>
         </model>""",
     )
-    assert [diagnostic.code for diagnostic in reading.diagnostics] == ["SDF141"]
-    assert reading.sdf is not None
-    assert Frames(reading.sdf.worlds[0].models[0]).pose("pole")[:3] == (0, 0, 5)
+    assert [diagnostic.code for diagnostic in world_reading.diagnostics] == ["SDF141"]
+    assert world_reading.sdf is not None
+    assert Frames(world_reading.sdf.worlds[0].models[0]).pose("pole")[:3] == (0, 0, 5)
 
 
 def test_lights_and_actors_can_be_included(tmp_path):
     write(tmp_path, {"lamp/model.sdf": sdf('<light name="lamp" type="point"/>')})
     write(tmp_path, {"walker/model.sdf": sdf('<actor name="walker"/>')})
-    reading = examined(
+    world_reading = examine_world_in(
         tmp_path,
         """<include><uri>lamp</uri><name>l</name><pose>0 0 3 0 0 0</pose></include>
         <include><uri>walker</uri></include>""",
     )
-    assert reading.sdf is not None
-    world = reading.sdf.worlds[0]
+    assert world_reading.sdf is not None
+    world = world_reading.sdf.worlds[0]
     assert [(light.name, light.pose.pose.xyz) for light in world.lights] == [("l", (0, 0, 3))]
     assert [actor.name for actor in world.actors] == ["walker"]
 
@@ -263,15 +263,20 @@ def test_failed_includes_are_reported_once_and_rest_is_kept(tmp_path):
             "doubtful/model.sdf": sdf('<model name="d"><link name="l"/><lnk name="k"/></model>'),
         },
     )
-    reading = examined(
+    world_reading = examine_world_in(
         tmp_path,
         "<include><uri>again</uri></include><include><uri>broken</uri></include><include><uri>nothing</uri></include>"
         "<include><uri>doubtful</uri></include><include><uri>doubtful</uri><name>e</name></include>"
         '<model name="m"><static>1</static></model>',
     )
-    assert sorted(diagnostic.code for diagnostic in reading.diagnostics) == ["SDF150", "SDF160", "SDF161", "XML203"]
-    assert models(reading) == ["m", "again", "d", "e"]
-    doubtful = next(diagnostic for diagnostic in reading.diagnostics if diagnostic.code == "SDF150")
+    assert sorted(diagnostic.code for diagnostic in world_reading.diagnostics) == [
+        "SDF150",
+        "SDF160",
+        "SDF161",
+        "XML203",
+    ]
+    assert models(world_reading) == ["m", "again", "d", "e"]
+    doubtful = next(diagnostic for diagnostic in world_reading.diagnostics if diagnostic.code == "SDF150")
     assert doubtful.span is not None
     assert doubtful.span.file.endswith("doubtful/model.sdf")
     assert doubtful.notes[-1].span is not None
@@ -279,12 +284,12 @@ def test_failed_includes_are_reported_once_and_rest_is_kept(tmp_path):
 
 
 def test_names_in_missing_model_are_not_reported(tmp_path):
-    reading = examined(
+    world_reading = examine_world_in(
         tmp_path,
         """<model name="m"><link name="l"/><include><uri>model://arm</uri><name>arm</name></include>
         <joint name="j" type="fixed"><parent>l</parent><child>arm::base</child></joint></model>""",
     )
-    assert [diagnostic.code for diagnostic in reading.diagnostics] == ["SDF160"]
+    assert [diagnostic.code for diagnostic in world_reading.diagnostics] == ["SDF160"]
 
 
 def test_missing_file_of_known_or_renamed_model_is_warning(tmp_path):
@@ -292,9 +297,9 @@ def test_missing_file_of_known_or_renamed_model_is_warning(tmp_path):
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
     facts = {}
     for address in ("model://box/meshes/b.stl", "model://old_box/meshes/a.stl", "model://far/meshes/b.stl"):
-        missing = finder.file(address, tmp_path / "box")
-        assert isinstance(missing, Missing)
-        facts[address.split("/")[2]] = (missing.severity.name, str(missing.hint))
+        finding = finder.file(address, tmp_path / "box")
+        assert isinstance(finding, Missing)
+        facts[address.split("/")[2]] = (finding.severity.name, str(finding.hint))
     assert facts == {
         "box": ("WARNING", "choose from a.stl"),
         "old_box": ("WARNING", "the folder that contains 'meshes/a.stl' is named 'box'"),
@@ -304,12 +309,12 @@ def test_missing_file_of_known_or_renamed_model_is_warning(tmp_path):
 
 @pytest.mark.parametrize("name", ["boxed", "box_steel", "old_box"])
 def test_similar_model_name_is_not_reported_as_misspelled(tmp_path, name):
-    """Gazebo has many models; what shares a word with one that is here is one of those."""
+    """Gazebo has many models; a name that shares a word with a built-in one is one of those."""
     write(tmp_path, {"box/model.sdf": BOX, "suv/model.sdf": BOX})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
-    missing = finder.file(f"model://{name}", tmp_path)
-    assert isinstance(missing, Missing)
-    assert missing.severity.name == "INFO"
+    finding = finder.file(f"model://{name}", tmp_path)
+    assert isinstance(finding, Missing)
+    assert finding.severity.name == "INFO"
     sun = finder.file("model://sub", tmp_path)
     assert isinstance(sun, Missing)
     assert sun.severity.name == "INFO"
@@ -326,7 +331,7 @@ def test_similar_model_name_is_not_reported_as_misspelled(tmp_path, name):
     ],
 )
 def test_model_is_found_from_each_folder_of_package(tmp_path, address, found):
-    """Launch files put one of these folders into the variables of Gazebo."""
+    """Launch files add one of these folders to Gazebo's variables."""
     files = ["worlds/yard/shed.sdf", "sim/models/hut/model.sdf", "sim/models/hut/meshes/hut.stl", "tent/model.sdf"]
     write(
         tmp_path,
@@ -336,23 +341,23 @@ def test_model_is_found_from_each_folder_of_package(tmp_path, address, found):
         },
     )
     finder = ResourceFinder(PackageFinder(start=tmp_path / "arena/tent", environment={}), {})
-    place = finder.file(address, tmp_path / "arena/sim/models/hut/config")
-    assert (None if isinstance(place, Missing) else place.relative_to(tmp_path).as_posix()) == found
+    path = finder.file(address, tmp_path / "arena/sim/models/hut/config")
+    assert (None if isinstance(path, Missing) else path.relative_to(tmp_path).as_posix()) == found
 
 
 def test_misspelled_model_is_warning(tmp_path):
     write(tmp_path, {"crate/model.sdf": BOX})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
-    missing = finder.file("model://craet", tmp_path)
-    assert isinstance(missing, Missing)
-    assert (missing.severity.name, str(missing.hint)) == ("WARNING", "did you mean 'crate'?")
+    finding = finder.file("model://craet", tmp_path)
+    assert isinstance(finding, Missing)
+    assert (finding.severity.name, str(finding.hint)) == ("WARNING", "did you mean 'crate'?")
 
 
 def test_misspelled_uri_scheme_is_reported(tmp_path):
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
-    missing = finder.file("models://boat/meshes/hull.dae", tmp_path)
-    assert isinstance(missing, Missing)
-    assert str(missing.hint) == "did you mean 'model'?"
+    finding = finder.file("models://boat/meshes/hull.dae", tmp_path)
+    assert isinstance(finding, Missing)
+    assert str(finding.hint) == "did you mean 'model'?"
 
 
 @pytest.mark.parametrize("ending", [".jinja", ".em", ".erb", ".xacro"])
@@ -371,28 +376,30 @@ def test_missing_file_of_built_in_model_is_info(tmp_path):
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
     ours = finder.model("model://person_standing", tmp_path)
     assert isinstance(ours, Path)
-    for beside, severity in ((tmp_path, "INFO"), (ours.parent, "WARNING")):
-        missing = finder.file("model://person_standing/meshes/no.dae", beside)
-        assert isinstance(missing, Missing)
-        assert missing.severity.name == severity
+    for folder, severity in ((tmp_path, "INFO"), (ours.parent, "WARNING")):
+        finding = finder.file("model://person_standing/meshes/no.dae", folder)
+        assert isinstance(finding, Missing)
+        assert finding.severity.name == severity
 
 
 def test_file_uri_with_wrong_case_suggests_file(tmp_path):
     write(tmp_path, {"models/lamp/meshes/lamp_visual.DAE": ""})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
-    missing = finder.file("file://models/lamp/meshes/Lamp_visual.DAE", tmp_path / "models" / "lamp")
-    assert isinstance(missing, Missing)
-    assert str(missing.hint) == "did you mean 'lamp_visual.DAE'?"
+    finding = finder.file("file://models/lamp/meshes/Lamp_visual.DAE", tmp_path / "models" / "lamp")
+    assert isinstance(finding, Missing)
+    assert str(finding.hint) == "did you mean 'lamp_visual.DAE'?"
 
 
 def test_number_of_included_models_is_limited(tmp_path, monkeypatch):
-    """Thirty models, each of which includes the next one twice, would be a thousand million."""
+    """Thirty models, each including the next one twice, would be a thousand million."""
     monkeypatch.setattr("linkwright.sdf.includes._MAX_MODELS", 500)
     twice = "<include><uri>model://m{0}</uri><name>a</name></include><include><uri>model://m{0}</uri><name>b</name></include>"
     files = {f"m{at}/model.sdf": sdf(f'<model name="m{at}">{twice.format(at + 1)}</model>') for at in range(30)}
     write(tmp_path, {**files, "m30/model.sdf": BOX})
-    reading = examined(tmp_path, "<include><uri>model://m0</uri></include>", GZ_SIM_RESOURCE_PATH=str(tmp_path))
-    assert [diagnostic.code for diagnostic in reading.diagnostics].count("SDF161") == 1
+    world_reading = examine_world_in(
+        tmp_path, "<include><uri>model://m0</uri></include>", GZ_SIM_RESOURCE_PATH=str(tmp_path)
+    )
+    assert [diagnostic.code for diagnostic in world_reading.diagnostics].count("SDF161") == 1
 
 
 @pytest.mark.parametrize("name", ["w.sdf.xacro", "w.sdf", "w.world"])
@@ -406,10 +413,10 @@ def test_world_is_expanded_with_xacro(tmp_path, name):
         <static>1</static></model></world></sdf>""",
         encoding="utf-8",
     )
-    reading = examine_world(path, arguments={"n": "6"}, environment={})
-    assert reading.diagnostics == ()
-    assert reading.sdf is not None
-    assert reading.sdf.worlds[0].models[0].pose.pose.xyz == (0, 0, 3)
+    world_reading = examine_world(path, arguments={"n": "6"}, environment={})
+    assert world_reading.diagnostics == ()
+    assert world_reading.sdf is not None
+    assert world_reading.sdf.worlds[0].models[0].pose.pose.xyz == (0, 0, 3)
 
 
 def test_all_available_models_are_listed(tmp_path):
@@ -431,13 +438,15 @@ def test_invalid_uri_is_missing(tmp_path):
 
 
 def test_unknown_elements_and_missing_models_are_reported_once(tmp_path):
-    gone = "<include><uri>model://gone</uri></include>"
-    other = sdf('<model name="box"><static>true</static><mine/></model>')
-    write(tmp_path, {"box/model.sdf": other})
+    missing_include = "<include><uri>model://gone</uri></include>"
+    box_model = sdf('<model name="box"><static>true</static><mine/></model>')
+    write(tmp_path, {"box/model.sdf": box_model})
     box = "<include><uri>model://box</uri></include>"
-    inside = f'<mine/><mine/><yours/>{gone}{gone}{box}<model name="m"><static>1</static><mine/></model>'
-    reading = examined(tmp_path, inside, GZ_SIM_RESOURCE_PATH=str(tmp_path))
-    texts = [str(diagnostic.message) for diagnostic in reading.diagnostics if diagnostic.code in ("SDF150", "SDF160")]
+    elements = f'<mine/><mine/><yours/>{missing_include * 2}{box}<model name="m"><static>1</static><mine/></model>'
+    world_reading = examine_world_in(tmp_path, elements, GZ_SIM_RESOURCE_PATH=str(tmp_path))
+    texts = [
+        str(diagnostic.message) for diagnostic in world_reading.diagnostics if diagnostic.code in ("SDF150", "SDF160")
+    ]
     assert [text.split(":")[0] for text in texts] == [
         "<mine> in <world> is not read",
         "<yours> in <world> is not read",

@@ -1,49 +1,49 @@
-"""Worlds with too many links are refused."""
+"""Worlds with too many links are rejected."""
 
 import pytest
 
 from linkwright.cli import main
 from linkwright.sdf.link_counts import has_more_links
 
-MOST = 1000
+MAX_COUNT = 1000
 LINK = '<model name="m"><link name="l"/></model>'
 
 
-def world(inside: str, before: str = "") -> str:
-    return f'<?xml version="1.0"?>{before}<sdf version="1.7"><world name="w">{inside}</world></sdf>'
+def world(elements: str, prologue: str = "") -> str:
+    return f'<?xml version="1.0"?>{prologue}<sdf version="1.7"><world name="w">{elements}</world></sdf>'
 
 
 @pytest.mark.parametrize(
-    "inside",
-    [LINK * (MOST + 1), "<include><uri>model://m</uri></include>" * MOST + LINK],
+    "elements",
+    [LINK * (MAX_COUNT + 1), "<include><uri>model://m</uri></include>" * MAX_COUNT + LINK],
     ids=["links", "includes"],
 )
-def test_links_and_includes_are_counted(inside):
-    assert has_more_links(world(inside), MOST)
-    assert has_more_links(world(inside).encode(), MOST)
+def test_links_and_includes_are_counted(elements):
+    assert has_more_links(world(elements), MAX_COUNT)
+    assert has_more_links(world(elements).encode(), MAX_COUNT)
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        world(LINK * MOST),
-        world(f"<state>{LINK * (MOST + 1)}</state>"),
-        world(f'<plugin name="p" filename="f">{"<link>" * 9}{"<link/>" * (MOST * 3)}{"</link>" * 9}</plugin>'),
-        world(LINK) + world(LINK * (MOST + 1)),
-        world(LINK * (MOST + 1), '<!DOCTYPE sdf [<!ENTITY a "b">]>'),
-        world("<link <" + LINK * (MOST + 1)),
-        "x" * (MOST * 20),
+        world(LINK * MAX_COUNT),
+        world(f"<state>{LINK * (MAX_COUNT + 1)}</state>"),
+        world(f'<plugin name="p" filename="f">{"<link>" * 9}{"<link/>" * (MAX_COUNT * 3)}{"</link>" * 9}</plugin>'),
+        world(LINK) + world(LINK * (MAX_COUNT + 1)),
+        world(LINK * (MAX_COUNT + 1), '<!DOCTYPE sdf [<!ENTITY a "b">]>'),
+        world("<link <" + LINK * (MAX_COUNT + 1)),
+        "x" * (MAX_COUNT * 20),
     ],
     ids=["as many as there may be", "state", "plugin", "second", "entities", "no XML", "text"],
 )
 def test_other_text_is_not_counted(text):
-    assert not has_more_links(text, MOST)
-    assert not has_more_links(text.encode(), MOST)
+    assert not has_more_links(text, MAX_COUNT)
+    assert not has_more_links(text.encode(), MAX_COUNT)
 
 
 def test_unknown_encoding_is_not_counted():
-    text = world(LINK * (MOST + 1)).replace('"1.0"', '"1.0" encoding="nothing"')
-    assert not has_more_links(text.encode(), MOST)
+    text = world(LINK * (MAX_COUNT + 1)).replace('"1.0"', '"1.0" encoding="nothing"')
+    assert not has_more_links(text.encode(), MAX_COUNT)
 
 
 def test_world_with_too_many_links_is_rejected_with_one_error(tmp_path, capsys):

@@ -18,13 +18,13 @@ def test_check_lists_world_contents(tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("HOME", str(tmp_path))
     write(tmp_path, {"w.world": WORLD})
     assert main(["check", "w.world"]) == 0
-    printed = capsys.readouterr()
-    assert printed.out == (
+    captured = capsys.readouterr()
+    assert captured.out == (
         "world w\n  model car: 2 links, 1 joint, 1 sensor, 1 plugin\n    model arm: 1 link\n"
         "  static model ground_plane: 1 link\n  actor walker\n  light sun: directional\n  model://nowhere: not found\n"
     )
-    assert "info[SDF160]" in printed.err
-    assert "0 errors, 0 warnings" in printed.err
+    assert "info[SDF160]" in captured.err
+    assert "0 errors, 0 warnings" in captured.err
 
 
 def test_world_errors_exit_with_1_and_settings_apply(tmp_path, capsys, monkeypatch):
@@ -45,6 +45,6 @@ def test_folder_of_worlds_is_checked(tmp_path, capsys, monkeypatch):
         {"worlds/a.world": WORLD.replace("nowhere", "ground_plan"), "models/m/model.sdf": '<sdf version="1.6"/>'},
     )
     assert main(["check", "."]) == 1
-    printed = capsys.readouterr().err
-    assert "SDF160" in printed
-    assert "SDF131" in printed
+    errors = capsys.readouterr().err
+    assert "SDF160" in errors
+    assert "SDF131" in errors

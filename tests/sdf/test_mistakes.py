@@ -27,7 +27,7 @@ def test_mistake_gives_expected_message(text, message):
 def test_every_sdf_code_is_covered_by_tests():
     tests = Path(__file__).parent
     room = Path(linkwright.sdf.__file__).parent
-    written = {code for file in room.glob("*.py") for code in re.findall(r'"(SDF\d{3})"', file.read_text("utf-8"))}
+    source_codes = {code for file in room.glob("*.py") for code in re.findall(r'"(SDF\d{3})"', file.read_text("utf-8"))}
     files = ("test_from_urdf.py", "test_includes.py", "test_reader.py", "test_to_urdf.py")
-    shown = PAGE + "".join((tests / file).read_text(encoding="utf-8") for file in files)
-    assert written - set(re.findall(r"SDF\d{3}", shown)) == set()
+    tested_texts = PAGE + "".join((tests / file).read_text(encoding="utf-8") for file in files)
+    assert source_codes - set(re.findall(r"SDF\d{3}", tested_texts)) == set()

@@ -7,7 +7,7 @@ from math import hypot, pi
 import pytest
 
 from linkwright.sdf.populations import models_of
-from tests.sdf.worlds import examined, world, write
+from tests.sdf.worlds import examine_world_in, world, write
 
 MODEL = '<model name="can"><pose>9 9 9 0 0 0</pose><link name="l"/></model>'
 BOX = "<box><size>4 2 0.5</size></box><model_count>4</model_count>"
@@ -18,8 +18,8 @@ def places(inside: str, pose: str = "10 20 0 0 0 0") -> list[tuple[float, float,
     return [model.pose.pose.xyz for model in models_of(world(text).populations[0])]
 
 
-def spread(kind: str, more: str = "") -> str:
-    return f"<distribution><type>{kind}</type>{more}</distribution>"
+def spread(kind: str, extra: str = "") -> str:
+    return f"<distribution><type>{kind}</type>{extra}</distribution>"
 
 
 def test_grid_is_centered_on_pose():
@@ -68,7 +68,9 @@ def test_population_without_distribution_is_empty(inside):
 def test_population_can_include_models_and_names_them(tmp_path):
     write(tmp_path, {"can/model.sdf": '<sdf version="1.6"><model name="can"><link name="l"/></model></sdf>'})
     model = '<model name="sip"><include><uri>model://can</uri></include></model>'
-    reading = examined(tmp_path, f'<population name="p">{model}{BOX}</population>', GAZEBO_MODEL_PATH=str(tmp_path))
+    reading = examine_world_in(
+        tmp_path, f'<population name="p">{model}{BOX}</population>', GAZEBO_MODEL_PATH=str(tmp_path)
+    )
     assert reading.diagnostics == ()
     assert reading.sdf is not None
     clones = reading.sdf.worlds[0].models

@@ -13,8 +13,8 @@ from tests.sdf.worlds import world
 MODEL = '<model name="m"><pose>9 9 9 0 0 0</pose><link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link></model>'
 
 
-def places(inside: str) -> dict[str, tuple[float, ...]]:
-    return {placed_link.name: placed_link.pose[:3] for placed_link in placed_links(with_saved_state(world(inside)))}
+def poses_of(elements: str) -> dict[str, tuple[float, ...]]:
+    return {placed_link.name: placed_link.pose[:3] for placed_link in placed_links(with_saved_state(world(elements)))}
 
 
 def test_world_without_state_is_unchanged():
@@ -23,7 +23,7 @@ def test_world_without_state_is_unchanged():
 
 
 def test_state_sets_poses_of_models_and_links():
-    positions = places(
+    positions = poses_of(
         MODEL
         + f"""<state world_name="w"><model name="m"><pose>1 0 0 0 0 {pi / 2}</pose>
         <link name="b"><pose>4 5 6 0 0 0</pose></link></model></state>"""
@@ -33,24 +33,25 @@ def test_state_sets_poses_of_models_and_links():
 
 
 def test_last_state_applies_and_other_models_keep_poses():
-    other = MODEL.replace('"m"', '"n"')
-    positions = places(
-        f"""{MODEL}{other}<state><model name="m"><pose>1 0 0 0 0 0</pose></model></state>
+    second_model = MODEL.replace('"m"', '"n"')
+    positions = poses_of(
+        f"""{MODEL}{second_model}<state><model name="m"><pose>1 0 0 0 0 0</pose></model></state>
         <state><model name="m"><pose>2 0 0 0 0 0</pose></model></state>"""
     )
     assert (positions["m::a"], positions["n::a"]) == ((2, 0, 0), (9, 9, 9))
 
 
 def test_state_applies_to_nested_models_and_lights():
-    inside = """<model name="o"><pose>1 0 0 0 0 0</pose><model name="i"><pose>1 0 0 0 0 0</pose><link name="l"/></model>
+    elements = """<model name="o"><pose>1 0 0 0 0 0</pose>
+<model name="i"><pose>1 0 0 0 0 0</pose><link name="l"/></model>
         </model><light name="sun" type="point"><pose>0 0 9 0 0 0</pose></light>
         <state><model name="o"><pose>2 0 0 0 0 0</pose><model name="i"><pose>7 0 0 0 0 0</pose></model></model>
         <light name="sun"><pose>0 0 3 0 0 0</pose></light></state>"""
-    assert places(inside) == {"o::i::l": pytest.approx((7, 0, 0))}
-    assert with_saved_state(world(inside)).lights[0].pose.pose.xyz == (0, 0, 3)
+    assert poses_of(elements) == {"o::i::l": pytest.approx((7, 0, 0))}
+    assert with_saved_state(world(elements)).lights[0].pose.pose.xyz == (0, 0, 3)
 
 
 def test_insertions_and_deletions_of_state_apply():
-    inside = f"""{MODEL}<state><insertions><model name="new"><link name="l"/></model></insertions>
+    elements = f"""{MODEL}<state><insertions><model name="new"><link name="l"/></model></insertions>
         <deletions><name>m</name></deletions></state>"""
-    assert list(places(inside)) == ["new::l"]
+    assert list(poses_of(elements)) == ["new::l"]

@@ -1,4 +1,4 @@
-"""Materials from scripts of Gazebo and of models."""
+"""Material scripts of Gazebo and of models."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from linkwright.descriptions import examine_world
 from linkwright.sdf.scripts import gazebo_look, read_script
-from tests.sdf.worlds import examined, write
+from tests.sdf.worlds import examine_world_in, write
 
 SCRIPT = """\
 import * from "grid.material"
@@ -29,9 +29,9 @@ material Box/Wrong { technique { pass { diffuse red green blue
 VISUAL = '<model name="m"><link name="l"><visual name="v">{}</visual></link></model>'
 
 
-def material_of(folder, inside):
-    """The material of a visual in a world in a folder."""
-    reading = examined(folder, VISUAL.format(f"<material>{inside}</material>"))
+def material_of(folder, elements):
+    """Return the material of a visual in a world in a folder."""
+    reading = examine_world_in(folder, VISUAL.format(f"<material>{elements}</material>"))
     assert reading.diagnostics == ()
     return reading.sdf.worlds[0].models[0].links[0].visuals[0].material
 
@@ -81,8 +81,8 @@ def test_script_is_read_up_to_errors():
 @given(
     st.lists(st.sampled_from(["material", "A", ":", "{", "}", "\n", "diffuse", "1", "x", "texture", "//", '"', " "]))
 )
-def test_random_scripts_are_read_without_exception(words):
-    read_script(" ".join(words))
+def test_random_scripts_are_read_without_exception(tokens):
+    read_script(" ".join(tokens))
 
 
 def test_missing_texture_and_folder_as_script_are_ignored(tmp_path):

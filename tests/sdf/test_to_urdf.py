@@ -29,16 +29,16 @@ SHARED = REPOSITORY.parent / "shared" / "worlds"
 BOX = "<geometry><box><size>1 2 3</size></box></geometry>"
 
 
-def reading_of(inside: str, start: str = "<model name='m'>"):
-    text = f"<sdf version='1.11'>{start}{inside}</model></sdf>"
+def reading_of(elements: str, start: str = "<model name='m'>"):
+    text = f"<sdf version='1.11'>{start}{elements}</model></sdf>"
     document, _ = parse_as_gazebo(text.encode(), "robot.sdf")
     reading = read(document)
     assert reading.sdf is not None
     return robot_from_sdf(reading.sdf, document.root)
 
 
-def robot_of(inside: str, start: str = "<model name='m'>") -> Robot:
-    reading = reading_of(inside, start)
+def robot_of(elements: str, start: str = "<model name='m'>") -> Robot:
+    reading = reading_of(elements, start)
     assert reading.diagnostics == ()
     assert reading.robot is not None
     return reading.robot
@@ -99,7 +99,7 @@ def joint(parent: str, child: str, name: str = "j") -> str:
 
 
 @pytest.mark.parametrize(
-    ("inside", "start", "words"),
+    ("inside", "start", "message"),
     [
         (TWO, "<model name='m'>", "neither link 'b' nor the root link 'a' has a parent"),
         (TWO + joint("b", "a"), "<model name='m'>", "the canonical link 'a' is the child of joint 'j'"),
@@ -131,12 +131,12 @@ def joint(parent: str, child: str, name: str = "j") -> str:
         (TWO + joint("a", "nowhere"), "<model name='m'>", "there is no frame 'nowhere'"),
     ],
 )
-def test_model_unsuitable_as_robot_is_rejected_once_with_location(inside, start, words):
+def test_model_unsuitable_as_robot_is_rejected_once_with_location(inside, start, message):
     reading = reading_of(inside, start)
     assert reading.robot is None
     (diagnostic,) = reading.diagnostics
     assert diagnostic.code == "SDF180"
-    assert words in str(diagnostic.message)
+    assert message in str(diagnostic.message)
     assert diagnostic.span is not None
 
 
@@ -154,29 +154,29 @@ def test_description_topic_can_contain_sdf():
     assert library.read("<sdf version='1.9'><model name='m'/></sdf>").robot is None
 
 
-def _placed(robot: Robot, root: Transform) -> dict[str, Transform]:
-    """Where the frames of links stand, with all joints at zero."""
-    places, left = {robot.root: root}, list(robot.joints.values())
-    while left:
-        joint = next(joint for joint in left if joint.parent in places)
-        left.remove(joint)
-        places[joint.child] = compose(places[joint.parent], transform_of(joint.origin))
-    return places
+def _link_poses(robot: Robot, root: Transform) -> dict[str, Transform]:
+    """Return the poses of links with all joints at zero."""
+    poses, remaining_joints = {robot.root: root}, list(robot.joints.values())
+    while remaining_joints:
+        joint = next(joint for joint in remaining_joints if joint.parent in poses)
+        remaining_joints.remove(joint)
+        poses[joint.child] = compose(poses[joint.parent], transform_of(joint.origin))
+    return poses
 
 
 def test_urdf_survives_conversion_to_sdf_and_back():
-    before = load(ROBOTS / "my_robot_description/urdf/mbot_gazebo.xacro", packages=PACKAGES)
-    model = model_from_robot(before, lump_fixed_joints=False).model
-    after = robot_from_sdf(Sdf("1.11", models=(model,)), before.element).robot
-    assert (set(after.links), set(after.joints)) == (set(before.links), set(before.joints))
-    first, second = _placed(before, IDENTITY), _placed(after, IDENTITY)
-    for name, place in first.items():
-        assert second[name] == pytest.approx(place, abs=1e-9)
-    assert {joint.name: joint.type for joint in before.joints.values()} == {
-        joint.name: joint.type for joint in after.joints.values()
+    original = load(ROBOTS / "my_robot_description/urdf/mbot_gazebo.xacro", packages=PACKAGES)
+    model = model_from_robot(original, lump_fixed_joints=False).model
+    converted = robot_from_sdf(Sdf("1.11", models=(model,)), original.element).robot
+    assert (set(converted.links), set(converted.joints)) == (set(original.links), set(original.joints))
+    first, second = _link_poses(original, IDENTITY), _link_poses(converted, IDENTITY)
+    for name, pose in first.items():
+        assert second[name] == pytest.approx(pose, abs=1e-9)
+    assert {joint.name: joint.type for joint in original.joints.values()} == {
+        joint.name: joint.type for joint in converted.joints.values()
     }
-    written = read_urdf(parse_as_urdfdom(save(after), "robot.urdf")[0]).robot
-    assert (list(written.links), list(written.joints)) == (list(after.links), list(after.joints))
+    saved_robot = read_urdf(parse_as_urdfdom(save(converted), "robot.urdf")[0]).robot
+    assert (list(saved_robot.links), list(saved_robot.joints)) == (list(converted.links), list(converted.joints))
 
 
 @pytest.mark.skipif(not SHARED.is_dir(), reason="needs the models beside the repository")
@@ -192,11 +192,11 @@ def test_visuals_of_shared_models_keep_poses():
             continue
         robots += 1
         frames = Frames(model)
-        places = _placed(reading.robot, frames.pose(reading.robot.root))
+        link_poses = _link_poses(reading.robot, frames.pose(reading.robot.root))
         for link in model.links:
-            for before, after in zip(link.visuals, reading.robot.links[link.name].visuals, strict=True):
-                wanted = compose(frames.pose(link.name), frames.in_link(before.pose, link.name))
-                link_pose = compose(places[link.name], transform_of(after.origin))
-                assert link_pose[:3] == pytest.approx(wanted[:3], abs=1e-9)
-                assert abs(sum(a * b for a, b in zip(link_pose[3:], wanted[3:], strict=True))) == pytest.approx(1.0)
+            for old, new in zip(link.visuals, reading.robot.links[link.name].visuals, strict=True):
+                expected = compose(frames.pose(link.name), frames.in_link(old.pose, link.name))
+                link_pose = compose(link_poses[link.name], transform_of(new.origin))
+                assert link_pose[:3] == pytest.approx(expected[:3], abs=1e-9)
+                assert abs(sum(a * b for a, b in zip(link_pose[3:], expected[3:], strict=True))) == pytest.approx(1.0)
     assert robots > 0

@@ -15,7 +15,7 @@ from linkwright.sdf.walking import Walk
 
 
 def path(*points: tuple[float, float, float, float], tension: float = 0.0) -> Trajectory:
-    """A trajectory through points: time, x, y, yaw."""
+    """Return a trajectory through points: time, x, y, yaw."""
     waypoints = (Waypoint(time, RawPose(Pose((x, y, 1.0), (0.0, 0.0, yaw)))) for time, x, y, yaw in points)
     return Trajectory(tension=tension, waypoints=tuple(waypoints))
 
@@ -23,35 +23,35 @@ def path(*points: tuple[float, float, float, float], tension: float = 0.0) -> Tr
 STRAIGHT = path((0, 0, 0, 0), (2, 4, 0, 0))
 
 
-def at(walk: Walk, seconds: float) -> tuple[float, float]:
+def pose_at(walk: Walk, seconds: float) -> tuple[float, float]:
     x, y, *_ = walk.pose(seconds)
     return x, y
 
 
 def test_looping_walk_restarts_and_other_walk_stays_at_end():
-    again, once = Walk(Script(trajectories=(STRAIGHT,))), Walk(Script(loop=False, trajectories=(STRAIGHT,)))
-    assert at(again, 1) == at(once, 1) == pytest.approx((2, 0))
-    assert at(again, 2) == at(once, 2) == pytest.approx((4, 0))
-    assert at(again, 3) == pytest.approx((2, 0))
-    assert at(once, 3) == pytest.approx((4, 0))
+    looping, single = Walk(Script(trajectories=(STRAIGHT,))), Walk(Script(loop=False, trajectories=(STRAIGHT,)))
+    assert pose_at(looping, 1) == pose_at(single, 1) == pytest.approx((2, 0))
+    assert pose_at(looping, 2) == pose_at(single, 2) == pytest.approx((4, 0))
+    assert pose_at(looping, 3) == pytest.approx((2, 0))
+    assert pose_at(single, 3) == pytest.approx((4, 0))
 
 
 def test_walk_waits_for_delay_and_auto_start():
-    late = Walk(Script(delay_start=5, trajectories=(STRAIGHT,)))
-    assert at(late, 4) == (0, 0)
-    assert at(late, 6) == pytest.approx((2, 0))
+    delayed = Walk(Script(delay_start=5, trajectories=(STRAIGHT,)))
+    assert pose_at(delayed, 4) == (0, 0)
+    assert pose_at(delayed, 6) == pytest.approx((2, 0))
     never = Walk(Script(auto_start=False, trajectories=(STRAIGHT,)))
-    assert at(never, 100) == (0, 0)
+    assert pose_at(never, 100) == (0, 0)
 
 
 def test_trajectories_are_walked_in_sequence():
     walk = Walk(Script(trajectories=(STRAIGHT, path((0, 4, 0, 0), (2, 4, 4, 0)))))
-    assert at(walk, 3) == pytest.approx((4, 2))
-    assert at(walk, 5) == pytest.approx((2, 0))
+    assert pose_at(walk, 3) == pytest.approx((4, 2))
+    assert pose_at(walk, 5) == pytest.approx((2, 0))
 
 
 def test_first_waypoint_is_start_regardless_of_time():
-    assert at(Walk(Script(trajectories=(path((1, 0, 0, 0), (2, 4, 0, 0)),))), 1) == pytest.approx((2, 0))
+    assert pose_at(Walk(Script(trajectories=(path((1, 0, 0, 0), (2, 4, 0, 0)),))), 1) == pytest.approx((2, 0))
 
 
 def test_script_without_waypoints_has_none():
@@ -62,9 +62,9 @@ def test_script_without_waypoints_has_none():
 def test_path_is_curved_and_straight_with_full_tension():
     corner = [(0.0, 0.0, 0.0, 0.0), (1.0, 1.0, 0.0, 0.0), (2.0, 1.0, 1.0, 0.0)]
     # Catmull-Rom: from (0, 0) to (1, 0) with the tangents (0.5, 0) and (0.5, 0.5), in the middle of the way
-    x, y = at(Walk(Script(trajectories=(path(*corner),))), 0.5)
+    x, y = pose_at(Walk(Script(trajectories=(path(*corner),))), 0.5)
     assert (x, y) == pytest.approx((0.5, -0.0625))
-    x, y = at(Walk(Script(trajectories=(path(*corner, tension=1.0),))), 0.5)
+    x, y = pose_at(Walk(Script(trajectories=(path(*corner, tension=1.0),))), 0.5)
     assert (x, y) == pytest.approx((0.5, 0.0))
 
 
@@ -85,5 +85,5 @@ def test_walk_passes_through_all_waypoints(steps, tension, seconds):
     trajectory = path(*((time, *step[1:]) for time, step in zip(times, steps, strict=True)), tension=tension)
     walk = Walk(Script(loop=False, trajectories=(trajectory,)))
     for time, (_, x, y, _yaw) in zip(times, steps, strict=True):
-        assert at(walk, time) == pytest.approx((x, y), abs=1e-6)
+        assert pose_at(walk, time) == pytest.approx((x, y), abs=1e-6)
     assert sqrt(sum(component * component for component in walk.pose(seconds)[3:])) == pytest.approx(1.0)

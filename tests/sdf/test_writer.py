@@ -32,7 +32,7 @@ MANIFEST = WORLDS / "manifest.json"
 
 
 def read_back(text):
-    """What a text says, whatever is wrong with it."""
+    """Return the content of a text, valid or not."""
     document, warnings = parse_as_gazebo(text, "w.sdf")
     assert warnings == ()
     sdf = read(document).sdf
@@ -40,20 +40,20 @@ def read_back(text):
     return sdf
 
 
-def again(entity):
-    """A world or model after writing and reading."""
+def written_and_read(entity):
+    """Return a world or model after writing and reading."""
     sdf = read_back(save(entity))
     return sdf.worlds[0] if isinstance(entity, World) else sdf.models[0]
 
 
-def same(kind, make):
-    """Whether any object of a class, put into a model or world, is the same after writing and reading."""
+def check_round_trip(kind, make):
+    """Check that any object of a class, inside a model or world, is equal after writing and reading."""
 
     @settings(deadline=None, max_examples=15, suppress_health_check=list(HealthCheck))
-    @given(part=objects(kind))
-    def check(part):
-        whole = make(part)
-        assert again(whole) == whole
+    @given(element=objects(kind))
+    def check(element):
+        container = make(element)
+        assert written_and_read(container) == container
 
     check()
 
@@ -75,7 +75,7 @@ def same(kind, make):
     ],
 )
 def test_written_objects_are_read_back(kind, make):
-    same(kind, make)
+    check_round_trip(kind, make)
 
 
 def test_default_values_are_omitted():
@@ -91,17 +91,17 @@ def test_sizes_masses_and_poses_are_always_written():
     assert "<mass>1</mass>" in text
     assert "<ixx>1</ixx>" in text
     assert "<size>1 1 1</size>" in text
-    framed = Model("m", frames=(Frame("f", pose=RawPose(relative_to="l")),))
-    assert '<pose relative_to="l">0 0 0 0 0 0</pose>' in save(framed)
+    model_with_frame = Model("m", frames=(Frame("f", pose=RawPose(relative_to="l")),))
+    assert '<pose relative_to="l">0 0 0 0 0 0</pose>' in save(model_with_frame)
 
 
 def test_plugin_contents_and_unused_elements_are_preserved():
-    inside = (
+    content = (
         '<physics name="p" type="ode"><ode><solver><iters>50</iters></solver></ode></physics>'
         '<scene><sky><clouds/></sky></scene><gui><camera name="user"/></gui>'
         '<plugin name="p" filename="f.so" more="x"><a b="c">d</a><!-- e --></plugin>'
     )
-    text = save(world(inside))
+    text = save(world(content))
     assert "<iters>50</iters>" in text
     assert "<clouds/>" in text
     assert '<camera name="user"/>' in text
@@ -145,8 +145,12 @@ def test_quaternion_is_preserved():
     pose = f'<pose rotation_format="quat_xyzw">1 2 3 0 0 {half} {half}</pose>'
     parsed_model = model(f'<link name="a">{pose}</link>')
     assert parsed_model.links[0].pose.pose.quaternion == (0.0, 0.0, half, half)
-    assert again(parsed_model) == parsed_model
-    assert again(Model("m", RawPose(Pose((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))))).pose.pose.rpy == (0.1, 0.2, 0.3)
+    assert written_and_read(parsed_model) == parsed_model
+    assert written_and_read(Model("m", RawPose(Pose((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))))).pose.pose.rpy == (
+        0.1,
+        0.2,
+        0.3,
+    )
 
 
 def _files():
@@ -157,7 +161,7 @@ def _files():
 
 
 def normalized(sdf):
-    """A file as a text in which nan is nan, which an inertia in one of these worlds is, and -0 is 0."""
+    """Return a file as a text; nan, as in one world's inertia, equals nan, and -0 is 0."""
     return repr(sdf).replace("-0.0,", "0.0,").replace("-0.0)", "0.0)")
 
 

@@ -13,7 +13,7 @@ from linkwright.sdf.worlds import Sdf, World
 
 
 def read_sdf(text: str) -> Sdf:
-    """What a text says, which must be right."""
+    """Return the content of a valid text."""
     document, warnings = parse_as_gazebo(text, "w.sdf")
     reading = read(document)
     assert (*warnings, *reading.diagnostics) == ()
@@ -21,26 +21,26 @@ def read_sdf(text: str) -> Sdf:
     return reading.sdf
 
 
-def model(inside: str, attributes: str = "") -> Model:
-    """The model ``m`` with something in it."""
-    return read_sdf(f'<sdf version="1.9"><model name="m" {attributes}>{inside}</model></sdf>').models[0]
+def model(elements: str, attributes: str = "") -> Model:
+    """Return the model ``m`` with these elements."""
+    return read_sdf(f'<sdf version="1.9"><model name="m" {attributes}>{elements}</model></sdf>').models[0]
 
 
-def world(inside: str) -> World:
-    """The world ``w`` with something in it, includes not resolved."""
-    return read_sdf(f'<sdf version="1.9"><world name="w">{inside}</world></sdf>').worlds[0]
+def world(elements: str) -> World:
+    """Return the world ``w`` with these elements; includes are not resolved."""
+    return read_sdf(f'<sdf version="1.9"><world name="w">{elements}</world></sdf>').worlds[0]
 
 
 def write(folder: Path, files: Mapping[str, str]) -> None:
-    """Files below a folder, by their paths."""
+    """Write files below a folder, by their paths."""
     for name, text in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
 
 
-def examined(folder: Path, inside: str, **environment: str) -> WorldDescription:
-    """A world in a folder that includes what the folder holds; home is the folder too."""
+def examine_world_in(folder: Path, elements: str, **environment: str) -> WorldDescription:
+    """Examine a world in a folder that includes files of the folder, which is also the home folder."""
     path = folder / "w.world"
-    path.write_text(f'<sdf version="1.9"><world name="w">{inside}</world></sdf>', encoding="utf-8")
+    path.write_text(f'<sdf version="1.9"><world name="w">{elements}</world></sdf>', encoding="utf-8")
     return examine_world(path, environment={"HOME": str(folder), **environment})

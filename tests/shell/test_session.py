@@ -182,7 +182,7 @@ def test_ctrl_c_reaches_command(tmp_path: Path) -> None:
 
 
 def test_sigint_to_shell_alone_reaches_command(tmp_path: Path) -> None:
-    """As from ``kill -INT``, or a program that started the shell. What is sent to all comes once."""
+    """As from ``kill -INT``, or from a program that started the shell; a signal to the group arrives once."""
     command = "trap 'echo heard' INT; echo ready; while :; do sleep 0.05; done"
     with in_shell(command, tmp_path) as process:
         assert process.stdout is not None

@@ -1,4 +1,4 @@
-"""Cars by the plugin of Gazebo classic."""
+"""Cars with the plugin of Gazebo classic."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from linkwright.control.odometry import yaw_of
 from linkwright.testing import Recording
 from tests.simulation.test_movers import drive
-from tests.simulation.test_plugins import SECOND, served
+from tests.simulation.test_plugins import SECOND, running_server
 from tests.simulation.worlds import GROUND
 
 RADIUS, BASE, TRACK = 0.1, 0.6, 0.4
@@ -37,7 +37,7 @@ def _joint(name: str, parent: str, child: str, axis: str, limit: float) -> str:
 
 
 def car(plugin: str, wheel: str = f"<cylinder><radius>{RADIUS}</radius><length>0.05</length></cylinder>") -> str:
-    """A car of 12.4 kg whose frame is between its rear wheels."""
+    """Return a car of 12.4 kg whose frame is between its rear wheels."""
     parts = [_link("base", 0.0, 0.0, 0.15, 4.0), _link("load", BASE / 2, 0.0, 0.15, 4.0)]
     parts.append('<joint name="fixed" type="fixed"><parent>base</parent><child>load</child></joint>')
     for side, y in (("left", TRACK / 2), ("right", -TRACK / 2)):
@@ -52,16 +52,16 @@ def car(plugin: str, wheel: str = f"<cylinder><radius>{RADIUS}</radius><length>0
     return f'<model name="car">{"".join(parts)}{plugin}</model>'
 
 
-def plugin(more: str = "") -> str:
-    """The plugin, with names of joints that are its defaults."""
+def plugin(extra: str = "") -> str:
+    """Return the plugin with the default names of the joints."""
     return (
         '<plugin name="car" filename="libgazebo_ros_ackermann_drive.so"><publish_odom>true</publish_odom>'
-        f"<publish_distance>true</publish_distance>{more}</plugin>"
+        f"<publish_distance>true</publish_distance>{extra}</plugin>"
     )
 
 
 async def test_car_drives_straight_with_correct_odometry():
-    async with served(GROUND, car(plugin())) as (server, graph, log):
+    async with running_server(GROUND, car(plugin())) as (server, graph, log):
         odometry, distance = (Recording(graph, server.node, topic) for topic in ("/odom", "/distance"))
         await drive(server, graph, 0.5)
         begin = server.simulation.model_pose("car")
@@ -76,12 +76,12 @@ async def test_car_drives_straight_with_correct_odometry():
 
 @pytest.mark.parametrize("forward", [0.5, -0.5])
 async def test_car_turns_according_to_steering(forward):
-    async with served(GROUND, car(plugin())) as (server, graph, log):
-        await drive(server, graph, forward, turning=0.3, seconds=2.0)
+    async with running_server(GROUND, car(plugin())) as (server, graph, log):
+        await drive(server, graph, forward, yaw_rate=0.3, seconds=2.0)
         begin = yaw_of(server.simulation.model_pose("car"))
-        await drive(server, graph, forward, turning=0.3, seconds=1.0)
-        turned = yaw_of(server.simulation.model_pose("car")) - begin
-        assert turned == pytest.approx(0.5 * tan(0.3) / BASE, rel=0.05)
+        await drive(server, graph, forward, yaw_rate=0.3, seconds=1.0)
+        yaw = yaw_of(server.simulation.model_pose("car")) - begin
+        assert yaw == pytest.approx(0.5 * tan(0.3) / BASE, rel=0.05)
         left, right = (server.simulation.joint_state(f"car::{side}_steering_joint")[0] for side in ("left", "right"))
         assert abs(left - right) > 0.01
         server.reset()
@@ -91,6 +91,6 @@ async def test_car_turns_according_to_steering(forward):
 
 
 async def test_wheel_without_round_collision_is_reported():
-    async with served(GROUND, car(plugin(), "<box><size>0.2 0.2 0.05</size></box>")) as (server, _, log):
+    async with running_server(GROUND, car(plugin(), "<box><size>0.2 0.2 0.05</size></box>")) as (server, _, log):
         assert not server.plugins("car")
         assert [record.text for record in log if "needs a collision that is a cylinder or a sphere" in record.text]

@@ -1,4 +1,4 @@
-"""Topics of gz that a bridge has in ROS under their name, with another type."""
+"""Topics of gz that a bridge offers in ROS under the same name, with another type."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from linkwright.nodes import NodeOptions
 from linkwright.simulation.nodes.bridge import ParameterBridge
 from tests.simulation.test_diff_drive import gz
 from tests.simulation.test_lost_commanders import advance, speed, warnings
-from tests.simulation.test_plugins import robot, served
+from tests.simulation.test_plugins import robot, running_server
 from tests.simulation.worlds import GROUND, model
 
 STAMPED = "geometry_msgs/msg/TwistStamped"
@@ -18,7 +18,7 @@ BRIDGED = f"cmd_vel@{STAMPED}]gz.msgs.Twist"
 
 @pytest.mark.parametrize("first", ["bridge", "robot"])
 async def test_bridged_drive_accepts_stamped_velocities_on_single_type(first: str) -> None:
-    async with served(GROUND) as (server, graph, log):
+    async with running_server(GROUND) as (server, graph, log):
         bridge = ParameterBridge(graph, NodeOptions(arguments=[BRIDGED])) if first == "bridge" else None
         server.spawn(model(robot(gz())), "mbot")
         await advance(server, graph, 0.1)

@@ -1,4 +1,4 @@
-"""Plugins of Gazebo classic that push, tell and ask: force, state, properties, trajectories of joints."""
+"""Plugins of Gazebo classic with topics and services for forces, states, properties and joint trajectories."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.messages import get_message, get_service
 from linkwright.testing import Recording
 from tests.simulation.test_joint_controllers import arm
 from tests.simulation.test_joint_trajectory import trajectory
-from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.test_plugins import SECOND, robot, running_server
 from tests.simulation.worlds import GROUND, box
 from tests.waiting import SECONDS
 
@@ -22,9 +22,9 @@ STATE = (
 PROPERTIES = '<plugin name="properties" filename="libgazebo_ros_properties.so"/>'
 
 
-async def ask(graph, server, kind: str, service_name: str, /, **fields):
-    """Ask a service, which answers between two chunks of time."""
-    service = get_service(kind)
+async def call_service(graph, server, service_type: str, service_name: str, /, **fields):
+    """Call a service, and advance the simulation so that it answers."""
+    service = get_service(service_type)
     node = graph.create_node("asker")
     answer = node.create_client(service, service_name).call_async(service.Request(**fields))
     await graph.settle()
@@ -34,17 +34,17 @@ async def ask(graph, server, kind: str, service_name: str, /, **fields):
     return response
 
 
-def pushed(more: str = "", name: str = "push", yaw: float = 0.0) -> str:
-    """A box of 2 kg, far from all else, that is pushed."""
+def box_with_force(extra: str = "", name: str = "push", yaw: float = 0.0) -> str:
+    """Return a box of 2 kg with the force plugin."""
     plugin = (
         f'<plugin name="{name}" filename="libgazebo_ros_force.so"><link_name>link</link_name>'
-        f"<ros><remapping>gazebo_ros_force:={name}</remapping></ros>{more}</plugin>"
+        f"<ros><remapping>gazebo_ros_force:={name}</remapping></ros>{extra}</plugin>"
     )
     return box("crate", f"0 0 0 0 0 {yaw}", "1 1 1", 2.0).replace("</model>", f"{plugin}</model>")
 
 
 async def push(graph, topic: str, force: tuple[float, float, float]) -> None:
-    """Send a wrench."""
+    """Publish a wrench."""
     message = get_message("geometry_msgs/msg/Wrench")()
     message.force.x, message.force.y, message.force.z = force
     node = graph.create_node("hand")
@@ -53,13 +53,13 @@ async def push(graph, topic: str, force: tuple[float, float, float]) -> None:
     node.destroy_node()
 
 
-@pytest.mark.parametrize(("frame", "way"), [("world", (1.0, 0.0)), ("link", (0.0, 1.0))])
-async def test_force_acts_in_world_or_link_frame(frame, way):
-    text = pushed(f"<force_frame>{frame}</force_frame>", yaw=pi / 2)
-    async with served("<gravity>0 0 0</gravity>", text) as (server, graph, log):
+@pytest.mark.parametrize(("frame", "position"), [("world", (1.0, 0.0)), ("link", (0.0, 1.0))])
+async def test_force_acts_in_world_or_link_frame(frame, position):
+    text = box_with_force(f"<force_frame>{frame}</force_frame>", yaw=pi / 2)
+    async with running_server("<gravity>0 0 0</gravity>", text) as (server, graph, log):
         await push(graph, "/push", (4.0, 0.0, 0.0))
         server.advance(SECOND)
-        assert server.simulation.model_pose("crate")[:2] == pytest.approx(way, abs=2e-3)
+        assert server.simulation.model_pose("crate")[:2] == pytest.approx(position, abs=2e-3)
         server.reset()
         server.advance(SECOND)
         assert server.simulation.model_pose("crate")[:2] == pytest.approx((0.0, 0.0), abs=1e-9)
@@ -69,8 +69,8 @@ async def test_force_acts_in_world_or_link_frame(frame, way):
 async def test_forces_of_several_plugins_add_up():
     names = "<bodyName>link</bodyName><topicName>two</topicName>"
     second = f'<plugin name="two" filename="libgazebo_ros_force.so">{names}</plugin>'
-    text = pushed().replace("</model>", f"{second}</model>")
-    async with served("<gravity>0 0 0</gravity>", text) as (server, graph, log):
+    text = box_with_force().replace("</model>", f"{second}</model>")
+    async with running_server("<gravity>0 0 0</gravity>", text) as (server, graph, log):
         await push(graph, "/push", (4.0, 0.0, 0.0))
         await push(graph, "/two", (0.0, 2.0, 0.0))
         server.advance(SECOND)
@@ -79,13 +79,13 @@ async def test_forces_of_several_plugins_add_up():
 
 
 async def test_unknown_force_frame_is_rejected():
-    async with served(pushed("<force_frame>map</force_frame>")) as (server, _, log):
+    async with running_server(box_with_force("<force_frame>map</force_frame>")) as (server, _, log):
         assert not server.plugins("crate")
         assert [record.text for record in log if "<force_frame> must be" in record.text]
 
 
 async def test_model_and_link_states_are_published():
-    async with served(GROUND, robot(), STATE) as (server, graph, log):
+    async with running_server(GROUND, robot(), STATE) as (server, graph, log):
         models, links = (Recording(graph, server.node, f"/world/{name}") for name in ("model_states", "link_states"))
         server.advance(SECOND)
         await graph.settle()
@@ -99,17 +99,25 @@ async def test_model_and_link_states_are_published():
 
 
 async def test_state_services_are_in_plugin_namespace():
-    async with served(GROUND, robot(), STATE) as (server, graph, log):
+    async with running_server(GROUND, robot(), STATE) as (server, graph, log):
         state = get_message("gazebo_msgs/msg/EntityState")(name="mbot")
         state.pose.position.x, state.pose.position.z = 2.0, 0.11
-        answer = await ask(graph, server, "gazebo_msgs/srv/SetEntityState", "/world/set_entity_state", state=state)
+        answer = await call_service(
+            graph, server, "gazebo_msgs/srv/SetEntityState", "/world/set_entity_state", state=state
+        )
         assert answer.success
-        answer = await ask(graph, server, "gazebo_msgs/srv/GetEntityState", "/world/get_entity_state", name="mbot")
+        answer = await call_service(
+            graph, server, "gazebo_msgs/srv/GetEntityState", "/world/get_entity_state", name="mbot"
+        )
         assert answer.state.pose.position.x == pytest.approx(2.0, abs=1e-3)
-        answer = await ask(graph, server, "gazebo_msgs/srv/GetEntityState", "/world/get_entity_state", name="who")
+        answer = await call_service(
+            graph, server, "gazebo_msgs/srv/GetEntityState", "/world/get_entity_state", name="who"
+        )
         assert not answer.success
         state.name = "ground"
-        answer = await ask(graph, server, "gazebo_msgs/srv/SetEntityState", "/world/set_entity_state", state=state)
+        answer = await call_service(
+            graph, server, "gazebo_msgs/srv/SetEntityState", "/world/set_entity_state", state=state
+        )
         assert not answer.success
         assert [record.text for record in log] == [
             "get_entity_state: there is no model or link 'who'",
@@ -118,57 +126,61 @@ async def test_state_services_are_in_plugin_namespace():
 
 
 async def test_service_sets_joint_positions():
-    held = arm("").replace("0 1 0", "0 0 1")
+    horizontal_arm = arm("").replace("0 1 0", "0 0 1")
     kind, name = "gazebo_msgs/srv/SetModelConfiguration", "/world/set_joint_positions"
-    async with served(held, STATE) as (server, graph, _):
-        given = {"model_name": "arm", "joint_names": ["shoulder"]}
-        answer = await ask(graph, server, kind, name, joint_positions=[0.7], **given)
+    async with running_server(horizontal_arm, STATE) as (server, graph, _):
+        fields = {"model_name": "arm", "joint_names": ["shoulder"]}
+        answer = await call_service(graph, server, kind, name, joint_positions=[0.7], **fields)
         assert (answer.success, answer.status_message) == (True, "set_joint_positions: success")
         assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.7, abs=1e-6)
-        answer = await ask(graph, server, kind, name, joint_positions=[0.7, 0.8], **given)
+        answer = await call_service(graph, server, kind, name, joint_positions=[0.7, 0.8], **fields)
         assert (answer.success, "different lengths" in answer.status_message) == (False, True)
-        answer = await ask(graph, server, kind, name, model_name="legs")
+        answer = await call_service(graph, server, kind, name, model_name="legs")
         assert (answer.success, answer.status_message) == (False, "there is no model or link 'legs'")
 
 
 async def test_services_return_properties_and_set_gravity():
-    async with served(GROUND, arm(""), box("crate", "5 0 1 0 0 0", "1 1 1", 3.0), PROPERTIES) as (server, graph, log):
-        answer = await ask(
+    async with running_server(GROUND, arm(""), box("crate", "5 0 1 0 0 0", "1 1 1", 3.0), PROPERTIES) as (
+        server,
+        graph,
+        log,
+    ):
+        answer = await call_service(
             graph, server, "gazebo_msgs/srv/GetModelProperties", "/get_model_properties", model_name="arm"
         )
         assert (answer.canonical_link_name, answer.joint_names) == ("arm::link", ["shoulder"])
         kind = "gazebo_msgs/srv/GetLinkProperties"
-        answer = await ask(graph, server, kind, "/get_link_properties", link_name="crate::link")
+        answer = await call_service(graph, server, kind, "/get_link_properties", link_name="crate::link")
         assert (answer.mass, answer.ixx, answer.gravity_mode) == (3.0, pytest.approx(0.5), True)
         kind = "gazebo_msgs/srv/GetJointProperties"
-        answer = await ask(graph, server, kind, "/get_joint_properties", joint_name="arm::shoulder")
+        answer = await call_service(graph, server, kind, "/get_joint_properties", joint_name="arm::shoulder")
         assert (answer.type, len(answer.position), answer.success) == (answer.REVOLUTE, 1, True)
         kind = "gazebo_msgs/srv/SetPhysicsProperties"
-        up = get_message("geometry_msgs/msg/Vector3")(z=1.0)
-        assert (await ask(graph, server, kind, "/set_physics_properties", gravity=up)).success
-        answer = await ask(graph, server, "gazebo_msgs/srv/GetPhysicsProperties", "/get_physics_properties")
+        upward = get_message("geometry_msgs/msg/Vector3")(z=1.0)
+        assert (await call_service(graph, server, kind, "/set_physics_properties", gravity=upward)).success
+        answer = await call_service(graph, server, "gazebo_msgs/srv/GetPhysicsProperties", "/get_physics_properties")
         assert (answer.time_step, answer.gravity.z) == (0.001, 1.0)
-        begin = server.simulation.link_velocity("crate::link")[0][2]
+        speed = server.simulation.link_velocity("crate::link")[0][2]
         server.advance(SECOND)
-        assert server.simulation.link_velocity("crate::link")[0][2] - begin == pytest.approx(1.0, abs=1e-6)
+        assert server.simulation.link_velocity("crate::link")[0][2] - speed == pytest.approx(1.0, abs=1e-6)
         assert not log
 
 
 async def test_services_change_link_and_joint_properties():
     crate = box("crate", "5 0 1 0 0 0", "1 1 1", 3.0)
-    async with served(GROUND, arm(""), crate, PROPERTIES) as (server, graph, log):
+    async with running_server(GROUND, arm(""), crate, PROPERTIES) as (server, graph, log):
         kind = "gazebo_msgs/srv/SetLinkProperties"
         facts = {"mass": 6.0, "ixx": 1.0, "iyy": 1.0, "izz": 1.0, "gravity_mode": False, "link_name": "crate::link"}
-        assert (await ask(graph, server, kind, "/set_link_properties", **facts)).success
-        answer = await ask(
+        assert (await call_service(graph, server, kind, "/set_link_properties", **facts)).success
+        answer = await call_service(
             graph, server, "gazebo_msgs/srv/GetLinkProperties", "/get_link_properties", link_name="crate::link"
         )
         assert (answer.mass, answer.izz, answer.gravity_mode) == (6.0, pytest.approx(1.0), False)
-        begin = server.simulation.model_pose("crate")[2]
+        height = server.simulation.model_pose("crate")[2]
         server.advance(SECOND // 10)
-        assert server.simulation.model_pose("crate")[2] == pytest.approx(begin)
-        refused = await ask(graph, server, kind, "/set_link_properties", **(facts | {"ixx": 9.0}))
-        assert (refused.success, refused.status_message) == (
+        assert server.simulation.model_pose("crate")[2] == pytest.approx(height)
+        rejected = await call_service(graph, server, kind, "/set_link_properties", **(facts | {"ixx": 9.0}))
+        assert (rejected.success, rejected.status_message) == (
             False,
             (
                 "this mass or inertia is not physically possible; give a positive mass and moments that "
@@ -179,8 +191,8 @@ async def test_services_change_link_and_joint_properties():
         config = get_message("gazebo_msgs/msg/ODEJointProperties")(damping=[2.0], hi_stop=[0.25])
         kind = "gazebo_msgs/srv/SetJointProperties"
         facts = {"joint_name": "arm::shoulder", "ode_joint_config": config}
-        assert (await ask(graph, server, kind, "/set_joint_properties", **facts)).success
-        answer = await ask(
+        assert (await call_service(graph, server, kind, "/set_joint_properties", **facts)).success
+        answer = await call_service(
             graph, server, "gazebo_msgs/srv/GetJointProperties", "/get_joint_properties", joint_name="arm::shoulder"
         )
         assert list(answer.damping) == [2.0]
@@ -190,19 +202,19 @@ async def test_services_change_link_and_joint_properties():
 
 async def test_joint_pose_trajectory_jumps_between_points():
     plugin = '<plugin name="poses" filename="libgazebo_ros_joint_pose_trajectory.so"/>'
-    async with served(arm(plugin).replace("0 1 0", "0 0 1")) as (server, graph, log):
+    async with running_server(arm(plugin).replace("0 1 0", "0 0 1")) as (server, graph, log):
         message = trajectory((1.0, 0.3), (1.0, 0.6), (0.0, 0.9))
         message.header.frame_id = "world"
         node = graph.create_node("planner")
         publisher = node.create_publisher("trajectory_msgs/msg/JointTrajectory", "/set_joint_trajectory", 1)
         publisher.publish(message)
         await graph.settle()
-        seen = []
+        positions = []
         for _ in range(3):
             server.advance(SECOND // 2)
-            seen.append(server.simulation.joint_state("arm::shoulder")[0])
+            positions.append(server.simulation.joint_state("arm::shoulder")[0])
             server.advance(SECOND // 2)
-        assert seen == pytest.approx([0.3, 0.6, 0.9], abs=1e-6)
+        assert positions == pytest.approx([0.3, 0.6, 0.9], abs=1e-6)
         message.joint_names = ["elbow"]
         publisher.publish(message)
         await graph.settle()

@@ -1,4 +1,4 @@
-"""Commands with a number that is none: what obeys them comes to rest, the log says why, and the world goes on."""
+"""Commands with NaN: the plugin stops, the log says why, and the simulation continues."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import pytest
 
 from linkwright.messages import get_message
 from tests.simulation.test_lost_commanders import DRIVES, advance, forward, speed, warnings
-from tests.simulation.test_plugins import served
+from tests.simulation.test_plugins import running_server
 from tests.simulation.worlds import GROUND
 
 
 @pytest.mark.parametrize("strange", [nan, inf], ids=str)
 @pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())
 async def test_drive_stops_at_nan_command_and_follows_next(model: str, strange: float) -> None:
-    async with served(GROUND, model) as (server, graph, log):
+    async with running_server(GROUND, model) as (server, graph, log):
         driver = graph.create_node("driver").create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
         driver.publish(forward(0.3))
         await advance(server, graph, 1.5)

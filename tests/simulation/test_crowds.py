@@ -1,4 +1,4 @@
-"""Worlds of too many links."""
+"""Worlds with too many links."""
 
 import pytest
 
@@ -10,21 +10,21 @@ from linkwright.simulation.server.worlds import load_world
 LINK = '<model name="m"><link name="l"/></model>'
 
 
-def world(inside: str, before: str = "") -> str:
-    return f'<?xml version="1.0"?>{before}<sdf version="1.7"><world name="w">{inside}</world></sdf>'
+def world(elements: str, prologue: str = "") -> str:
+    return f'<?xml version="1.0"?>{prologue}<sdf version="1.7"><world name="w">{elements}</world></sdf>'
 
 
 @pytest.mark.parametrize(
-    "inside",
+    "elements",
     [LINK * (MAX_LINKS + 1), "<include><uri>model://m</uri></include>" * MAX_LINKS + LINK],
     ids=["links", "includes"],
 )
-def test_world_with_too_many_links_is_rejected_before_parsing(tmp_path, monkeypatch, inside):
+def test_world_with_too_many_links_is_rejected_before_parsing(tmp_path, monkeypatch, elements):
     monkeypatch.delattr(linkwright.simulation.server.worlds, "examine_world")
     path = tmp_path / "crowd.world"
-    path.write_text(world(inside))
-    for text in (None, world(inside)):
-        with pytest.raises(LinkwrightError) as caught:
+    path.write_text(world(elements))
+    for text in (None, world(elements)):
+        with pytest.raises(LinkwrightError) as error:
             load_world(str(path), text)
-        (finding,) = caught.value.diagnostics
+        (finding,) = error.value.diagnostics
         assert finding.code == "SIM105"

@@ -1,4 +1,4 @@
-"""Joints that hold a link of another model until they are told to let go."""
+"""Joints that hold a link of another model until they are detached."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 from linkwright.geometry.single import compose, invert
 from linkwright.messages import get_message
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, served
+from tests.simulation.test_plugins import SECOND, running_server
 from tests.simulation.worlds import GROUND, box, model
 
 STATE, DETACH, ATTACH = (
@@ -19,17 +19,17 @@ POST = '<joint name="post" type="fixed"><parent>world</parent><child>link</child
 LOAD = box("load", "0.05 0 1.75 0 0.2 0", "0.2 0.2 0.2", 2.0)
 
 
-def carrier(more: str = "", child: str = "load", *, held: bool = True, pose: str = "0 0 2 0 0 0.3") -> str:
-    """A box with the plugin."""
+def carrier(extra: str = "", child: str = "load", *, is_fixed: bool = True, pose: str = "0 0 2 0 0 0.3") -> str:
+    """Return a box with the plugin."""
     plugin = (
         '<plugin filename="gz-sim-detachable-joint-system" name="gz::sim::systems::DetachableJoint">'
-        f"<parent_link>link</parent_link><child_model>{child}</child_model><child_link>link</child_link>{more}</plugin>"
+        f"<parent_link>link</parent_link><child_model>{child}</child_model><child_link>link</child_link>{extra}</plugin>"
     )
-    return box("carrier", pose, "0.2 0.2 0.2", 5.0).replace("</model>", f"{POST if held else ''}{plugin}</model>")
+    return box("carrier", pose, "0.2 0.2 0.2", 5.0).replace("</model>", f"{POST if is_fixed else ''}{plugin}</model>")
 
 
 async def send_empty(server, graph, topic: str, seconds: float = 0.5) -> None:
-    """Send an empty message, and let time pass."""
+    """Publish an empty message, and advance the time."""
     node = graph.create_node("operator")
     node.create_publisher(get_message("std_msgs/msg/Empty"), topic, 10).publish(get_message("std_msgs/msg/Empty")())
     await graph.settle()
@@ -39,46 +39,46 @@ async def send_empty(server, graph, topic: str, seconds: float = 0.5) -> None:
 
 
 def offset(server) -> np.ndarray:
-    """Where the load is in the frame of the carrier."""
+    """Return the load's pose in the carrier's frame."""
     return np.array(
         compose(invert(server.simulation.link_pose("carrier::link")), server.simulation.link_pose("load::link"))
     )
 
 
 async def test_attached_link_is_detached_and_attached_again():
-    async with served(GROUND, carrier(), LOAD) as (server, graph, log):
+    async with running_server(GROUND, carrier(), LOAD) as (server, graph, log):
         states = Recording(graph, server.node, STATE)
         server.advance(SECOND)
         assert server.simulation.link_pose("load::link")[:3] == pytest.approx((0.05, 0, 1.75), abs=1e-3)
         await send_empty(server, graph, DETACH)
         assert server.simulation.link_pose("load::link")[2] == pytest.approx(1.75 - 9.81 / 8, abs=0.01)
         await send_empty(server, graph, DETACH, 2.0)
-        resting = server.simulation.link_pose("load::link")
-        assert resting[2] == pytest.approx(0.1, abs=1e-3)
+        rest_pose = server.simulation.link_pose("load::link")
+        assert rest_pose[2] == pytest.approx(0.1, abs=1e-3)
         await send_empty(server, graph, ATTACH, 1.0)
-        assert server.simulation.link_pose("load::link") == pytest.approx(resting, abs=1e-3)
+        assert server.simulation.link_pose("load::link") == pytest.approx(rest_pose, abs=1e-3)
         assert [state.data for state in states] == ["attached", "detached", "attached"]
         assert not log
 
 
 async def test_attached_link_moves_with_parent():
-    within = LOAD.replace("1.75", "1.9")
-    async with served("<gravity>0 0 0</gravity>", carrier(held=False), within) as (server, _, log):
-        before = offset(server)
+    load = LOAD.replace("1.75", "1.9")
+    async with running_server("<gravity>0 0 0</gravity>", carrier(is_fixed=False), load) as (server, _, log):
+        start = offset(server)
         server.simulation.set_model_velocity("carrier", (0.5, 0.0, 0.0), (0.0, 0.0, 2.0))
         server.advance(SECOND)
-        assert offset(server) == pytest.approx(before, abs=1e-3)
+        assert offset(server) == pytest.approx(start, abs=1e-3)
         assert server.simulation.link_pose("load::link")[0] > 0.2
         assert not log
 
 
 async def test_initial_attach_and_topic_names_can_be_configured():
-    more = (
+    extra = (
         "<initial_attach>false</initial_attach><attach_topic>/grab</attach_topic><detach_topic>/drop</detach_topic>"
         "<output_topic>/grip</output_topic>"
     )
     apart = LOAD.replace("1.75", "1.5")
-    async with served(GROUND, carrier(more), apart) as (server, graph, log):
+    async with running_server(GROUND, carrier(extra), apart) as (server, graph, log):
         states = Recording(graph, server.node, "/grip")
         server.advance(SECOND // 5)
         height = server.simulation.link_pose("load::link")[2]
@@ -92,7 +92,7 @@ async def test_initial_attach_and_topic_names_can_be_configured():
 
 
 async def test_late_model_is_attached_and_missing_model_reported_once():
-    async with served(GROUND, carrier()) as (server, _, log):
+    async with running_server(GROUND, carrier()) as (server, _, log):
         server.advance(SECOND // 5)
         assert [record.text for record in log] == [
             "plugin 'gz::sim::systems::DetachableJoint': there is no link 'load::link'"
@@ -112,7 +112,7 @@ async def test_late_model_is_attached_and_missing_model_reported_once():
 
 
 async def test_reset_attaches_load_again():
-    async with served(GROUND, carrier(), LOAD) as (server, graph, _):
+    async with running_server(GROUND, carrier(), LOAD) as (server, graph, _):
         await send_empty(server, graph, DETACH, 1.0)
         server.reset()
         server.advance(SECOND)
@@ -120,16 +120,20 @@ async def test_reset_attaches_load_again():
 
 
 async def test_missing_link_and_parameters_are_reported():
-    async with served(GROUND, carrier().replace("<parent_link>link", "<parent_link>hand"), LOAD) as (server, _, log):
+    async with running_server(GROUND, carrier().replace("<parent_link>link", "<parent_link>hand"), LOAD) as (
+        server,
+        _,
+        log,
+    ):
         assert not server.plugins("carrier")
         assert ["'hand'" in record.text for record in log] == [True]
-    async with served(GROUND, carrier().replace("child_link>", "link_of_child>"), LOAD) as (server, _, log):
+    async with running_server(GROUND, carrier().replace("child_link>", "link_of_child>"), LOAD) as (server, _, log):
         assert not server.plugins("carrier")
         assert any("'child_link'" in record.text for record in log)
 
 
 async def test_replaced_model_keeps_attachment_state():
-    async with served(GROUND, carrier(), LOAD) as (server, graph, log):
+    async with running_server(GROUND, carrier(), LOAD) as (server, graph, log):
         server.replace_model(model(carrier().replace("0.2 0.2 0.2", "0.2 0.2 0.1")), "carrier")
         server.advance(SECOND)
         assert server.simulation.link_pose("load::link")[2] == pytest.approx(1.75, abs=1e-3)

@@ -1,4 +1,4 @@
-"""Mistakes of Gazebo that are made on request only."""
+"""Mistakes of Gazebo that are reproduced only on request."""
 
 from __future__ import annotations
 
@@ -13,41 +13,41 @@ from linkwright.simulation.server.server import ServerOptions
 from linkwright.testing import Recording
 from tests.simulation.test_diff_drive import classic
 from tests.simulation.test_movers import drive, moving_box, planar
-from tests.simulation.test_plugins import robot, served
+from tests.simulation.test_plugins import robot, running_server
 from tests.simulation.worlds import GROUND
 
-BOTH = pytest.mark.parametrize("mistaken", [False, True])
+BOTH = pytest.mark.parametrize("with_mistake", [False, True])
 
 
 @BOTH
-async def test_backward_velocity_sign_mistake_is_optional(mistaken):
-    options = ServerOptions(gazebo_mistakes=mistaken)
-    async with served(GROUND, robot(classic(source=0)), options=options) as (server, graph, _):
+async def test_backward_velocity_sign_mistake_is_optional(with_mistake):
+    options = ServerOptions(gazebo_mistakes=with_mistake)
+    async with running_server(GROUND, robot(classic(source=0)), options=options) as (server, graph, _):
         odometry = Recording(graph, server.node, "/odom")
         await drive(server, graph, -0.3, seconds=2.0)
         message = odometry.last
-        assert message.twist.twist.linear.x == pytest.approx(0.3 if mistaken else -0.3, abs=0.01)
+        assert message.twist.twist.linear.x == pytest.approx(0.3 if with_mistake else -0.3, abs=0.01)
         assert message.pose.pose.position.x < -0.3
 
 
 @BOTH
-async def test_p3d_velocity_frame_mistake_is_optional(mistaken):
+async def test_p3d_velocity_frame_mistake_is_optional(with_mistake):
     p3d = (
         '<plugin name="p3d" filename="libgazebo_ros_p3d.so"><ros><remapping>odom:=told</remapping></ros>'
         "<body_name>link</body_name><frame_name>frame</frame_name><update_rate>10</update_rate></plugin>"
     )
-    turned = f'<link name="frame"><pose>0 0 0 0 0 {pi / 2}</pose></link>'
-    fixed = '<joint name="held" type="fixed"><parent>world</parent><child>frame</child></joint>'
-    text = moving_box(planar() + p3d).replace("</model>", f"{turned}{fixed}</model>")
-    async with served(GROUND, text, options=ServerOptions(gazebo_mistakes=mistaken)) as (server, graph, _):
+    frame = f'<link name="frame"><pose>0 0 0 0 0 {pi / 2}</pose></link>'
+    joint = '<joint name="held" type="fixed"><parent>world</parent><child>frame</child></joint>'
+    text = moving_box(planar() + p3d).replace("</model>", f"{frame}{joint}</model>")
+    async with running_server(GROUND, text, options=ServerOptions(gazebo_mistakes=with_mistake)) as (server, graph, _):
         recording = Recording(graph, server.node, "/told")
         await drive(server, graph, 0.5)
         velocity = recording.last.twist.twist.linear
-        assert (velocity.x, velocity.y) == pytest.approx((0.0, 0.5 if mistaken else -0.5), abs=0.01)
+        assert (velocity.x, velocity.y) == pytest.approx((0.0, 0.5 if with_mistake else -0.5), abs=0.01)
 
 
 @BOTH
-def test_point_color_mistake_is_optional(mistaken):
+def test_point_color_mistake_is_optional(with_mistake):
     cloud = get_message("sensor_msgs/msg/PointCloud2")()
-    fill_camera_cloud(cloud, np.zeros((1, 1, 3)), np.array([[[1, 2, 3]]], np.uint8), swap_red_blue=mistaken)
-    assert list(bytes(cloud.data)[16:19]) == ([1, 2, 3] if mistaken else [3, 2, 1])
+    fill_camera_cloud(cloud, np.zeros((1, 1, 3)), np.array([[[1, 2, 3]]], np.uint8), swap_red_blue=with_mistake)
+    assert list(bytes(cloud.data)[16:19]) == ([1, 2, 3] if with_mistake else [3, 2, 1])

@@ -1,11 +1,11 @@
-"""Models that are put into the ground stand on it."""
+"""Models that are placed into the ground: they are lifted onto it."""
 
 from __future__ import annotations
 
 import pytest
 
 from linkwright.simulation.server.ground_contact import collision_warnings, lift_onto_ground
-from tests.simulation.worlds import GROUND, box, model, simulated
+from tests.simulation.worlds import GROUND, box, make_simulation, model
 
 PLATE = (
     '<model name="plate"><static>true</static><link name="link"><collision name="collision">'
@@ -19,8 +19,8 @@ WALL = (
 
 
 def height(*parts: str, z: float) -> float:
-    """Where a box of 0.2 m is that was put somewhere."""
-    simulation = simulated(*parts)
+    """Return the height of a box of 0.2 m after it was placed and lifted."""
+    simulation = make_simulation(*parts)
     simulation.spawn(model(box("crate", "0 0 0 0 0 0", "0.2 0.2 0.2")), "crate", (0.0, 0.0, z, 0.0, 0.0, 0.0, 1.0))
     lift_onto_ground(simulation, "crate")
     return simulation.model_pose("crate")[2]
@@ -41,7 +41,7 @@ def test_box_inside_wall_is_not_lifted() -> None:
 
 
 def test_lifted_box_rests_on_ground() -> None:
-    simulation = simulated(PLATE)
+    simulation = make_simulation(PLATE)
     simulation.spawn(model(box("crate", "0 0 0 0 0 0", "0.2 0.2 0.2")), "crate")
     lift_onto_ground(simulation, "crate")
     simulation.advance(500_000_000)
@@ -51,7 +51,7 @@ def test_lifted_box_rests_on_ground() -> None:
 
 def test_model_without_collisions_is_reported():
     visual = '<visual name="v"><geometry><box><size>1 1 1</size></box></geometry></visual>'
-    simulation = simulated(GROUND)
+    simulation = make_simulation(GROUND)
     for name, link in (("seen", visual), ("still", f"{visual}<gravity>false</gravity>")):
         simulation.spawn(model(f'<model name="{name}"><link name="link">{link}</link></model>'), name)
     simulation.spawn(model(box("crate", "0 0 2 0 0 0", "0.2 0.2 0.2")), "crate")

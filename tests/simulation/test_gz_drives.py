@@ -1,4 +1,4 @@
-"""Drives of gz but the differential one: cars, and mecanum wheels; and the limits that all of them have."""
+"""Drives of gz except the differential drive: cars and mecanum wheels, and the limits of all drives."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from linkwright.simulation.plugins.limits import SpeedLimits
 from linkwright.testing import Recording
 from tests.simulation.test_ackermann import BASE, RADIUS, TRACK, car
 from tests.simulation.test_movers import drive
-from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.test_plugins import SECOND, robot, running_server
 from tests.simulation.worlds import GROUND, box
 
 WHEEL = f"<cylinder><radius>{RADIUS}</radius><length>0.05</length></cylinder>"
 LENGTH, WIDTH = 0.4, 0.5
 
 
-def steering(more: str = "") -> str:
-    """The plugin of gz for the car."""
+def steering(extra: str = "") -> str:
+    """Return the plugin of gz for the car."""
     return (
         '<plugin name="gz::sim::systems::AckermannSteering" filename="gz-sim-ackermann-steering-system">'
         "<left_joint>rear_left_joint</left_joint><right_joint>rear_right_joint</right_joint>"
@@ -28,12 +28,12 @@ def steering(more: str = "") -> str:
         "<right_steering_joint>right_steering_joint</right_steering_joint>"
         f"<wheel_separation>{TRACK}</wheel_separation><kingpin_width>{TRACK}</kingpin_width>"
         f"<wheel_base>{BASE}</wheel_base><wheel_radius>{RADIUS}</wheel_radius><steer_p_gain>10</steer_p_gain>"
-        f"<topic>cmd_vel</topic><odom_topic>odom</odom_topic><tf_topic>tf</tf_topic>{more}</plugin>"
+        f"<topic>cmd_vel</topic><odom_topic>odom</odom_topic><tf_topic>tf</tf_topic>{extra}</plugin>"
     )
 
 
-def mecanum(more: str = "", name: str = "robot") -> str:
-    """A robot of 9 kg with four wheels that grip, and the plugin of gz."""
+def mecanum(extra: str = "", name: str = "robot") -> str:
+    """Return a robot of 9 kg with four mecanum wheels and the plugin of gz."""
     text = box(name, "0 0 0.2 0 0 0", "0.6 0.3 0.1", 5.0)
     corners = [(end, side) for end in ("front", "back") for side in ("left", "right")]
     for end, side in corners:
@@ -50,7 +50,7 @@ def mecanum(more: str = "", name: str = "robot") -> str:
     plugin = (
         f'<plugin name="gz::sim::systems::MecanumDrive" filename="gz-sim-mecanum-drive-system">{names}'
         f"<wheel_separation>{WIDTH}</wheel_separation><wheelbase>{LENGTH}</wheelbase>"
-        f"<wheel_radius>{RADIUS}</wheel_radius><topic>cmd_vel</topic><odom_topic>odom</odom_topic>{more}</plugin>"
+        f"<wheel_radius>{RADIUS}</wheel_radius><topic>cmd_vel</topic><odom_topic>odom</odom_topic>{extra}</plugin>"
     )
     return text.replace("</model>", plugin + "</model>")
 
@@ -64,11 +64,11 @@ def test_speed_limits_apply_to_velocity_acceleration_and_jerk():
 
 
 async def test_car_drives_commanded_circle_with_correct_odometry():
-    async with served(GROUND, car(steering())) as (server, graph, log):
+    async with running_server(GROUND, car(steering())) as (server, graph, log):
         odometry, transforms = (Recording(graph, server.node, topic) for topic in ("/odom", "/tf"))
-        await drive(server, graph, 0.5, turning=0.3, seconds=2.0)
+        await drive(server, graph, 0.5, yaw_rate=0.3, seconds=2.0)
         begin = yaw_of(server.simulation.model_pose("car"))
-        await drive(server, graph, 0.5, turning=0.3, seconds=1.0)
+        await drive(server, graph, 0.5, yaw_rate=0.3, seconds=1.0)
         pose = server.simulation.model_pose("car")
         assert yaw_of(pose) - begin == pytest.approx(0.3, rel=0.05)
         message = odometry.last
@@ -84,9 +84,9 @@ async def test_car_drives_commanded_circle_with_correct_odometry():
 
 
 async def test_car_respects_steering_limit_backward():
-    async with served(GROUND, car(steering("<steering_limit>0.3</steering_limit>"))) as (server, graph, log):
+    async with running_server(GROUND, car(steering("<steering_limit>0.3</steering_limit>"))) as (server, graph, log):
         odometry = Recording(graph, server.node, "/odom")
-        await drive(server, graph, -0.5, turning=5.0, seconds=2.0)
+        await drive(server, graph, -0.5, yaw_rate=5.0, seconds=2.0)
         left, right = (server.simulation.joint_state(f"car::{side}_steering_joint")[0] for side in ("left", "right"))
         radius = BASE / 0.29552020666133955
         expected = (atan(BASE / (-radius - TRACK / 2)), atan(BASE / (-radius + TRACK / 2)))
@@ -98,7 +98,7 @@ async def test_car_respects_steering_limit_backward():
 
 async def test_steering_only_follows_angle():
     only = steering("<steering_only>true</steering_only>").replace("<topic>cmd_vel</topic>", "")
-    async with served(GROUND, car(only)) as (server, graph, log):
+    async with running_server(GROUND, car(only)) as (server, graph, log):
         node = graph.create_node("driver")
         publisher = node.create_publisher("std_msgs/msg/Float64", "/model/car/steer_angle", 10)
         publisher.publish(get_message("std_msgs/msg/Float64")(data=0.4))
@@ -111,7 +111,7 @@ async def test_steering_only_follows_angle():
 
 async def test_car_without_wheel_joints_is_reported():
     none = steering().replace("<left_joint>rear_left_joint</left_joint>", "")
-    async with served(GROUND, car(none)) as (server, _, log):
+    async with running_server(GROUND, car(none)) as (server, _, log):
         assert not server.plugins("car")
         assert [
             record.text for record in log if "needs wheel joints on both sides, and positive dimensions" in record.text
@@ -119,28 +119,34 @@ async def test_car_without_wheel_joints_is_reported():
 
 
 @pytest.mark.parametrize(
-    ("command", "moved"),
+    ("command", "displacement"),
     [((0.5, 0.0, 0.0), (0.5, 0.0, 0.0)), ((0.0, 0.5, 0.0), (0.0, 0.5, 0.0)), ((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))],
     ids=["forward", "sideways", "turning"],
 )
-async def test_mecanum_drive_moves_in_any_direction_with_correct_odometry(command, moved):
-    async with served(GROUND, mecanum()) as (server, graph, log):
+async def test_mecanum_drive_moves_in_any_direction_with_correct_odometry(command, displacement):
+    async with running_server(GROUND, mecanum()) as (server, graph, log):
         odometry = Recording(graph, server.node, "/odom")
         await drive(server, graph, *command, seconds=1.0)
         begin, message = server.simulation.model_pose("robot"), odometry.last.pose.pose.position
         await drive(server, graph, *command, seconds=1.0)
         end, last = server.simulation.model_pose("robot"), odometry.last
         assert end[2] == pytest.approx(0.2, abs=2e-3)
-        assert (end[0] - begin[0], end[1] - begin[1], yaw_of(end) - yaw_of(begin)) == pytest.approx(moved, abs=0.01)
+        assert (end[0] - begin[0], end[1] - begin[1], yaw_of(end) - yaw_of(begin)) == pytest.approx(
+            displacement, abs=0.01
+        )
         position = last.pose.pose.position
-        assert (position.x - message.x, position.y - message.y) == pytest.approx(moved[:2], abs=0.01)
+        assert (position.x - message.x, position.y - message.y) == pytest.approx(displacement[:2], abs=0.01)
         twist = last.twist.twist
         assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx(command, abs=0.01)
         assert not log
 
 
 async def test_mecanum_wheels_turn_oppositely_sideways_and_stop_on_reset():
-    async with served(GROUND, mecanum("<max_linear_velocity>0.2</max_linear_velocity>")) as (server, graph, log):
+    async with running_server(GROUND, mecanum("<max_linear_velocity>0.2</max_linear_velocity>")) as (
+        server,
+        graph,
+        log,
+    ):
         await drive(server, graph, 0.0, 1.0, seconds=1.0)
         names = ("front_left", "front_right", "back_left", "back_right")
         speeds = [server.simulation.joint_state(f"robot::{name}_joint")[1] * RADIUS for name in names]
@@ -157,7 +163,7 @@ async def test_velocity_control_sets_velocity_in_model_frame():
         "<initial_linear>0 0 0.5</initial_linear></plugin>"
     )
     text = box("drone", f"0 0 5 0 0 {pi / 2}").replace("</model>", f"{plugin}</model>")
-    async with served(GROUND, text) as (server, graph, log):
+    async with running_server(GROUND, text) as (server, graph, log):
         server.advance(SECOND)
         assert server.simulation.model_pose("drone")[2] == pytest.approx(5.5, abs=0.02)
         twist = get_message("geometry_msgs/msg/Twist")()
@@ -179,7 +185,7 @@ async def test_disabled_drive_comes_to_rest():
         "<wheel_radius>0.06</wheel_radius><topic>cmd_vel</topic><max_acceleration>1</max_acceleration>"
         "<min_acceleration>-1</min_acceleration></plugin>"
     )
-    async with served(GROUND, robot(plugin)) as (server, graph, log):
+    async with running_server(GROUND, robot(plugin)) as (server, graph, log):
         await drive(server, graph, 0.5, seconds=2.0)
         node = graph.create_node("guard")
         publisher = node.create_publisher("std_msgs/msg/Bool", "/model/mbot/enable", 10)

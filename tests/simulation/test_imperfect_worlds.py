@@ -1,4 +1,4 @@
-"""Worlds that are not as they should be are simulated as far as they go, and what is left out is told once."""
+"""Invalid worlds are simulated as far as possible; each omission is reported once."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CIRCLE = '<link name="a"><pose relative_to="b"/></link><link name="b"><pose rela
 
 
 def start_simulation(*parts: str, version: str = "1.9") -> Simulation:
-    """A simulation of a world, whatever is wrong with it, after ten milliseconds."""
+    """Simulate a world, valid or not, for ten milliseconds."""
     text = f'<sdf version="{version}"><world name="test">{GROUND}{"".join(parts)}</world></sdf>'
     document, _ = parse_as_gazebo(text.encode(), "test.world")
     sdf = read(document).sdf
@@ -36,15 +36,15 @@ def codes_of(simulation: Simulation) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "broken",
+    "invalid",
     [
         f'<model name="m">{CIRCLE}</model>',
         '<model name="m"><pose relative_to="nowhere"/><link name="a"/></model>',
         '<model name="m" placement_frame="nowhere"><link name="a"/></model>',
     ],
 )
-def test_model_without_valid_pose_is_omitted(broken):
-    simulation = start_simulation(CRATE, broken)
+def test_model_without_valid_pose_is_omitted(invalid):
+    simulation = start_simulation(CRATE, invalid)
     assert list(simulation.scene.models) == ["ground", "crate"]
     assert codes_of(simulation) == ["SIM116"]
 
@@ -130,20 +130,22 @@ _PARTS = """
 
 
 @st.composite
-def broken_models(draw: st.DrawFn) -> str:
-    """A model of parts that mostly fit together, with values that mostly do not."""
+def invalid_models(draw: st.DrawFn) -> str:
+    """Draw a model of elements that mostly fit together, with values that mostly do not."""
     parts = draw(st.lists(st.sampled_from(_PARTS), min_size=1, max_size=6))
-    filled = [part.format(*(draw(st.sampled_from(_NUMBERS)) for _ in range(part.count("{}")))) for part in parts]
-    filled = [f'<link name="{index}">{part}</link>' if "<visual" in part else part for index, part in enumerate(filled)]
-    return f'<model name="m">{"".join(filled)}</model>'
+    elements = [part.format(*(draw(st.sampled_from(_NUMBERS)) for _ in range(part.count("{}")))) for part in parts]
+    elements = [
+        f'<link name="{index}">{part}</link>' if "<visual" in part else part for index, part in enumerate(elements)
+    ]
+    return f'<model name="m">{"".join(elements)}</model>'
 
 
 @settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
-@given(broken_models())
-def test_arbitrary_model_is_simulated_or_reported(broken: str):
+@given(invalid_models())
+def test_arbitrary_model_is_simulated_or_reported(invalid: str):
     codes: set[str] = set()
     try:
-        assert "crate" in start_simulation(CRATE, broken).scene.models
+        assert "crate" in start_simulation(CRATE, invalid).scene.models
     except LinkwrightError as error:
         codes = {diagnostic.code for diagnostic in error.diagnostics}
     assert codes <= {"SIM120", "SIM121"}

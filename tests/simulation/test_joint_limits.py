@@ -1,4 +1,4 @@
-"""What pushes joints is bounded by their limits of effort and velocity."""
+"""Pushes on joints, bounded by the joints' effort and velocity limits."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import pytest
 from linkwright.messages import get_message
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.simulation import Simulation
-from tests.simulation.test_plugins import served
-from tests.simulation.worlds import simulated
+from tests.simulation.test_plugins import running_server
+from tests.simulation.worlds import make_simulation
 
 COMMAND = "/bob"
 CONTROLLER = (
@@ -23,15 +23,15 @@ MOTOR = (
 )
 
 
-def arm(limit: str, plugin: str = "", axis: str = "0 1 0", more: str = "") -> str:
-    """A link with 1 kg at 1 m from the axis that it turns about."""
+def arm(limit: str, plugin: str = "", axis: str = "0 1 0", extra: str = "") -> str:
+    """Return a link of 1 kg, 1 m from its axis."""
     inertia = "<inertia><ixx>1e-3</ixx><iyy>1e-3</iyy><izz>1e-3</izz></inertia>"
     return (
         '<model name="arm"><pose>0 0 3 0 0 0</pose><link name="base"/>'
         f'<link name="bob"><pose>0 0 -1 0 0 0</pose><inertial><mass>1</mass>{inertia}</inertial></link>'
         '<joint name="post" type="fixed"><parent>world</parent><child>base</child></joint>'
         '<joint name="turn" type="revolute"><pose>0 0 1 0 0 0</pose><parent>base</parent><child>bob</child>'
-        f"<axis><xyz>{axis}</xyz><limit><lower>-100</lower><upper>100</upper>{limit}</limit>{more}</axis></joint>"
+        f"<axis><xyz>{axis}</xyz><limit><lower>-100</lower><upper>100</upper>{limit}</limit>{extra}</axis></joint>"
         f"{plugin}</model>"
     )
 
@@ -44,7 +44,9 @@ def speed_when_pushed(simulation: Simulation, force: float, seconds: float = 0.5
 
 
 async def test_controller_effort_is_limited():
-    async with served(arm("<effort>5</effort>", CONTROLLER, more="<dynamics><damping>5</damping></dynamics>")) as (
+    async with running_server(
+        arm("<effort>5</effort>", CONTROLLER, extra="<dynamics><damping>5</damping></dynamics>")
+    ) as (
         server,
         graph,
         _,
@@ -60,19 +62,19 @@ async def test_controller_effort_is_limited():
 
 @pytest.mark.parametrize("force", [3.0, -3.0])
 def test_push_is_limited_by_joint_effort(force: float):
-    simulation = simulated(arm("<effort>2</effort>"), gravity="0 0 0")
+    simulation = make_simulation(arm("<effort>2</effort>"), gravity="0 0 0")
     expected = 2.0 * 0.5 / 1.001
     assert abs(speed_when_pushed(simulation, force)) == pytest.approx(expected, rel=0.01)
 
 
 @pytest.mark.parametrize("force", [2.0, 100.0, 1e5, -1e5])
 def test_push_stops_at_joint_velocity_limit(force: float):
-    simulation = simulated(arm("<velocity>0.8</velocity>"), gravity="0 0 0")
+    simulation = make_simulation(arm("<velocity>0.8</velocity>"), gravity="0 0 0")
     assert abs(speed_when_pushed(simulation, force)) == pytest.approx(0.8, rel=0.01)
 
 
 def test_joint_above_velocity_limit_is_not_braked():
-    simulation = simulated(arm("<velocity>0.8</velocity>"), gravity="0 0 0")
+    simulation = make_simulation(arm("<velocity>0.8</velocity>"), gravity="0 0 0")
     simulation.data.joint("arm::turn").qvel[0] = 3.0
     simulation.mark_moved()
     assert speed_when_pushed(simulation, 5.0, 0.1) == pytest.approx(3.0)
@@ -83,13 +85,13 @@ def test_joint_above_velocity_limit_is_not_braked():
     "limit", ["", "<effort>0</effort><velocity>0</velocity>", "<effort>-1</effort><velocity>-1</velocity>"]
 )
 def test_nonpositive_limits_are_ignored(limit: str):
-    simulation = simulated(arm(limit), gravity="0 0 0")
+    simulation = make_simulation(arm(limit), gravity="0 0 0")
     assert speed_when_pushed(simulation, 10.0) == pytest.approx(5.0, rel=0.01)
 
 
-@pytest.mark.parametrize(("velocity", "wanted"), [(1.5, 1.5), (inf, 4.0)])
-async def test_gz_motor_respects_joint_velocity_limit(velocity: float, wanted: float):
+@pytest.mark.parametrize(("velocity", "expected"), [(1.5, 1.5), (inf, 4.0)])
+async def test_gz_motor_respects_joint_velocity_limit(velocity: float, expected: float):
     limit = f"<velocity>{velocity}</velocity>"
-    async with served(arm(limit, MOTOR, axis="0 0 1")) as (server, _, _log):
+    async with running_server(arm(limit, MOTOR, axis="0 0 1")) as (server, _, _log):
         server.advance(NANOSECONDS_PER_SECOND)
-        assert server.simulation.joint_state("arm::turn")[1] == pytest.approx(wanted, rel=0.01)
+        assert server.simulation.joint_state("arm::turn")[1] == pytest.approx(expected, rel=0.01)

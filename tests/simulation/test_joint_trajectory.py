@@ -1,4 +1,4 @@
-"""Joints that follow a trajectory by gz's controller."""
+"""Joints that follow a trajectory with gz's controller."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 from linkwright.messages import Duration, Time, get_message
 from linkwright.testing import Recording
 from tests.simulation.test_joint_controllers import arm
-from tests.simulation.test_plugins import SECOND, served
+from tests.simulation.test_plugins import SECOND, running_server
 
 TOPIC = "/model/arm/joint_trajectory"
 GAINS = (
@@ -16,14 +16,14 @@ GAINS = (
 )
 
 
-def controller(more: str = GAINS) -> str:
-    """The plugin."""
+def controller(extra: str = GAINS) -> str:
+    """Return the plugin."""
     name = "gz::sim::systems::JointTrajectoryController"
-    return f'<plugin name="{name}" filename="gz-sim-joint-trajectory-controller-system">{more}</plugin>'
+    return f'<plugin name="{name}" filename="gz-sim-joint-trajectory-controller-system">{extra}</plugin>'
 
 
 def trajectory(*points: tuple[float, float], name: str = "shoulder", stamp: int = 0):
-    """A message: seconds from the start and positions in rad."""
+    """Return a trajectory; its points are seconds from the start and positions in rad."""
     message = get_message("trajectory_msgs/msg/JointTrajectory")(joint_names=[name])
     message.header.stamp = Time(sec=stamp, nanosec=0)
     for seconds, position in points:
@@ -34,7 +34,7 @@ def trajectory(*points: tuple[float, float], name: str = "shoulder", stamp: int 
 
 
 async def follow(graph, server, message, seconds: float) -> None:
-    """Send a trajectory, and let time pass."""
+    """Publish a trajectory, and advance the time."""
     node = graph.create_node("planner")
     node.create_publisher("trajectory_msgs/msg/JointTrajectory", TOPIC, 10).publish(message)
     await graph.settle()
@@ -44,7 +44,11 @@ async def follow(graph, server, message, seconds: float) -> None:
 
 
 async def test_joints_hold_each_point_until_next_is_due():
-    async with served(arm(controller("<initial_position>0.5</initial_position>" + GAINS))) as (server, graph, log):
+    async with running_server(arm(controller("<initial_position>0.5</initial_position>" + GAINS))) as (
+        server,
+        graph,
+        log,
+    ):
         progress = Recording(graph, server.node, f"{TOPIC}_progress")
         server.advance(3 * SECOND)
         assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.5, abs=5e-3)
@@ -62,15 +66,15 @@ async def test_joints_hold_each_point_until_next_is_due():
 
 
 async def test_header_start_time_delays_trajectory():
-    more = "<use_header_start_time>true</use_header_start_time>" + GAINS
-    async with served(arm(controller(more))) as (server, graph, _):
+    settings = "<use_header_start_time>true</use_header_start_time>" + GAINS
+    async with running_server(arm(controller(settings))) as (server, graph, _):
         progress = Recording(graph, server.node, f"{TOPIC}_progress")
         await follow(graph, server, trajectory((0.0, 0.1), (1.0, 0.3), stamp=2), 2.5)
         assert [message.data for message in progress] == [0.5, 1.0]
 
 
 async def test_efforts_alone_are_applied_without_gains():
-    async with served(arm(controller("<joint_name>shoulder</joint_name>"))) as (server, graph, log):
+    async with running_server(arm(controller("<joint_name>shoulder</joint_name>"))) as (server, graph, log):
         server.advance(3 * SECOND)
         assert server.simulation.joint_state("arm::shoulder")[0] > 1.0
         message = trajectory((0.0, 0.0))
@@ -81,7 +85,7 @@ async def test_efforts_alone_are_applied_without_gains():
 
 
 async def test_unknown_joint_is_reported_and_empty_trajectory_ends_current():
-    async with served(arm(controller())) as (server, graph, log):
+    async with running_server(arm(controller())) as (server, graph, log):
         await follow(graph, server, trajectory((0.0, 1.0), name="elbow"), 0.1)
         assert [record.text for record in log] == [
             "plugin 'gz::sim::systems::JointTrajectoryController' does not control a joint named elbow"

@@ -1,4 +1,4 @@
-"""Drives whose commander is gone: they stop where it was lost, and go on where it has left."""
+"""Drives whose commander is lost: they stop; after a regular departure they keep their command."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.remote_publishers import RemotePublisher, RemoteTransport
 from tests.simulation.test_ackermann import car, plugin
 from tests.simulation.test_diff_drive import classic, gz
 from tests.simulation.test_movers import moving_box, planar
-from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.test_plugins import SECOND, robot, running_server
 from tests.simulation.worlds import GROUND
 
 Twist = get_message("geometry_msgs/msg/Twist")
@@ -37,25 +37,25 @@ DRIVES = {
 
 
 def forward(speed: float):
-    """A command."""
+    """Return a command."""
     twist = Twist()
     twist.linear.x = speed
     return twist
 
 
 def warnings(log) -> list[str]:
-    """What was warned of."""
+    """Return the warnings in a log."""
     return [record.text for record in log if record.level >= LogLevel.WARN]
 
 
 @pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())
 async def test_drive_stops_and_reports_lost_commander_once(model: str) -> None:
-    async with served(GROUND, model) as (server, graph, log):
+    async with running_server(GROUND, model) as (server, graph, log):
         driver = RemotePublisher(RemoteTransport(graph), "/cmd_vel")
         driver.send(forward(0.3))
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.3, abs=0.02)
-        driver.be_lost()
+        driver.disappear()
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.0, abs=0.01)
         assert warnings(log) == [f"{LOST}: the motion stops"]
@@ -63,83 +63,83 @@ async def test_drive_stops_and_reports_lost_commander_once(model: str) -> None:
 
 @pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())
 async def test_drive_reports_two_simultaneous_commanders_once(model: str) -> None:
-    async with served(GROUND, model) as (server, graph, log):
+    async with running_server(GROUND, model) as (server, graph, log):
         transport = RemoteTransport(graph)
         drivers = [RemotePublisher(transport, "/cmd_vel", name) for name in ("keys", "planner")]
         silent = RemotePublisher(transport, "/cmd_vel", "behaviors")
         silent.send(forward(0.0))
         for _ in range(30):
-            for driver, wanted in zip(drivers, (0.1, 0.3), strict=True):
-                driver.send(forward(wanted))
+            for driver, target in zip(drivers, (0.1, 0.3), strict=True):
+                driver.send(forward(target))
                 await advance(server, graph, 0.1)
-        (logged,) = warnings(log)
-        assert logged.startswith(
+        (warning,) = warnings(log)
+        assert warning.startswith(
             "several nodes drive the robot: '/keys', '/planner' send commands on '/cmd_vel', and the robot"
         )
 
 
 async def test_drive_keeps_command_of_remaining_commander() -> None:
-    async with served(GROUND, robot(classic())) as (server, graph, log):
+    async with running_server(GROUND, robot(classic())) as (server, graph, log):
         transport = RemoteTransport(graph)
         lost, other = RemotePublisher(transport, "/cmd_vel", "lost"), RemotePublisher(transport, "/cmd_vel", "other")
         lost.send(forward(0.1))
         other.send(forward(0.3))
-        lost.be_lost()
+        lost.disappear()
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.3, abs=0.02)
         assert not warnings(log)
 
 
 async def test_lost_commander_is_reported_after_pending_command() -> None:
-    async with served(GROUND, robot(classic())) as (server, graph, log):
+    async with running_server(GROUND, robot(classic())) as (server, graph, log):
         driver = RemotePublisher(RemoteTransport(graph), "/cmd_vel")
         driver.send(forward(0.3))
-        driver.be_lost()  # before the command was taken
+        driver.disappear()  # before the command is processed
         await advance(server, graph, 1.0)
         assert speed(server) == pytest.approx(0.0, abs=0.01)
         assert len(warnings(log)) == 1
 
 
 async def test_lost_commander_of_stopped_robot_is_not_reported() -> None:
-    async with served(GROUND, robot(classic())) as (server, graph, log):
+    async with running_server(GROUND, robot(classic())) as (server, graph, log):
         driver = RemotePublisher(RemoteTransport(graph), "/cmd_vel")
         driver.send(forward(0.3))
         driver.send(forward(0.0))
         await advance(server, graph, 0.5)
-        driver.be_lost()
+        driver.disappear()
         await advance(server, graph, 0.1)
         assert not warnings(log)
 
 
 async def test_drive_with_two_topic_names_tracks_last_commander() -> None:
     plugin = gz().replace("<topic>cmd_vel</topic>", "")
-    async with served(GROUND, robot(plugin), options=ServerOptions(usual_names=True)) as (server, graph, log):
+    async with running_server(GROUND, robot(plugin), options=ServerOptions(usual_names=True)) as (server, graph, log):
         transport = RemoteTransport(graph)
-        mine, usual = (
+        model_topic, usual_topic = (
             RemotePublisher(transport, "/model/mbot/cmd_vel", "mine"),
             RemotePublisher(transport, "/cmd_vel", "usual"),
         )
-        mine.send(forward(0.1))
+        model_topic.send(forward(0.1))
         await graph.settle()
-        usual.send(forward(0.3))
+        usual_topic.send(forward(0.3))
         await graph.settle()
-        mine.be_lost()
+        model_topic.disappear()
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.3, abs=0.02)
-        usual.be_lost()
+        usual_topic.disappear()
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.0, abs=0.01)
         assert len(warnings(log)) == 1
 
 
 async def advance(server, graph, seconds: float) -> None:
-    """Let time pass."""
+    """Advance the time, and deliver messages before and after."""
     await graph.settle()
     server.advance(round(seconds * SECOND))
     await graph.settle()
 
 
 def speed(server) -> float:
-    """How fast the robot moves, in m/s."""
+    """Return the robot's speed in m/s."""
     linear, _ = server.simulation.link_velocity(server.simulation.scene.models["mbot"].structure.links[0].link.name)
     return float(linear[0] ** 2 + linear[1] ** 2) ** 0.5

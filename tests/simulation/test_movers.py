@@ -1,4 +1,4 @@
-"""Plugins that move whole robots: in a plane, by skid steering; and those that say where a robot really is."""
+"""Plugins that move whole robots, in a plane or by skid steering, and that publish the true pose."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import pytest
 from linkwright.control.odometry import yaw_of
 from linkwright.messages import get_message
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.test_plugins import SECOND, robot, running_server
 from tests.simulation.worlds import GROUND, box
 
-GRIPLESS = "<surface><friction><ode><mu>0</mu><mu2>0</mu2></ode></friction></surface>"
+FRICTIONLESS = "<surface><friction><ode><mu>0</mu><mu2>0</mu2></ode></friction></surface>"
 
 
-async def drive(server, graph, forward=0.0, sideways=0.0, turning=0.0, seconds=1.0) -> None:
-    """Send a command, and let time pass."""
+async def drive(server, graph, forward=0.0, sideways=0.0, yaw_rate=0.0, seconds=1.0) -> None:
+    """Publish a velocity command, and advance the time."""
     twist = get_message("geometry_msgs/msg/Twist")()
-    twist.linear.x, twist.linear.y, twist.angular.z = forward, sideways, turning
+    twist.linear.x, twist.linear.y, twist.angular.z = forward, sideways, yaw_rate
     node = graph.create_node("driver")
     node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10).publish(twist)
     await graph.settle()
@@ -28,17 +28,17 @@ async def drive(server, graph, forward=0.0, sideways=0.0, turning=0.0, seconds=1
 
 
 def moving_box(plugin: str, pose: str = "0 0 0.1 0 0 0") -> str:
-    """A box on the ground with a plugin."""
-    return box("mbot", pose, "0.4 0.4 0.2", 5.0, GRIPLESS).replace("</model>", f"{plugin}</model>")
+    """Return a box on the ground with a plugin."""
+    return box("mbot", pose, "0.4 0.4 0.2", 5.0, FRICTIONLESS).replace("</model>", f"{plugin}</model>")
 
 
-def planar(more: str = "") -> str:
-    """The plugin of Gazebo classic."""
-    return f'<plugin name="move" filename="libgazebo_ros_planar_move.so">{more}</plugin>'
+def planar(extra: str = "") -> str:
+    """Return the plugin of Gazebo classic."""
+    return f'<plugin name="move" filename="libgazebo_ros_planar_move.so">{extra}</plugin>'
 
 
 async def test_planar_move_drives_in_any_direction_with_robot_frame_odometry():
-    async with served(GROUND, moving_box(planar(), f"0 0 0.1 0 0 {pi / 2}")) as (server, graph, log):
+    async with running_server(GROUND, moving_box(planar(), f"0 0 0.1 0 0 {pi / 2}")) as (server, graph, log):
         odometry, transforms = (Recording(graph, server.node, topic) for topic in ("/odom", "/tf"))
         await drive(server, graph, 0.5, 0.25)
         x, y, _, *_ = server.simulation.model_pose("mbot")
@@ -48,13 +48,13 @@ async def test_planar_move_drives_in_any_direction_with_robot_frame_odometry():
         assert (message.header.frame_id, message.child_frame_id) == ("odom", "base_footprint")
         assert (message.pose.pose.position.x, message.pose.pose.position.y) == pytest.approx((x, y))
         assert (message.twist.twist.linear.x, message.twist.twist.linear.y) == pytest.approx((0.5, 0.25), abs=1e-3)
-        await drive(server, graph, turning=1.0)
+        await drive(server, graph, yaw_rate=1.0)
         assert yaw_of(server.simulation.model_pose("mbot")) == pytest.approx(pi / 2 + 1.0, abs=2e-3)
         assert not log
 
 
 async def test_planar_move_overcomes_wheel_friction_and_resets():
-    async with served(GROUND, robot(planar("<update_rate>50</update_rate>"))) as (server, graph, log):
+    async with running_server(GROUND, robot(planar("<update_rate>50</update_rate>"))) as (server, graph, log):
         await drive(server, graph, sideways=0.5)
         assert server.simulation.model_pose("mbot")[1] == pytest.approx(0.5, abs=0.03)
         server.reset()
@@ -65,7 +65,7 @@ async def test_planar_move_overcomes_wheel_friction_and_resets():
 
 async def test_planar_move_of_static_model_is_reported():
     text = moving_box(planar()).replace("<link", "<static>true</static><link", 1)
-    async with served(GROUND, text) as (server, _, log):
+    async with running_server(GROUND, text) as (server, _, log):
         server.advance(SECOND // 10)
         assert not server.plugins("mbot")
         assert [record.text for record in log if "fixed to the world" in record.text]
@@ -78,7 +78,7 @@ async def test_skid_steering_accepts_ros_1_parameters():
         "<rightRearJoint>right_joint</rightRearJoint><wheelSeparation>0.38</wheelSeparation>"
         "<wheelDiameter>0.12</wheelDiameter><broadcastTF>false</broadcastTF></plugin>"
     )
-    async with served(GROUND, robot(plugin)) as (server, graph, log):
+    async with running_server(GROUND, robot(plugin)) as (server, graph, log):
         odometry, transforms = (Recording(graph, server.node, topic) for topic in ("/odom", "/tf"))
         await drive(server, graph, 0.5, seconds=1.0)
         begin = server.simulation.model_pose("mbot")[0]
@@ -90,14 +90,14 @@ async def test_skid_steering_accepts_ros_1_parameters():
 
 
 async def test_p3d_publishes_pose_in_world_or_other_link_frame():
-    def p3d(name: str, more: str) -> str:
+    def p3d(name: str, extra: str) -> str:
         return (
             f'<plugin name="{name}" filename="libgazebo_ros_p3d.so"><ros><remapping>odom:={name}</remapping></ros>'
-            f"<body_name>left_wheel</body_name>{more}<update_rate>10</update_rate></plugin>"
+            f"<body_name>left_wheel</body_name>{extra}<update_rate>10</update_rate></plugin>"
         )
 
     plugins = [p3d("truth", "<xyz_offset>0 0 1</xyz_offset>"), p3d("inside", "<frame_name>base_link</frame_name>")]
-    async with served(GROUND, robot(*plugins, planar())) as (server, graph, log):
+    async with running_server(GROUND, robot(*plugins, planar())) as (server, graph, log):
         truth, inside = (Recording(graph, server.node, topic) for topic in ("/truth", "/inside"))
         await drive(server, graph, 0.5)
         link = server.simulation.link_pose("mbot::left_wheel")
@@ -119,7 +119,7 @@ async def test_gz_odometry_publisher_matches_model_pose(dimensions):
         '<plugin name="gz::sim::systems::OdometryPublisher" filename="gz-sim-odometry-publisher-system">'
         f"<odom_frame>odom</odom_frame><dimensions>{dimensions}</dimensions></plugin>"
     )
-    async with served(GROUND, moving_box(plugin + planar("<publish_odom_tf>0</publish_odom_tf>"))) as (
+    async with running_server(GROUND, moving_box(plugin + planar("<publish_odom_tf>0</publish_odom_tf>"))) as (
         server,
         graph,
         log,

@@ -1,4 +1,4 @@
-"""A model that flies: rotors and the controller of velocities of gz."""
+"""A flying model: rotors and the velocity controller of gz."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import pytest
 from linkwright.messages import get_message
 from tests.remote_publishers import RemotePublisher, RemoteTransport
 from tests.simulation.test_lost_commanders import advance, forward, warnings
-from tests.simulation.test_plugins import served
+from tests.simulation.test_plugins import running_server
 from tests.simulation.worlds import GROUND
 
 FORCE, MOMENT = 8.54858e-06, 0.016
-PLACES = {"front_right": (0.13, -0.2, "ccw"), "back_left": (-0.13, 0.2, "ccw"), "front_left": (0.13, 0.2, "cw")}
-PLACES["back_right"] = (-0.13, -0.2, "cw")
+POSITIONS = {"front_right": (0.13, -0.2, "ccw"), "back_left": (-0.13, 0.2, "ccw"), "front_left": (0.13, 0.2, "cw")}
+POSITIONS["back_right"] = (-0.13, -0.2, "cw")
 MASS = 1.5
 
 
@@ -41,7 +41,7 @@ def motor(number: int, name: str, direction: str) -> str:
 def control(names: list[str]) -> str:
     rotors = "".join(
         f"<rotor><jointName>{name}_joint</jointName><forceConstant>{FORCE}</forceConstant><momentConstant>{MOMENT}"
-        f"</momentConstant><direction>{1 if PLACES[name][2] == 'ccw' else -1}</direction></rotor>"
+        f"</momentConstant><direction>{1 if POSITIONS[name][2] == 'ccw' else -1}</direction></rotor>"
         for name in names
     )
     return (
@@ -54,13 +54,15 @@ def control(names: list[str]) -> str:
 
 
 def quadcopter(names: list[str] | None = None) -> str:
-    rotors = "".join(rotor(name, x, y) for name, (x, y, _) in PLACES.items())
-    motors = "".join(motor(number, name, way) for number, (name, (_, _, way)) in enumerate(PLACES.items()))
+    rotors = "".join(rotor(name, x, y) for name, (x, y, _) in POSITIONS.items())
+    motors = "".join(
+        motor(number, name, direction) for number, (name, (_, _, direction)) in enumerate(POSITIONS.items())
+    )
     return (
         f'<model name="x3"><pose>0 0 0.1 0 0 0</pose><link name="body"><inertial><mass>{MASS - 0.02}</mass><inertia>'
         "<ixx>0.0347563</ixx><iyy>0.07</iyy><izz>0.0977</izz></inertia></inertial><collision name='c'><geometry><box>"
         f"<size>0.47 0.47 0.11</size></box></geometry></collision></link>{rotors}{motors}"
-        f"{control(list(PLACES) if names is None else names)}</model>"
+        f"{control(list(POSITIONS) if names is None else names)}</model>"
     )
 
 
@@ -79,7 +81,7 @@ def climb(speed: float):
 
 
 async def test_multicopter_rises_hovers_and_flies_forward() -> None:
-    async with served(GROUND, quadcopter()) as (server, graph, log):
+    async with running_server(GROUND, quadcopter()) as (server, graph, log):
         driver = graph.create_node("driver").create_publisher(get_message("geometry_msgs/msg/Twist"), "/X3/cmd_vel", 10)
         await advance(server, graph, 0.5)
         begin = copter_position(server)
@@ -100,14 +102,14 @@ async def test_multicopter_rises_hovers_and_flies_forward() -> None:
 
 
 async def test_rotor_speeds_can_be_commanded_by_actuator_number() -> None:
-    async with served(GROUND, quadcopter()) as (server, graph, log):
-        kind = get_message("actuator_msgs/msg/Actuators")
-        driver = graph.create_node("driver").create_publisher(kind, "/X3/command/motor_speed", 10)
-        hovering = (MASS * 9.8 / 4 / FORCE) ** 0.5
-        driver.publish(kind(velocity=[1.1 * hovering] * 4))
+    async with running_server(GROUND, quadcopter()) as (server, graph, log):
+        message_type = get_message("actuator_msgs/msg/Actuators")
+        driver = graph.create_node("driver").create_publisher(message_type, "/X3/command/motor_speed", 10)
+        hover_speed = (MASS * 9.8 / 4 / FORCE) ** 0.5
+        driver.publish(message_type(velocity=[1.1 * hover_speed] * 4))
         await advance(server, graph, 1.0)
         assert velocity(server)[2] == pytest.approx(0.21 * 9.8, rel=0.15)
-        driver.publish(kind(velocity=[float("nan"), 0.0]))  # no speed, nothing, and two that are not told of
+        driver.publish(message_type(velocity=[float("nan"), 0.0]))  # NaN, zero, and two motors without a command
         await advance(server, graph, 0.5)
         motors = {
             plugin.parameters.actuator_number: plugin for plugin in server.plugins("x3") if hasattr(plugin, "speed")
@@ -117,23 +119,23 @@ async def test_rotor_speeds_can_be_commanded_by_actuator_number() -> None:
 
 
 async def test_multicopter_yaws_at_commanded_rate() -> None:
-    async with served(GROUND, quadcopter()) as (server, graph, _):
+    async with running_server(GROUND, quadcopter()) as (server, graph, _):
         driver = graph.create_node("driver").create_publisher(get_message("geometry_msgs/msg/Twist"), "/X3/cmd_vel", 10)
         driver.publish(climb(0.5))
         await advance(server, graph, 3.0)
-        turning = climb(0.0)
-        turning.angular.z = 0.5
-        driver.publish(turning)
+        command = climb(0.0)
+        command.angular.z = 0.5
+        driver.publish(command)
         await advance(server, graph, 4.0)
         assert server.simulation.link_velocity("x3::body")[1][2] == pytest.approx(0.5, abs=0.05)
 
 
 async def test_multicopter_hovers_without_pilot_and_falls_when_disabled() -> None:
-    async with served(GROUND, quadcopter()) as (server, graph, log):
+    async with running_server(GROUND, quadcopter()) as (server, graph, log):
         pilot = RemotePublisher(RemoteTransport(graph), "/X3/cmd_vel")
         pilot.send(climb(0.5))
         await advance(server, graph, 4.0)
-        pilot.be_lost()
+        pilot.disappear()
         await advance(server, graph, 4.0)
         assert velocity(server) == pytest.approx([0.0, 0.0, 0.0], abs=0.02)
         assert len(warnings(log)) == 1
@@ -144,13 +146,13 @@ async def test_multicopter_hovers_without_pilot_and_falls_when_disabled() -> Non
 
 
 async def test_rotors_that_cannot_control_flight_are_rejected() -> None:
-    async with served(GROUND, quadcopter(["front_right", "back_left", "front_left"])) as (_, __, log):
+    async with running_server(GROUND, quadcopter(["front_right", "back_left", "front_left"])) as (_, __, log):
         (logged,) = warnings(log)
         assert "its rotors cannot control thrust and all three torques" in logged
 
 
 async def test_rotor_with_missing_constant_is_reported() -> None:
     text = quadcopter().replace(f"<momentConstant>{MOMENT}</momentConstant><direction>", "<direction>")
-    async with served(GROUND, text) as (_, __, log):
+    async with running_server(GROUND, text) as (_, __, log):
         (logged,) = warnings(log)
         assert "each <rotor> needs a number in <momentConstant>" in logged

@@ -1,4 +1,4 @@
-"""Plugins: how they are found, what they are given, which nodes they are, and what is told when something is wrong."""
+"""Plugins: how they are found, their parameters, their nodes, and the messages about errors."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ from linkwright.simulation.plugins.registry import (
 from linkwright.simulation.plugins.ros_element import node_of
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.testing import Recording
-from tests.simulation.worlds import GROUND, box, mbot, model, simulated
+from tests.simulation.worlds import GROUND, box, make_simulation, mbot, model
 
 SECOND = 1_000_000_000
 CLASSIC_SYSTEMS = ("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin")
-"""What they do is tested in tests/simulation/test_server.py and test_classic_services.py."""
+"""Their functions are tested in tests/simulation/test_server.py and test_classic_services.py."""
 UNSIMULATED = (
     "elevator",
     "wheel-slip",
@@ -84,8 +84,10 @@ def test_built_in_systems_are_recognized():
 
 
 def test_systems_listed_as_built_in_are_simulated():
-    known = extensions(SENSORS)
-    assert [kind for kinds in _SENSORS_OF_SYSTEMS.values() for kind in kinds if kind not in known] == []
+    sensor_types = extensions(SENSORS)
+    assert [
+        type_name for types in _SENSORS_OF_SYSTEMS.values() for type_name in types if type_name not in sensor_types
+    ] == []
     for library in _BUILT_IN:
         name = library.removeprefix("gz-sim-").removesuffix("-system")
         assert name in (*_OWN_SYSTEMS, *_SENSORS_OF_SYSTEMS) or library in CLASSIC_SYSTEMS, library
@@ -94,17 +96,17 @@ def test_systems_listed_as_built_in_are_simulated():
 @pytest.mark.parametrize("name", UNSIMULATED)
 async def test_unsupported_gz_system_is_reported_with_alternative(name):
     plugin = f'<plugin name="a" filename="gz-sim-{name}-system"/>'
-    async with served(robot(plugin)) as (_, __, log):
-        logged, *instead = [record.text for record in log]
-        assert logged == f"plugins and sensors that are not simulated: gz-sim-{name}-system"
-        assert [text.split(", use ")[0] for text in instead] == [f"instead of gz-sim-{name}-system"] * (
+    async with running_server(robot(plugin)) as (_, __, log):
+        warning, *alternatives = [record.text for record in log]
+        assert warning == f"plugins and sensors that are not simulated: gz-sim-{name}-system"
+        assert [text.split(", use ")[0] for text in alternatives] == [f"instead of gz-sim-{name}-system"] * (
             name not in WITHOUT_ALTERNATIVE
         )
 
 
 def test_parameters_are_converted_and_accept_old_names():
-    given = "<jointName>a</jointName><jointName>b</jointName><updateRate>5</updateRate><sent>1</sent><ros/>"
-    parameters, findings = parameters_from(_Table, _element(given))
+    text = "<jointName>a</jointName><jointName>b</jointName><updateRate>5</updateRate><sent>1</sent><ros/>"
+    parameters, findings = parameters_from(_Table, _element(text))
     assert (parameters, findings) == (_Table(joint=("a", "b"), rate=5.0, sent=True), [])
 
 
@@ -140,11 +142,11 @@ def test_plugin_without_namespace_uses_robot_namespace():
 
 
 @asynccontextmanager
-async def served(*parts: str, options: ServerOptions | None = None):
-    """A simulation of a world of models on a graph, and what it logs."""
+async def running_server(*parts: str, options: ServerOptions | None = None):
+    """Run a simulation on a graph; yield the server, the graph and the log."""
     log: list[LogRecord] = []
     graph = Graph(on_log=log.append)
-    server = SimulationServer(simulated(*parts), graph.create_node("gazebo"), options)
+    server = SimulationServer(make_simulation(*parts), graph.create_node("gazebo"), options)
     server.start()
     yield server, graph, log
     server.close()
@@ -152,21 +154,21 @@ async def served(*parts: str, options: ServerOptions | None = None):
 
 
 def robot(*plugins: str, name: str = "mbot") -> str:
-    """mbot with plugins."""
+    """Return mbot with plugins."""
     text = mbot().replace('name="mbot"', f'name="{name}"')
     return text.replace("</model>", "".join(plugins) + "</model>")
 
 
-def joint_states(name: str = "joints", more: str = "") -> str:
-    """A plugin of Gazebo classic."""
+def joint_states(name: str = "joints", extra: str = "") -> str:
+    """Return the joint state plugin of Gazebo classic."""
     return (
         f'<plugin name="{name}" filename="libgazebo_ros_joint_state_publisher.so"><joint_name>left_joint</joint_name>'
-        f"<joint_name>right_joint</joint_name><update_rate>10</update_rate>{more}</plugin>"
+        f"<joint_name>right_joint</joint_name><update_rate>10</update_rate>{extra}</plugin>"
     )
 
 
 async def test_advance_delivers_messages_published_until_then():
-    async with served(GROUND, robot(joint_states())) as (server, graph, log):
+    async with running_server(GROUND, robot(joint_states())) as (server, graph, log):
         recording = Recording(graph, server.node, "/joint_states")
         server.advance(SECOND)
         await graph.settle()
@@ -188,8 +190,8 @@ async def test_deferred_message_is_created_once_on_delivery():
     )
     recordings = [Recording(graph, node, topic) for topic in topics]
 
-    def text(number: int, word: str):
-        messages.append(get_message("std_msgs/msg/String")(data=f"{number} {word}"))
+    def text(number: int, text: str):
+        messages.append(get_message("std_msgs/msg/String")(data=f"{number} {text}"))
         return messages[-1]
 
     send = output.deferred_publisher(text)
@@ -203,21 +205,21 @@ async def test_deferred_message_is_created_once_on_delivery():
 
 
 async def test_plugin_with_duplicate_node_name_is_not_loaded():
-    async with served(GROUND, robot(joint_states()), robot(joint_states(), name="two")) as (server, _, log):
+    async with running_server(GROUND, robot(joint_states()), robot(joint_states(), name="two")) as (server, _, log):
         assert [len(server.plugins(name)) for name in ("mbot", "two")] == [1, 0]
         assert [record.text for record in log if "another plugin already uses the node name '/joints'" in record.text]
 
 
 async def test_unsimulated_plugins_are_reported_once():
     unknown = '<plugin name="a" filename="libvacuum.so"/>'
-    known = '<plugin name="b" filename="gz-sim-physics-system"/>'
-    async with served(robot(unknown, known), robot(unknown, name="two")) as (_, __, log):
-        logged = [record.text for record in log if "not simulated" in record.text]
-        assert logged == ["plugins and sensors that are not simulated: libvacuum.so"]
+    built_in = '<plugin name="b" filename="gz-sim-physics-system"/>'
+    async with running_server(robot(unknown, built_in), robot(unknown, name="two")) as (_, __, log):
+        warnings = [record.text for record in log if "not simulated" in record.text]
+        assert warnings == ["plugins and sensors that are not simulated: libvacuum.so"]
 
 
 async def test_deleted_model_removes_its_nodes():
-    async with served(GROUND, robot(joint_states())) as (server, graph, log):
+    async with running_server(GROUND, robot(joint_states())) as (server, graph, log):
         server.delete("mbot")
         assert ("joints", "/") not in graph.get_node_names_and_namespaces()
         server.advance(SECOND)
@@ -227,11 +229,11 @@ async def test_deleted_model_removes_its_nodes():
 
 
 async def test_unplaceable_model_leaves_world_unchanged():
-    lost = '<model name="lost"><link name="a"><pose relative_to="nowhere">0 0 0 0 0 0</pose></link></model>'
-    async with served(GROUND, box("one", "0 0 5 0 0 0")) as (server, _, __):
+    unplaceable = '<model name="lost"><link name="a"><pose relative_to="nowhere">0 0 0 0 0 0</pose></link></model>'
+    async with running_server(GROUND, box("one", "0 0 5 0 0 0")) as (server, _, __):
         server.advance(SECOND // 10)
         with pytest.raises(LinkwrightError, match="the pose of 'nowhere' is not defined"):
-            server.spawn(model(lost), "lost")
+            server.spawn(model(unplaceable), "lost")
         with pytest.raises(LinkwrightError, match="a model 'one' already exists"):
             server.spawn(model(box("one", "0 0 5 0 0 0")), "one")
         server.advance(SECOND // 10)
@@ -240,7 +242,7 @@ async def test_unplaceable_model_leaves_world_unchanged():
 
 async def test_gz_joint_state_publisher_uses_gz_topic():
     plugin = '<plugin name="gz::sim::systems::JointStatePublisher" filename="gz-sim-joint-state-publisher-system"/>'
-    async with served(GROUND, robot(plugin)) as (server, graph, _):
+    async with running_server(GROUND, robot(plugin)) as (server, graph, _):
         recording = Recording(graph, server.node, "/world/test/model/mbot/joint_state")
         server.advance(SECOND // 100)
         await graph.settle()
@@ -254,7 +256,7 @@ async def test_magnetometer_measures_field_in_its_axes():
         "<update_rate>10</update_rate></sensor>"
     )
     text = box("one", "0 0 5 0 0 0").replace("</link>", sensor + "</link>")
-    async with served("<magnetic_field>1 2 3</magnetic_field>", text) as (server, graph, _):
+    async with running_server("<magnetic_field>1 2 3</magnetic_field>", text) as (server, graph, _):
         recording = Recording(graph, server.node, "/mag")
         server.advance(SECOND // 10)
         await graph.settle()
@@ -265,6 +267,6 @@ async def test_magnetometer_measures_field_in_its_axes():
 
 async def test_warnings_and_errors_are_logged_once_in_order():
     warning = Diagnostic("SIM100", "odd", severity=Severity.WARNING)
-    async with served(GROUND) as (server, _, log):
+    async with running_server(GROUND) as (server, _, log):
         server.report([warning, Diagnostic("SIM100", "wrong"), warning])
         assert [(record.level, record.text) for record in log] == [(LogLevel.WARN, "odd"), (LogLevel.ERROR, "wrong")]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from linkwright.simulation.ray_casting import GROUPS, cast
-from tests.simulation.worlds import simulated
+from tests.simulation.worlds import make_simulation
 
 
 def test_rays_hit_bodies_with_offset_center_of_mass():
@@ -22,7 +22,7 @@ def test_rays_hit_bodies_with_offset_center_of_mass():
             f'<model name="m{index}"><pose>{pose}</pose><link name="l">{mass}<collision name="c">{shape}</collision>'
             "</link></model>"
         )
-    simulation = simulated(*models)
+    simulation = make_simulation(*models)
     simulation.refresh()
     rays = chance.normal(size=(720, 3))
     rays /= np.linalg.norm(rays, axis=1)[:, None]

@@ -1,4 +1,4 @@
-"""What bounces, and how high."""
+"""Bouncing bodies, and the height of their bounces."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.simulation import Simulation
-from tests.simulation.worlds import simulated
+from tests.simulation.worlds import make_simulation
 
 MILLISECOND = NANOSECONDS_PER_SECOND // 1000
 RADIUS = 0.1
@@ -18,9 +18,9 @@ BALL = f"<sphere><radius>{RADIUS}</radius></sphere>"
 BLOCK = "<box><size>0.2 0.2 0.2</size></box>"
 
 
-def bounce_surface(coefficient: float, more: str = "") -> str:
+def bounce_surface(coefficient: float, extra: str = "") -> str:
     return (
-        f"<surface><bounce><restitution_coefficient>{coefficient}</restitution_coefficient>{more}</bounce></surface>"
+        f"<surface><bounce><restitution_coefficient>{coefficient}</restitution_coefficient>{extra}</bounce></surface>"
         if coefficient
         else ""
     )
@@ -34,13 +34,13 @@ def floor(coefficient: float = 1.0) -> str:
 
 
 def bouncing_model(
-    pose: str, coefficient: float, shape: str = BALL, mass: float = 2.0, more: str = "", name: str = "b"
+    pose: str, coefficient: float, shape: str = BALL, mass: float = 2.0, extra: str = "", name: str = "b"
 ) -> str:
     moment = 0.4 * mass * RADIUS**2
     return (
         f'<model name="{name}"><pose>{pose}</pose><link name="l"><inertial><mass>{mass}</mass><inertia>'
         f"<ixx>{moment}</ixx><iyy>{moment}</iyy><izz>{moment}</izz></inertia></inertial>"
-        f'<collision name="c"><geometry>{shape}</geometry>{bounce_surface(coefficient, more)}</collision>'
+        f'<collision name="c"><geometry>{shape}</geometry>{bounce_surface(coefficient, extra)}</collision>'
         "</link></model>"
     )
 
@@ -54,7 +54,7 @@ def heights(simulation: Simulation, milliseconds: int) -> list[float]:
 
 
 def bounce_height(simulation: Simulation, height: float) -> float:
-    """How high a model comes after it has hit for the first time."""
+    """Return the height that a model reaches after its first impact."""
     fall = sqrt(2 * height / G) + 0.005
     while simulation.seconds < fall:
         simulation.advance(MILLISECOND)
@@ -69,35 +69,37 @@ def bounce_height(simulation: Simulation, height: float) -> float:
 @pytest.mark.parametrize("height", [0.3, 1.0, 3.0])
 @pytest.mark.parametrize("coefficient", [0.2, 0.5, 0.9])
 def test_bounce_height_matches_restitution_coefficient(coefficient: float, height: float, shape: str, step: float):
-    simulation = simulated(floor(), bouncing_model(f"0 0 {height + RADIUS} 0 0 0", coefficient, shape), step=step)
+    simulation = make_simulation(floor(), bouncing_model(f"0 0 {height + RADIUS} 0 0 0", coefficient, shape), step=step)
     assert bounce_height(simulation, height) == pytest.approx(coefficient**2 * height, rel=0.05)
 
 
 def test_restitution_of_two_surfaces_is_their_product():
     start = f"0 0 {1 + RADIUS} 0 0 0"
-    assert sqrt(bounce_height(simulated(floor(0.8), bouncing_model(start, 0.8)), 1.0)) == pytest.approx(0.64, abs=0.02)
-    assert bounce_height(simulated(floor(0.0), bouncing_model(start, 0.8)), 1.0) < 0.01
-    slow = bouncing_model(start, 0.8, more="<threshold>6</threshold>")  # it hits at 4.4 m/s
-    assert bounce_height(simulated(floor(), slow), 1.0) < 0.01
+    assert sqrt(bounce_height(make_simulation(floor(0.8), bouncing_model(start, 0.8)), 1.0)) == pytest.approx(
+        0.64, abs=0.02
+    )
+    assert bounce_height(make_simulation(floor(0.0), bouncing_model(start, 0.8)), 1.0) < 0.01
+    slow = bouncing_model(start, 0.8, extra="<threshold>6</threshold>")  # it hits at 4.4 m/s
+    assert bounce_height(make_simulation(floor(), slow), 1.0) < 0.01
 
 
 def test_bouncing_body_comes_to_rest():
-    simulation = simulated(floor(), bouncing_model(f"0 0 {0.3 + RADIUS} 0.2 0.3 0", 0.5, BLOCK))
+    simulation = make_simulation(floor(), bouncing_model(f"0 0 {0.3 + RADIUS} 0.2 0.3 0", 0.5, BLOCK))
     assert max(abs(b - a) for a, b in pairwise(heights(simulation, 5000)[-1000:])) < 1e-6
     assert simulation.link_pose("b::l")[2] == pytest.approx(RADIUS, abs=1e-3)
 
 
 def test_obliquely_bouncing_ball_starts_rolling():
-    simulation = simulated(floor(), bouncing_model(f"0 0 {1 + RADIUS} 0 0 0", 0.5))
+    simulation = make_simulation(floor(), bouncing_model(f"0 0 {1 + RADIUS} 0 0 0", 0.5))
     simulation.set_model_velocity("b", (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     heights(simulation, 600)
-    (x, _, _), (_, turn, _) = simulation.link_velocity("b::l")
+    (x, _, _), (_, rate, _) = simulation.link_velocity("b::l")
     assert x == pytest.approx(5 / 7, abs=0.01)  # a solid ball, without slipping
-    assert turn == pytest.approx(x / RADIUS, rel=0.03)
+    assert rate == pytest.approx(x / RADIUS, rel=0.03)
 
 
 def test_equal_balls_exchange_velocities():
-    simulation = simulated(
+    simulation = make_simulation(
         bouncing_model("0 0 1 0 0 0", 1.0, name="a"), bouncing_model("0.5 0 1 0 0 0", 1.0, name="b"), gravity="0 0 0"
     )
     simulation.set_model_velocity("a", (2.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -108,7 +110,7 @@ def test_equal_balls_exchange_velocities():
 
 def test_bounces_are_bitwise_reproducible():
     def run() -> bytes:
-        simulation = simulated(floor(), bouncing_model("0 0 0.7 0.3 0.2 0", 0.8, BLOCK))
+        simulation = make_simulation(floor(), bouncing_model("0 0 0.7 0.3 0.2 0", 0.8, BLOCK))
         simulation.advance(NANOSECONDS_PER_SECOND)
         return bytes(simulation.data.qpos.tobytes())
 

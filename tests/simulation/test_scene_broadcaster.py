@@ -1,4 +1,4 @@
-"""gz's broadcaster of the poses of a world."""
+"""gz's scene broadcaster, which publishes the poses of a world."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.simulation.nodes.simulator import GzServer, Simulator
 from linkwright.simulation.plugins.registry import DEFAULT_GZ_SYSTEMS
 from linkwright.simulation.server.server import ServerOptions
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.test_plugins import SECOND, robot, running_server
 from tests.simulation.worlds import GROUND, box, model
 
 BROADCASTER = '<plugin name="gz::sim::systems::SceneBroadcaster" filename="gz-sim-scene-broadcaster-system"/>'
@@ -24,14 +24,14 @@ def names(message):
 
 
 def translation(message, name):
-    moved = next(
+    position = next(
         transform for transform in message.transforms if transform.child_frame_id == name
     ).transform.translation
-    return moved.x, moved.y, moved.z
+    return position.x, position.y, position.z
 
 
 async def test_dynamic_poses_list_models_before_links():
-    async with served(GROUND, robot(), BROADCASTER) as (server, graph, log):
+    async with running_server(GROUND, robot(), BROADCASTER) as (server, graph, log):
         recording = Recording(graph, server.node, DYNAMIC)
         server.advance(SECOND)
         await graph.settle()
@@ -50,7 +50,11 @@ async def test_all_poses_include_visuals_and_lights():
     visual = (
         '<visual name="lid"><pose>0 0 0.5 0 0 0</pose><geometry><box><size>1 1 0.1</size></box></geometry></visual>'
     )
-    async with served(GROUND, crate.replace("</link>", f"{visual}</link>"), light, BROADCASTER) as (server, graph, log):
+    async with running_server(GROUND, crate.replace("</link>", f"{visual}</link>"), light, BROADCASTER) as (
+        server,
+        graph,
+        log,
+    ):
         recording = Recording(graph, server.node, ALL)
         server.advance(SECOND // 10)
         await graph.settle()
@@ -61,7 +65,7 @@ async def test_all_poses_include_visuals_and_lights():
 
 
 async def test_spawned_models_are_included_and_deleted_ones_removed():
-    async with served(GROUND, BROADCASTER) as (server, graph, _):
+    async with running_server(GROUND, BROADCASTER) as (server, graph, _):
         recording = Recording(graph, server.node, DYNAMIC)
         server.spawn(model(box("box", "0 0 0.5 0 0 0", "1 1 1")), "crate")
         server.advance(SECOND // 10)
@@ -74,8 +78,8 @@ async def test_spawned_models_are_included_and_deleted_ones_removed():
 
 
 async def test_model_without_links_is_included():
-    mark = '<model name="mark"><static>true</static><pose>1 2 3 0 0 0</pose></model>'
-    async with served(GROUND, mark, BROADCASTER) as (server, graph, log):
+    empty_model = '<model name="mark"><static>true</static><pose>1 2 3 0 0 0</pose></model>'
+    async with running_server(GROUND, empty_model, BROADCASTER) as (server, graph, log):
         recording = Recording(graph, server.node, ALL)
         server.advance(SECOND // 10)
         await graph.settle()
@@ -85,7 +89,7 @@ async def test_model_without_links_is_included():
 
 async def test_dynamic_pose_rate_is_configurable():
     slow = BROADCASTER.replace("/>", "><dynamic_pose_hertz>10</dynamic_pose_hertz></plugin>")
-    async with served(GROUND, robot(), slow) as (server, graph, log):
+    async with running_server(GROUND, robot(), slow) as (server, graph, log):
         recording = Recording(graph, server.node, DYNAMIC)
         server.advance(SECOND)
         await graph.settle()
@@ -94,31 +98,31 @@ async def test_dynamic_pose_rate_is_configurable():
 
 
 async def test_default_gz_systems_apply_only_to_world_without_plugins():
-    other = '<plugin name="p" filename="gz-sim-physics-system"/>'
-    for parts, has in (((), True), ((other,), False), ((other, BROADCASTER), True)):
-        async with served(GROUND, *parts, options=ServerOptions(systems=DEFAULT_GZ_SYSTEMS)) as (_, graph, log):
-            assert (DYNAMIC in graph.topics()) == has
+    physics = '<plugin name="p" filename="gz-sim-physics-system"/>'
+    for parts, publishes_poses in (((), True), ((physics,), False), ((physics, BROADCASTER), True)):
+        async with running_server(GROUND, *parts, options=ServerOptions(systems=DEFAULT_GZ_SYSTEMS)) as (_, graph, log):
+            assert (DYNAMIC in graph.topics()) == publishes_poses
             assert not log
 
 
-@pytest.mark.parametrize(("kind", "has"), [(GzServer, True), (Simulator, False)])
-async def test_only_gz_server_adds_default_gz_systems(kind, has):
+@pytest.mark.parametrize(("node_type", "publishes_poses"), [(GzServer, True), (Simulator, False)])
+async def test_only_gz_server_adds_default_gz_systems(node_type, publishes_poses):
     graph = Graph()
-    running = kind(graph, NodeOptions(parameters={"pause": True}))
-    assert any(topic.endswith("/dynamic_pose/info") for topic in graph.topics()) == has
-    running.close()
+    simulator = node_type(graph, NodeOptions(parameters={"pause": True}))
+    assert any(topic.endswith("/dynamic_pose/info") for topic in graph.topics()) == publishes_poses
+    simulator.close()
     await graph.close()
 
 
-@pytest.mark.parametrize("kind", ["tf2_msgs/msg/TFMessage", "geometry_msgs/msg/PoseArray"])
-async def test_bridge_forwards_poses(kind):
-    async with served(GROUND, robot(), BROADCASTER) as (server, graph, _):
-        word = f"{DYNAMIC}@{kind}[gz.msgs.Pose_V"
-        bridge = ParameterBridge(graph, NodeOptions(arguments=[word], remappings=[(DYNAMIC, "/truth")]))
+@pytest.mark.parametrize("message_type", ["tf2_msgs/msg/TFMessage", "geometry_msgs/msg/PoseArray"])
+async def test_bridge_forwards_poses(message_type):
+    async with running_server(GROUND, robot(), BROADCASTER) as (server, graph, _):
+        argument = f"{DYNAMIC}@{message_type}[gz.msgs.Pose_V"
+        bridge = ParameterBridge(graph, NodeOptions(arguments=[argument], remappings=[(DYNAMIC, "/truth")]))
         recording = Recording(graph, server.node, "/truth")
         for _ in range(10):
             server.advance(SECOND // 20)
             await graph.settle()
         last = recording.last
-        assert len(last.transforms if kind.startswith("tf2") else last.poses) == 1 + len(LINKS)
+        assert len(last.transforms if message_type.startswith("tf2") else last.poses) == 1 + len(LINKS)
         bridge.close()

@@ -1,4 +1,4 @@
-"""The services and topics of a simulator, and the thread that it runs in."""
+"""The services and topics of a simulator, and its thread."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ URDF = """<robot name="crate"><link name="base"><inertial><mass value="1"/>
 <collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>"""
 
 
-class Simulated:
-    """A simulator in this process, and a node that asks it."""
+class SimulatorSession:
+    """A simulator in this process, and a node that calls it."""
 
     def __init__(self, graph: Graph, simulator: Simulator, log: list) -> None:
         self.graph = graph
@@ -34,13 +34,13 @@ class Simulated:
         self.simulator = simulator
         self.node = graph.create_node("asker")
 
-    async def ask(self, kind: str, service_name: str, /, **fields):
-        """Call a service."""
+    async def call(self, kind: str, service_name: str, /, **fields):
+        """Call a service, and return its answer."""
         service = get_service(kind)
         return await self.node.create_client(service, service_name).call_async(service.Request(**fields))
 
-    def hear(self, kind: str, topic: str, qos: QoSProfile | int = 100):
-        """The messages of a topic, as they come."""
+    def record(self, kind: str, topic: str, qos: QoSProfile | int = 100):
+        """Return a list that receives a topic's messages."""
         messages: list = []
         self.node.create_subscription(get_message(kind), topic, messages.append, qos)
         return messages
@@ -48,18 +48,18 @@ class Simulated:
 
 @asynccontextmanager
 async def simulator(tmp_path, *parts: str, **parameters):
-    """A simulator of a world with a ground and models, which is paused unless it is said otherwise."""
+    """Run a simulator of a world with a ground and models; it is paused by default."""
     path = tmp_path / "a.world"
     ground = "<include><uri>model://ground_plane</uri></include>"
     path.write_text(f'<sdf version="1.7"><world name="test">{ground}{"".join(parts)}</world></sdf>')
     log: list = []
     graph = Graph(on_log=log.append)
     options = {"world": str(path), "pause": True, "real_time_factor": -1.0} | parameters
-    running = Simulator(graph, NodeOptions(parameters=options))
+    node = Simulator(graph, NodeOptions(parameters=options))
     try:
-        yield Simulated(graph, running, log)
+        yield SimulatorSession(graph, node, log)
     finally:
-        running.close()
+        node.close()
         await graph.close()
 
 
@@ -76,7 +76,7 @@ PYRAMID = {"URDF": "<pyramid> in <geometry>", "SDF": "the <geometry> of visual '
 async def test_model_with_unknown_shape_is_rejected_with_reason(tmp_path, language):
     async with simulator(tmp_path) as session:
         text = SHAPES[language].format("<pyramid/>")
-        answer = await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
+        answer = await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
         assert not answer.success
         assert PYRAMID[language] in answer.status_message
         assert "is not a shape" in answer.status_message
@@ -87,7 +87,7 @@ async def test_model_with_unknown_shape_is_rejected_with_reason(tmp_path, langua
 async def test_robot_with_shape_without_dimensions_is_rejected(tmp_path, shape):
     async with simulator(tmp_path) as session:
         text = SHAPES["URDF"].format(shape)
-        answer = await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
+        answer = await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
         assert not answer.success
         assert "of link 'base'" in answer.status_message
 
@@ -97,16 +97,16 @@ async def test_models_are_spawned_and_deleted_by_services(tmp_path):
         sent = {"name": "one", "xml": URDF, "robot_namespace": ""}
         pose = get_message("geometry_msgs/msg/Pose")()
         pose.position.z = 4.0
-        answer = await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", initial_pose=pose, **sent)
+        answer = await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", initial_pose=pose, **sent)
         assert (answer.success, answer.status_message) == (True, "SpawnEntity: Successfully spawned entity [one]")
-        answer = await session.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        answer = await session.call("gazebo_msgs/srv/GetModelList", "/get_model_list")
         assert sorted(answer.model_names) == ["ground_plane", "one"]
-        answer = await session.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")
+        answer = await session.call("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")
         assert answer.success
         assert answer.state.pose.position.z == 4.0
-        answer = await session.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
+        answer = await session.call("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
         assert answer.success
-        answer = await session.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
+        answer = await session.call("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
         assert (answer.success, answer.status_message) == (False, "there is no model 'one'")
 
 
@@ -122,22 +122,22 @@ async def test_models_are_spawned_and_deleted_by_services(tmp_path):
 )
 async def test_invalid_spawn_request_is_rejected_with_reason(tmp_path, xml, reason):
     async with simulator(tmp_path, box("one", "0 0 1 0 0 0")) as session:
-        answer = await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=xml)
+        answer = await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=xml)
         assert not answer.success
         assert reason in answer.status_message
-        answer = await session.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        answer = await session.call("gazebo_msgs/srv/GetModelList", "/get_model_list")
         assert sorted(answer.model_names) == ["ground_plane", "one"]
 
 
 async def test_step_service_advances_paused_simulation(tmp_path):
     async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), publish_rate=100.0) as session:
-        clock = session.hear("rosgraph_msgs/msg/Clock", "/clock", CLOCK_QOS)
-        answer = await session.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=25)
+        clock = session.record("rosgraph_msgs/msg/Clock", "/clock", CLOCK_QOS)
+        answer = await session.call("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=25)
         assert answer.result.result == answer.result.RESULT_OK
         assert session.simulator.server.simulation.time == 25_000_000
         await eventually(lambda: bool(clock))
         assert clock[-1].clock.nanosec == 20_000_000
-        await session.ask("std_srvs/srv/Empty", "/reset_world")
+        await session.call("std_srvs/srv/Empty", "/reset_world")
         assert session.simulator.server.simulation.time == 0
 
 
@@ -149,30 +149,30 @@ async def test_paused_start_logs_how_to_unpause(tmp_path, pause):
 
 async def test_simulation_runs_in_thread_and_ends_after_duration(tmp_path):
     async with simulator(tmp_path, robot(joint_states()), pause=False, seconds=1.0) as session:
-        states = session.hear("simulation_interfaces/msg/SimulationState", "/simulation_state", LATCHED)
-        messages = session.hear("sensor_msgs/msg/JointState", "/joint_states")
+        states = session.record("simulation_interfaces/msg/SimulationState", "/simulation_state", LATCHED)
+        messages = session.record("sensor_msgs/msg/JointState", "/joint_states")
         await eventually(session.simulator.finished.done)
         assert session.simulator.server.simulation.time == 1_000_000_000
         await eventually(lambda: bool(states) and states[-1].state == states[-1].STATE_PAUSED)
         await eventually(lambda: bool(messages) and messages[-1].header.stamp.sec == 1)
-        answer = await session.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
+        answer = await session.call("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
         assert answer.result.result == answer.result.RESULT_OK
 
 
 async def test_failed_simulation_ends_before_its_duration(tmp_path):
-    falling = "<gravity>0 0 -1e14</gravity>" + box("one", "0 0 9 0 0 0")
-    async with simulator(tmp_path, falling, pause=False, seconds=1.0) as session:
+    strong_gravity = "<gravity>0 0 -1e14</gravity>" + box("one", "0 0 9 0 0 0")
+    async with simulator(tmp_path, strong_gravity, pause=False, seconds=1.0) as session:
         await eventually(session.simulator.finished.done)
         assert session.simulator.finished.result() == 1
 
 
 async def test_running_simulation_rejects_steps(tmp_path):
     async with simulator(tmp_path, pause=False) as session:
-        answer = await session.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
+        answer = await session.call("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
         assert answer.result.result == answer.result.RESULT_INCORRECT_STATE
-        await session.ask("std_srvs/srv/Empty", "/pause_physics")
+        await session.call("std_srvs/srv/Empty", "/pause_physics")
         assert session.simulator.runner.is_paused
-        await session.ask("std_srvs/srv/Empty", "/unpause_physics")
+        await session.call("std_srvs/srv/Empty", "/unpause_physics")
         assert not session.simulator.runner.is_paused
 
 
@@ -181,11 +181,11 @@ async def test_unstable_simulation_is_paused(tmp_path):
         wrench = get_message("geometry_msgs/msg/Wrench")()
         wrench.force.x = float("inf")
         duration = get_message("builtin_interfaces/msg/Duration")(sec=-1)
-        answer = await session.ask(
+        answer = await session.call(
             "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", link_name="link", wrench=wrench, duration=duration
         )
         assert not answer.success
-        answer = await session.ask(
+        answer = await session.call(
             "gazebo_msgs/srv/ApplyLinkWrench",
             "/apply_link_wrench",
             link_name="one::link",
@@ -201,15 +201,15 @@ async def test_wrench_acts_for_its_duration(tmp_path):
         wrench = get_message("geometry_msgs/msg/Wrench")()
         wrench.force.x = 4.0
         duration = get_message("builtin_interfaces/msg/Duration")(nanosec=100_000_000)
-        await session.ask(
+        await session.call(
             "gazebo_msgs/srv/ApplyLinkWrench",
             "/apply_link_wrench",
             link_name="one::link",
             wrench=wrench,
             duration=duration,
         )
-        await session.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=200)
-        state = (await session.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).state
+        await session.call("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=200)
+        state = (await session.call("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).state
         assert state.twist.linear.x == pytest.approx(0.2, abs=1e-9)
 
 
@@ -218,12 +218,12 @@ async def test_set_entity_state_sets_pose_and_velocity(tmp_path):
         state = get_message("gazebo_msgs/msg/EntityState")(name="one")
         state.pose.position.x, state.pose.orientation.z, state.pose.orientation.w = 3.0, 1.0, 0.0
         state.twist.linear.x, state.twist.angular.z = 1.0, 2.0
-        assert (await session.ask("gazebo_msgs/srv/SetEntityState", "/set_entity_state", state=state)).success
-        message = (await session.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).state
+        assert (await session.call("gazebo_msgs/srv/SetEntityState", "/set_entity_state", state=state)).success
+        message = (await session.call("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).state
         assert (message.pose.position.x, message.pose.orientation.z) == (3.0, 1.0)
         assert (message.twist.linear.x, message.twist.angular.z) == pytest.approx((1.0, 2.0))
         message = (
-            await session.ask(
+            await session.call(
                 "gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="ground_plane", reference_frame="one"
             )
         ).state
@@ -236,10 +236,10 @@ async def test_service_failure_without_message_field_is_logged(tmp_path):
     async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0"), hinge) as session:
         for name in ("ground_plane", "two", "three"):
             state = get_message("gazebo_msgs/msg/EntityState")(name=name)
-            assert not (await session.ask("gazebo_msgs/srv/SetEntityState", "/set_entity_state", state=state)).success
-        assert not (await session.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="on")).success
-        await session.ask("gazebo_msgs/srv/LinkRequest", "/clear_link_wrenches", link_name="wheel")
-        assert (await session.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).success
+            assert not (await session.call("gazebo_msgs/srv/SetEntityState", "/set_entity_state", state=state)).success
+        assert not (await session.call("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="on")).success
+        await session.call("gazebo_msgs/srv/LinkRequest", "/clear_link_wrenches", link_name="wheel")
+        assert (await session.call("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).success
         assert [record.text for record in session.log if record.level == LogLevel.ERROR] == [
             (
                 "/set_entity_state: 'ground_plane' is fixed to the world "
@@ -254,36 +254,38 @@ async def test_service_failure_without_message_field_is_logged(tmp_path):
 
 async def test_late_subscriber_gets_world_with_spawned_models(tmp_path):
     async with simulator(tmp_path) as session:
-        await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="late", xml=URDF)
-        worlds = session.hear("std_msgs/msg/String", "/world_description", LATCHED)
+        await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="late", xml=URDF)
+        worlds = session.record("std_msgs/msg/String", "/world_description", LATCHED)
         await eventually(lambda: bool(worlds) and 'name="late"' in worlds[-1].data)
         assert 'name="ground_plane"' in worlds[-1].data
 
 
 async def test_world_with_robot_is_serialized_once_at_start(tmp_path, monkeypatch):
-    written: list[str] = []
-    monkeypatch.setattr(reports, "save_world", lambda *world: written.append(save_world(*world)) or written[-1])
+    saved_worlds: list[str] = []
+    monkeypatch.setattr(
+        reports, "save_world", lambda *world: saved_worlds.append(save_world(*world)) or saved_worlds[-1]
+    )
     async with simulator(tmp_path, robot_description=URDF, robot_name="first") as session:
-        worlds = session.hear("std_msgs/msg/String", "/world_description", LATCHED)
+        worlds = session.record("std_msgs/msg/String", "/world_description", LATCHED)
         await eventually(lambda: bool(worlds))
-        assert [world.data for world in worlds] == written
-        assert 'name="first"' in written[0]
+        assert [world.data for world in worlds] == saved_worlds
+        assert 'name="first"' in saved_worlds[0]
 
 
 async def test_only_changed_models_are_serialized_again(tmp_path, monkeypatch):
-    written: list[str] = []
-    monkeypatch.setattr(reports, "save_model_of_world", lambda model: written.append(model.name) or saved(model))
+    saved_names: list[str] = []
+    monkeypatch.setattr(reports, "save_model_of_world", lambda model: saved_names.append(model.name) or saved(model))
     async with simulator(tmp_path, box("one", "1 0 9 0 0 0")) as session:
-        worlds = session.hear("std_msgs/msg/String", "/world_description", LATCHED)
-        assert written == ["one", "ground_plane"]
+        worlds = session.record("std_msgs/msg/String", "/world_description", LATCHED)
+        assert saved_names == ["one", "ground_plane"]
         for name in ("two", "three"):
-            await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name=name, xml=URDF)
-        await session.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="two")
-        await session.ask(
+            await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name=name, xml=URDF)
+        await session.call("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="two")
+        await session.call(
             "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="two", xml=URDF.replace("1 1 1", "2 2 2")
         )
         await eventually(lambda: bool(worlds) and "<size>2 2 2</size>" in worlds[-1].data)
-        assert written == ["one", "ground_plane", "two", "three", "two"]
+        assert saved_names == ["one", "ground_plane", "two", "three", "two"]
         assert [line for line in worlds[-1].data.splitlines() if line.startswith("    <model")] == [
             f'    <model name="{name}">' for name in ("one", "ground_plane", "three", "two")
         ]
@@ -298,12 +300,12 @@ async def test_actors_and_roads_are_described_as_models(tmp_path):
     )
     road = '<road name="lane"><point>0 0 0</point><point>4 0 0</point></road>'
     async with simulator(tmp_path, actor, road) as session:
-        worlds = session.hear("std_msgs/msg/String", "/world_description", LATCHED)
+        worlds = session.record("std_msgs/msg/String", "/world_description", LATCHED)
         await eventually(lambda: bool(worlds))
         assert '<model name="walker">' in worlds[-1].data
         assert '<model name="lane">' in worlds[-1].data
         assert "<actor" not in worlds[-1].data
-        poses = session.hear("tf2_msgs/msg/TFMessage", "/world_poses")
+        poses = session.record("tf2_msgs/msg/TFMessage", "/world_poses")
         await eventually(lambda: bool(poses))
         [transform] = poses[-1].transforms
         assert transform.child_frame_id == "walker::head"
@@ -312,7 +314,7 @@ async def test_actors_and_roads_are_described_as_models(tmp_path):
 
 async def test_world_poses_contain_movable_links_only(tmp_path):
     async with simulator(tmp_path, box("one", "1 0 9 0 0 0")) as session:
-        poses = session.hear("tf2_msgs/msg/TFMessage", "/world_poses")
+        poses = session.record("tf2_msgs/msg/TFMessage", "/world_poses")
         await eventually(lambda: bool(poses))
         [transform] = poses[-1].transforms
         assert (transform.header.frame_id, transform.child_frame_id) == ("world", f"one{SEPARATOR}link")
@@ -320,8 +322,8 @@ async def test_world_poses_contain_movable_links_only(tmp_path):
 
 
 async def test_robot_can_be_spawned_at_start(tmp_path):
-    there = {"robot_description": URDF, "robot_name": "r", "robot_pose": [1.0, 2.0, 0.5, 0.0, 0.0, 0.0]}
-    async with simulator(tmp_path, **there) as session:
+    parameters = {"robot_description": URDF, "robot_name": "r", "robot_pose": [1.0, 2.0, 0.5, 0.0, 0.0, 0.0]}
+    async with simulator(tmp_path, **parameters) as session:
         assert session.simulator.server.simulation.model_pose("r")[:3] == (1.0, 2.0, 0.5)
 
 
@@ -337,21 +339,21 @@ async def test_findings_of_model_last_while_it_is_in_world(tmp_path):
         await eventually(lambda: messages == [[], ["SIM143"]])
         session.simulator.services.replace_model(URDF, "first")
         await eventually(lambda: messages[2:] == [[]])
-        await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="second", xml=description)
+        await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="second", xml=description)
         assert [finding.code for finding in server.findings] == ["SIM143"]
-        await session.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="second")
+        await session.call("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="second")
         assert server.findings == []
 
 
 async def test_world_can_be_given_as_text_or_ros_gz_parameter(tmp_path):
     text = f'<sdf version="1.7"><world name="told">{box("crate", "0 0 1 0 0 0")}</world></sdf>'
     async with simulator(tmp_path, world_sdf_string=text) as session:
-        answer = await session.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        answer = await session.call("gazebo_msgs/srv/GetModelList", "/get_model_list")
         assert answer.model_names == ["crate"]
     path = tmp_path / "other.sdf"
     path.write_text(text.replace("crate", "chest"), encoding="utf-8")
     async with simulator(tmp_path, world_sdf_file=str(path)) as session:
-        answer = await session.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        answer = await session.call("gazebo_msgs/srv/GetModelList", "/get_model_list")
         assert answer.model_names == ["chest"]
 
 

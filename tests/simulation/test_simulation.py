@@ -1,4 +1,4 @@
-"""A world that moves: time, models that come and go, and that it is the same twice."""
+"""A moving world: time, models that are added and removed, and reproducibility."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.simulation import Simulation, UnstableError
-from tests.simulation.worlds import GROUND, box, finder, mbot, model, simulated, world
+from tests.simulation.worlds import GROUND, box, finder, make_simulation, mbot, model, world
 
 MILLISECOND = NANOSECONDS_PER_SECOND // 1000
 
 
 def test_body_falls_with_gravity():
-    simulation = simulated(box("ball", "0 0 100 0 0 0"))
+    simulation = make_simulation(box("ball", "0 0 100 0 0 0"))
     simulation.advance(NANOSECONDS_PER_SECOND)
     # The semi-implicit step is behind by half a step: g t dt / 2.
     assert simulation.model_pose("ball")[2] == pytest.approx(100 - 9.81 / 2, abs=9.81 * 0.001 / 2 + 1e-9)
@@ -24,7 +24,7 @@ def test_body_falls_with_gravity():
 
 
 def test_periodic_tasks_are_called_on_time_in_order():
-    simulation = simulated(GROUND)
+    simulation = make_simulation(GROUND)
     calls: list[tuple[str, int]] = []
     simulation.call_every(3 * MILLISECOND, lambda: calls.append(("three", simulation.time // MILLISECOND)))
     simulation.call_every(2 * MILLISECOND, lambda: calls.append(("two", simulation.time // MILLISECOND)))
@@ -33,17 +33,17 @@ def test_periodic_tasks_are_called_on_time_in_order():
 
 
 def test_robot_drives_straight():
-    simulation = simulated(GROUND, mbot())
+    simulation = make_simulation(GROUND, mbot())
     motors = [simulation.add_velocity_motor(f"mbot::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
-    wheel = simulation.joint_state("mbot::left_joint")[0]
+    start_angle = simulation.joint_state("mbot::left_joint")[0]
     for hundredth in range(1, 101):
         for motor in motors:
             motor.target = hundredth / 100 * 0.5 / 0.06
         simulation.advance(5 * MILLISECOND)
     simulation.advance(9 * NANOSECONDS_PER_SECOND)
     x, y, _z, *_ = simulation.model_pose("mbot")
-    turned = simulation.joint_state("mbot::left_joint")[0] - wheel
-    assert x == pytest.approx(turned * 0.06, abs=1e-3)
+    wheel_angle = simulation.joint_state("mbot::left_joint")[0] - start_angle
+    assert x == pytest.approx(wheel_angle * 0.06, abs=1e-3)
     assert x > 4.5
     assert abs(y) < 1e-4
 
@@ -58,13 +58,13 @@ def test_robot_drives_straight():
 )
 def test_wheel_radius_of_round_shapes(shape, radius):
     collision = f"<collision name='c'><geometry>{shape}</geometry></collision>"
-    simulation = simulated(f"<model name='a'><link name='link'>{collision}</link></model>")
+    simulation = make_simulation(f"<model name='a'><link name='link'>{collision}</link></model>")
     assert simulation.wheel_radius("a::link") == radius
 
 
 def test_simulation_is_reproducible():
     def run() -> tuple[float, ...]:
-        simulation = simulated(GROUND, mbot(), box("box", "0.5 0.05 0.2 0 0 0", "0.2 0.2 0.2"))
+        simulation = make_simulation(GROUND, mbot(), box("box", "0.5 0.05 0.2 0 0 0", "0.2 0.2 0.2"))
         motors = [simulation.add_velocity_motor(f"mbot::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
         motors[0].target, motors[1].target = 5.0, 6.0
         simulation.advance(2 * NANOSECONDS_PER_SECOND)
@@ -74,11 +74,11 @@ def test_simulation_is_reproducible():
 
 
 def test_spawn_and_delete_keep_other_models():
-    simulation = simulated(GROUND, box("one", "0 0 5 0 0 0"))
+    simulation = make_simulation(GROUND, box("one", "0 0 5 0 0 0"))
     simulation.advance(100 * MILLISECOND)
-    before = simulation.model_pose("one"), tuple(simulation.link_velocity("one::link")[0])
+    state = simulation.model_pose("one"), tuple(simulation.link_velocity("one::link")[0])
     simulation.spawn(model(box("two", "0 0 0 0 0 0")), "two", (3.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0))
-    assert (simulation.model_pose("one"), tuple(simulation.link_velocity("one::link")[0])) == before
+    assert (simulation.model_pose("one"), tuple(simulation.link_velocity("one::link")[0])) == state
     assert simulation.model_pose("two")[:3] == (3.0, 0.0, 0.5)
     simulation.delete("one")
     assert simulation.model_pose("two")[:3] == (3.0, 0.0, 0.5)
@@ -88,13 +88,13 @@ def test_spawn_and_delete_keep_other_models():
 
 
 def test_duplicate_model_name_is_rejected():
-    simulation = simulated(box("one", "0 0 5 0 0 0"))
+    simulation = make_simulation(box("one", "0 0 5 0 0 0"))
     with pytest.raises(LinkwrightError, match="a model 'one' already exists"):
         simulation.spawn(model(box("one", "0 0 0 0 0 0")), "one")
 
 
 def test_reset_restores_start():
-    simulation = simulated(GROUND, box("one", "0 0 5 0 0 0"))
+    simulation = make_simulation(GROUND, box("one", "0 0 5 0 0 0"))
     calls: list[int] = []
     simulation.call_every(10 * MILLISECOND, lambda: calls.append(simulation.time))
     simulation.advance(20 * MILLISECOND)
@@ -106,7 +106,7 @@ def test_reset_restores_start():
 
 
 def test_instability_is_reported_with_link():
-    simulation = simulated(box("one", "0 0 5 0 0 0"), box("two", "0 3 5 0 0 0"))
+    simulation = make_simulation(box("one", "0 0 5 0 0 0"), box("two", "0 3 5 0 0 0"))
     simulation.advance(10 * MILLISECOND)
     simulation.push("two::link", (0.0, 1e300, 0.0))
     with pytest.raises(UnstableError, match="'two::link'"):
@@ -115,7 +115,7 @@ def test_instability_is_reported_with_link():
 
 
 def test_nan_force_is_reported_with_link():
-    simulation = simulated(box("one", "0 0 5 0 0 0"), box("two", "0 3 5 0 0 0"))
+    simulation = make_simulation(box("one", "0 0 5 0 0 0"), box("two", "0 3 5 0 0 0"))
     simulation.push("two::link", (0.0, float("nan"), 0.0))
     with pytest.raises(UnstableError, match="'two::link'"):
         simulation.advance(NANOSECONDS_PER_SECOND)
@@ -130,4 +130,4 @@ def test_duplicate_model_of_world_is_omitted():
 def test_too_many_links_are_rejected(monkeypatch):
     monkeypatch.setattr("linkwright.simulation.scene.compiling.MAX_LINKS", 3)
     with pytest.raises(LinkwrightError, match="the world has 4 links, more than can be simulated"):
-        simulated(*(box(f"box{index}", f"{index} 0 5 0 0 0") for index in range(4)))
+        make_simulation(*(box(f"box{index}", f"{index} 0 5 0 0 0") for index in range(4)))

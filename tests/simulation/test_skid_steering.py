@@ -1,4 +1,4 @@
-"""Four wheels that a differential drive turns: they slip in every turn."""
+"""Four wheels with a differential drive: they slip in every turn."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.control.odometry import yaw_of
 from tests.simulation.test_movers import drive
-from tests.simulation.test_plugins import served
+from tests.simulation.test_plugins import running_server
 from tests.simulation.worlds import GROUND, box
 
 RADIUS, WIDTH = 0.1, 0.4
@@ -16,7 +16,7 @@ SIDES = tuple((end, side) for end in ("front", "back") for side in ("left", "rig
 
 
 def skid(length: float, surface: str = "") -> str:
-    """A robot of 9 kg with wheels on two axles some way apart."""
+    """Return a robot of 9 kg with four wheels; the length is the distance of its axles."""
     text = box("robot", "0 0 0.2 0 0 0", "0.6 0.3 0.1", 5.0)
     for end, side in SIDES:
         x, y = (length / 2 if end == "front" else -length / 2), (WIDTH / 2 if side == "left" else -WIDTH / 2)
@@ -35,26 +35,26 @@ def skid(length: float, surface: str = "") -> str:
 
 
 def friction(mu: float, mu2: float) -> str:
-    """A surface."""
+    """Return a surface."""
     return f"<surface><friction><ode><mu>{mu}</mu><mu2>{mu2}</mu2></ode></friction></surface>"
 
 
-@pytest.mark.parametrize("surface", ["", friction(100.0, 50.0), friction(1.0, 0.05)], ids=["unsaid", "rubber", "mu2"])
+@pytest.mark.parametrize("surface", ["", friction(100.0, 50.0), friction(1.0, 0.05)], ids=["default", "rubber", "mu2"])
 @pytest.mark.parametrize("length", [0.2, 0.4])
 async def test_skid_steering_turn_rate_matches_coulomb_friction(length, surface):
-    async with served(GROUND, skid(length, surface)) as (server, graph, log):
-        await drive(server, graph, turning=0.5, seconds=1.0)
+    async with running_server(GROUND, skid(length, surface)) as (server, graph, log):
+        await drive(server, graph, yaw_rate=0.5, seconds=1.0)
         begin = yaw_of(server.simulation.model_pose("robot"))
-        await drive(server, graph, turning=0.5, seconds=1.0)
+        await drive(server, graph, yaw_rate=0.5, seconds=1.0)
         share = (yaw_of(server.simulation.model_pose("robot")) - begin) / 0.5
         expected = WIDTH**2 / (WIDTH**2 + length**2)
         assert 0.8 * expected < share < 1.05 * expected
         assert not log
 
 
-@pytest.mark.parametrize("surface", ["", friction(1.0, 0.05)], ids=["unsaid", "mu2"])
+@pytest.mark.parametrize("surface", ["", friction(1.0, 0.05)], ids=["default", "mu2"])
 async def test_skid_steering_drives_straight(surface):
-    async with served(GROUND, skid(0.4, surface)) as (server, graph, log):
+    async with running_server(GROUND, skid(0.4, surface)) as (server, graph, log):
         await drive(server, graph, 0.5, seconds=1.0)
         begin = server.simulation.model_pose("robot")
         await drive(server, graph, 0.5, seconds=1.0)

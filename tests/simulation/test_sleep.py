@@ -1,4 +1,4 @@
-"""What should move moves, however slowly, and what rests falls asleep."""
+"""Sleeping bodies: slow motion does not fall asleep, and bodies at rest do."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import pytest
 
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.simulation import Simulation
-from tests.simulation.worlds import GROUND, box, simulated
+from tests.simulation.worlds import GROUND, box, make_simulation
 
 NO_GRAVITY = "0 0 0"
 
 
-def swinging(*, stiffness: float = 0.0, damping: float = 0.0, kind: str = "revolute", axis: str = "0 1 0") -> str:
-    """A bob of 1 kg, 1 m below a point that stands still, with a joint there."""
+def pendulum(*, stiffness: float = 0.0, damping: float = 0.0, kind: str = "revolute", axis: str = "0 1 0") -> str:
+    """Return a bob of 1 kg, 1 m below a fixed joint."""
     spring = f"<spring_stiffness>{stiffness}</spring_stiffness><spring_reference>0</spring_reference>"
     inertia = "<inertia><ixx>1e-6</ixx><iyy>1e-6</iyy><izz>1e-6</izz></inertia>"
     return (
@@ -32,16 +32,16 @@ def are_asleep(simulation: Simulation) -> bool:
 
 @pytest.mark.parametrize("amplitude", [0.1, 0.02, 0.005, 0.001])
 def test_pendulum_keeps_swinging(amplitude: float):
-    simulation = simulated(swinging())
+    simulation = make_simulation(pendulum())
     simulation.set_joint_position("swing::joint", amplitude)
-    half = round(pi / sqrt(9.81) * NANOSECONDS_PER_SECOND)
-    simulation.advance(9 * half)
+    half_period = round(pi / sqrt(9.81) * NANOSECONDS_PER_SECOND)
+    simulation.advance(9 * half_period)
     assert simulation.joint_state("swing::joint")[0] == pytest.approx(-amplitude, rel=0.01)
 
 
 @pytest.mark.parametrize("damping", [2.0, 40.0])
 def test_mass_on_spring_rests_at_equilibrium(damping: float):
-    simulation = simulated(swinging(kind="prismatic", axis="0 0 1", stiffness=100.0, damping=damping))
+    simulation = make_simulation(pendulum(kind="prismatic", axis="0 0 1", stiffness=100.0, damping=damping))
     simulation.advance(15 * NANOSECONDS_PER_SECOND)
     assert simulation.joint_state("swing::joint")[0] == pytest.approx(-0.0981, abs=1e-5)
     assert are_asleep(simulation)
@@ -49,7 +49,7 @@ def test_mass_on_spring_rests_at_equilibrium(damping: float):
 
 @pytest.mark.parametrize("gravity", [0.05, 0.002])
 def test_bodies_fall_under_tiny_gravity(gravity: float):
-    simulation = simulated(box("crate", "0 0 5 0 0 0"), gravity=f"0 0 {-gravity}")
+    simulation = make_simulation(box("crate", "0 0 5 0 0 0"), gravity=f"0 0 {-gravity}")
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
     assert 5.0 - simulation.link_pose("crate::link")[2] == pytest.approx(2 * gravity, rel=0.01)
 
@@ -61,14 +61,14 @@ def test_ball_rolls_down_tiny_slope():
         "<inertia><ixx>0.004</ixx><iyy>0.004</iyy><izz>0.004</izz></inertia></inertial>"
         '<collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision></link></model>'
     )
-    simulation = simulated(GROUND, ball, gravity=f"{9.81 * sin(slope)} 0 {-9.81 * cos(slope)}")
+    simulation = make_simulation(GROUND, ball, gravity=f"{9.81 * sin(slope)} 0 {-9.81 * cos(slope)}")
     simulation.advance(4 * NANOSECONDS_PER_SECOND)
     assert simulation.link_velocity("ball::link")[0][0] == pytest.approx(5 / 7 * 9.81 * slope * 4, rel=0.01)
 
 
 @pytest.mark.parametrize("speed", [1.0, 1e-4])
 def test_sleeping_body_moves_when_velocity_is_set(speed: float):
-    simulation = simulated(box("crate", "0 0 5 0 0 0"), gravity=NO_GRAVITY)
+    simulation = make_simulation(box("crate", "0 0 5 0 0 0"), gravity=NO_GRAVITY)
     simulation.advance(NANOSECONDS_PER_SECOND)
     assert are_asleep(simulation)
     simulation.set_model_velocity("crate", (speed, 0.0, 0.0), (0.0, 0.0, speed))
@@ -78,7 +78,7 @@ def test_sleeping_body_moves_when_velocity_is_set(speed: float):
 
 @pytest.mark.parametrize("force", [10.0, 1e-3])
 def test_sleeping_body_moves_when_pushed(force: float):
-    simulation = simulated(box("crate", "0 0 5 0 0 0", mass=1.0), gravity=NO_GRAVITY)
+    simulation = make_simulation(box("crate", "0 0 5 0 0 0", mass=1.0), gravity=NO_GRAVITY)
     simulation.advance(NANOSECONDS_PER_SECOND)
     simulation.push("crate::link", (force, 0.0, 0.0))
     simulation.advance(NANOSECONDS_PER_SECOND)
@@ -86,7 +86,7 @@ def test_sleeping_body_moves_when_pushed(force: float):
 
 
 def test_sleeping_body_falls_when_gravity_is_set():
-    simulation = simulated(box("crate", "0 0 5 0 0 0"), gravity=NO_GRAVITY)
+    simulation = make_simulation(box("crate", "0 0 5 0 0 0"), gravity=NO_GRAVITY)
     simulation.advance(NANOSECONDS_PER_SECOND)
     simulation.set_gravity((0.0, 0.0, -0.01))
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
@@ -94,7 +94,7 @@ def test_sleeping_body_falls_when_gravity_is_set():
 
 
 def test_stacked_boxes_fall_asleep_in_place():
-    simulation = simulated(
+    simulation = make_simulation(
         GROUND, *[box(f"b{index}", f"0 0 {0.1 + 0.2 * index} 0 0 0", "0.2 0.2 0.2") for index in range(4)]
     )
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
@@ -105,7 +105,7 @@ def test_stacked_boxes_fall_asleep_in_place():
 
 
 def test_box_falls_when_its_support_is_deleted():
-    simulation = simulated(
+    simulation = make_simulation(
         GROUND, box("lower", "0 0 0.1 0 0 0", "0.2 0.2 0.2"), box("upper", "0 0 0.3 0 0 0", "0.2 0.2 0.2")
     )
     simulation.advance(NANOSECONDS_PER_SECOND)

@@ -1,4 +1,4 @@
-"""Many robots are solved for together, and what rests still falls asleep."""
+"""Joint solving of many robots, in which bodies at rest still fall asleep."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.simulation import Simulation
 from linkwright.simulation.solving import Solving
-from tests.simulation.worlds import GROUND, box, mbot, simulated
+from tests.simulation.worlds import GROUND, box, make_simulation, mbot
 
 ROBOTS = 9
-LOOK = 20 * NANOSECONDS_PER_SECOND // 1000
+CHECK_PERIOD = 20 * NANOSECONDS_PER_SECOND // 1000
 
 
-def driving(*more: str, robots: int = ROBOTS) -> Simulation:
-    """Robots side by side that drive straight on, each a little faster than the one before."""
-    placed = [
+def driving_robots(*extra_models: str, robots: int = ROBOTS) -> Simulation:
+    """Return robots side by side that drive straight, each a little faster than the previous one."""
+    robot_models = [
         mbot(f"0 {number} 0.11 0 0 0").replace('name="mbot"', f'name="mbot{number}"', 1) for number in range(robots)
     ]
-    simulation = simulated(GROUND, *placed, *more)
+    simulation = make_simulation(GROUND, *robot_models, *extra_models)
     motors = [
         [simulation.add_velocity_motor(f"mbot{number}::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
         for number in range(robots)
@@ -32,8 +32,8 @@ def driving(*more: str, robots: int = ROBOTS) -> Simulation:
     return simulation
 
 
-def is_together(simulation: Simulation) -> bool:
-    """Whether MuJoCo solves for all together."""
+def is_solved_jointly(simulation: Simulation) -> bool:
+    """Return whether MuJoCo solves for all bodies together."""
     mujoco, option = load_mujoco(), simulation.model.opt
     islands = not option.disableflags & mujoco.mjtDisableBit.mjDSBL_ISLAND.value
     sleeps = bool(option.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP.value)
@@ -42,32 +42,32 @@ def is_together(simulation: Simulation) -> bool:
 
 
 def test_joint_solving_of_many_robots_gives_same_motion(monkeypatch):
-    together = driving()
-    together.advance(5 * LOOK)
-    assert is_together(together)
+    together = driving_robots()
+    together.advance(5 * CHECK_PERIOD)
+    assert is_solved_jointly(together)
     together.advance(NANOSECONDS_PER_SECOND)
     with monkeypatch.context() as patch:
         patch.setattr(Solving, "_update_solver", lambda _: None)
-        alone = driving()
-        alone.advance(5 * LOOK + NANOSECONDS_PER_SECOND)
-        assert not is_together(alone)
+        alone = driving_robots()
+        alone.advance(5 * CHECK_PERIOD + NANOSECONDS_PER_SECOND)
+        assert not is_solved_jointly(alone)
     assert together.model_pose("mbot8")[0] > 0.3
     np.testing.assert_allclose(together.data.qpos, alone.data.qpos, atol=1e-7)
 
 
 def test_few_robots_are_solved_separately():
-    simulation = driving(robots=4)
-    simulation.advance(5 * LOOK)
-    assert not is_together(simulation)
+    simulation = driving_robots(robots=4)
+    simulation.advance(5 * CHECK_PERIOD)
+    assert not is_solved_jointly(simulation)
 
 
 def test_resting_boxes_fall_asleep_while_robots_drive():
     boxes = [box(f"box{number}", f"{number} -3 0.1 0 0 0", "0.2 0.2 0.2") for number in range(6)]
-    simulation = driving(*boxes)
-    simulation.advance(2 * LOOK)
-    assert is_together(simulation)  # the boxes have not come to rest yet
+    simulation = driving_robots(*boxes)
+    simulation.advance(2 * CHECK_PERIOD)
+    assert is_solved_jointly(simulation)  # the boxes are still moving
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
-    assert not is_together(simulation)
+    assert not is_solved_jointly(simulation)
     assert simulation.data.ntree_awake == ROBOTS
     simulation.push("box0::link", (0.0, 0.0, 20.0))
     simulation.advance(100 * NANOSECONDS_PER_SECOND // 1000)
@@ -75,14 +75,14 @@ def test_resting_boxes_fall_asleep_while_robots_drive():
 
 
 def test_sleeping_box_wakes_when_hit_during_joint_solving():
-    simulation = driving(box("wall", "1.2 8 0.1 0 0 0", "0.2 0.4 0.2", mass=0.2))
+    simulation = driving_robots(box("wall", "1.2 8 0.1 0 0 0", "0.2 0.4 0.2", mass=0.2))
     tree = int(simulation.model.body_treeid[simulation.model.body("wall::link").id])
-    simulation.advance(51 * LOOK)
-    assert not is_together(simulation)  # it is seen what rests
-    simulation.advance(LOOK * 3 // 4)
+    simulation.advance(51 * CHECK_PERIOD)
+    assert not is_solved_jointly(simulation)  # it is seen what rests
+    simulation.advance(CHECK_PERIOD * 3 // 4)
     assert simulation.data.tree_asleep[tree] >= 0
-    simulation.advance(LOOK // 2)
-    assert is_together(simulation)
+    simulation.advance(CHECK_PERIOD // 2)
+    assert is_solved_jointly(simulation)
     assert simulation.link_pose("wall::link")[0] == pytest.approx(1.2, abs=1e-4)
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
     ahead = simulation.link_pose("wall::link")[0]
@@ -92,11 +92,11 @@ def test_sleeping_box_wakes_when_hit_during_joint_solving():
 
 
 def test_reset_is_bitwise_reproducible():
-    simulation = driving()
+    simulation = driving_robots()
     simulation.advance(NANOSECONDS_PER_SECOND // 2)
     once = simulation.data.qpos.tobytes()
     simulation.reset()
-    assert not is_together(simulation)
+    assert not is_solved_jointly(simulation)
     for number in range(ROBOTS):
         assert simulation.model_pose(f"mbot{number}")[0] == pytest.approx(0.0)
     simulation.data.ctrl[:] = np.repeat(1.0 + np.arange(ROBOTS), 2)
@@ -105,11 +105,11 @@ def test_reset_is_bitwise_reproducible():
 
 
 def test_remaining_robots_are_solved_separately_after_delete():
-    simulation = driving()
-    simulation.advance(5 * LOOK)
-    assert is_together(simulation)
+    simulation = driving_robots()
+    simulation.advance(5 * CHECK_PERIOD)
+    assert is_solved_jointly(simulation)
     for number in range(4):
         simulation.delete(f"mbot{number}")
-    simulation.advance(5 * LOOK)
-    assert not is_together(simulation)
+    simulation.advance(5 * CHECK_PERIOD)
+    assert not is_solved_jointly(simulation)
     assert simulation.schedule.next_time is None

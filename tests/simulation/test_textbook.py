@@ -1,4 +1,4 @@
-"""What a textbook says of bodies that move, and of robots that drive."""
+"""The motion of bodies and robots, compared with formulas of textbooks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.geometry.single import rpy_from_quaternion
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.actuators import Motor
 from linkwright.simulation.simulation import Simulation
-from tests.simulation.worlds import GROUND, box, mbot, simulated
+from tests.simulation.worlds import GROUND, box, make_simulation, mbot
 
 MILLISECOND = NANOSECONDS_PER_SECOND // 1000
 G = 9.81
@@ -30,7 +30,7 @@ def friction(mu: float) -> str:
 
 
 def slope(angle: float, mu: float = 1.0) -> str:
-    """A plane that goes down towards x."""
+    """Return a plane that slopes down toward x."""
     return (
         '<model name="slope"><static>true</static><link name="l"><collision name="c"><geometry><plane>'
         f"<normal>{sin(angle)} 0 {cos(angle)}</normal></plane></geometry>{friction(mu)}</collision></link></model>"
@@ -46,7 +46,7 @@ def test_pendulum_has_textbook_period():
       <joint name="hinge" type="revolute"><pose>0 0 {length} 0 0 0</pose><parent>world</parent><child>bob</child>
         <axis><xyz>0 1 0</xyz></axis></joint>
     </model>"""
-    simulation = simulated(pendulum)
+    simulation = make_simulation(pendulum)
     crossings = []
     last = 0.0
     for _ in range(6000):
@@ -65,16 +65,16 @@ def test_pendulum_has_textbook_period():
 def test_block_on_slope_sticks_or_slides(mu, slides):
     angle = atan(0.5)
     height = 0.05 / cos(angle)
-    simulation = simulated(
+    simulation = make_simulation(
         slope(angle, mu), box("block", f"0 0 {height} 0 {angle} 0", "0.1 0.1 0.1", surface=friction(2.0))
     )
     simulation.advance(NANOSECONDS_PER_SECOND)
     x, _, z = simulation.model_pose("block")[:3]
-    gone = hypot(x, z - height)
+    distance = hypot(x, z - height)
     if slides:
-        assert gone == pytest.approx(G * (sin(angle) - mu * cos(angle)) / 2, rel=0.05)
+        assert distance == pytest.approx(G * (sin(angle) - mu * cos(angle)) / 2, rel=0.05)
     else:
-        assert gone < 2e-3
+        assert distance < 2e-3
 
 
 def test_ball_rolls_down_slope():
@@ -82,14 +82,14 @@ def test_ball_rolls_down_slope():
     shape = f"<sphere><radius>{radius}</radius></sphere>"
     link = part(1.0, 0.4 * radius**2, shape, friction(1.0))
     ball = f'<model name="ball"><pose>0 0 {radius / cos(angle)} 0 0 0</pose><link name="l">{link}</link></model>'
-    simulation = simulated(slope(angle), ball)
+    simulation = make_simulation(slope(angle), ball)
     simulation.advance(NANOSECONDS_PER_SECOND)
     speed = simulation.link_velocity("ball::l")[0]
     assert hypot(*speed) == pytest.approx(5 / 7 * G * sin(angle), rel=0.01)
 
 
 def test_collision_conserves_momentum():
-    simulation = simulated(
+    simulation = make_simulation(
         box("one", "0 0 0 0 0 0", "0.2 0.2 0.2", 2.0), box("two", "1 0 0 0 0 0", "0.2 0.2 0.2", 1.0), gravity="0 0 0"
     )
     simulation.push("one::link", (20.0, 0.0, 0.0))
@@ -117,7 +117,7 @@ def test_four_bar_linkage_stays_closed():
             ("c", "rocker", "0 0 0.3 0 0 0", "coupler", "rocker"),
         )
     )
-    simulation = simulated(f'<model name="m">{bars}{joints}</model>')
+    simulation = make_simulation(f'<model name="m">{bars}{joints}</model>')
     simulation.push("m::crank", (0.0, 0.0, 0.0), (0.0, 0.01, 0.0))
     for _ in range(20):
         simulation.advance(100 * MILLISECOND)
@@ -128,7 +128,7 @@ def test_four_bar_linkage_stays_closed():
 
 
 def test_robot_at_rest_does_not_drift():
-    simulation = simulated(GROUND, mbot())
+    simulation = make_simulation(GROUND, mbot())
     simulation.advance(NANOSECONDS_PER_SECOND)
     x, y, z, *_ = simulation.model_pose("mbot")
     simulation.advance(60 * NANOSECONDS_PER_SECOND)
@@ -136,14 +136,14 @@ def test_robot_at_rest_does_not_drift():
 
 
 class Driver:
-    """Turns the wheels of mbot for a velocity, with 1 m/s2 at the rims, as a node would 100 times a second."""
+    """A driver that turns mbot's wheels 100 times a second, as a node would, with 1 m/s2 at the rims."""
 
-    def __init__(self, forward: float, turning: float) -> None:
-        self.simulation: Simulation = simulated(GROUND, mbot())
+    def __init__(self, forward: float, yaw_rate: float) -> None:
+        self.simulation: Simulation = make_simulation(GROUND, mbot())
         self._motors: list[Motor] = [
             self.simulation.add_velocity_motor(f"mbot::{side}_joint", 20.0, 5.0) for side in ("left", "right")
         ]
-        self._wanted = [forward - turning * 0.19, forward + turning * 0.19]
+        self._targets = [forward - yaw_rate * 0.19, forward + yaw_rate * 0.19]
         self._rims = [0.0, 0.0]
         self.ideal = [0.0, 0.0, 0.0]
         self.simulation.call_every(10 * MILLISECOND, self._update)
@@ -156,25 +156,25 @@ class Driver:
             y + v * 0.01 * sin(heading + w * 0.005),
             heading + w * 0.01,
         ]
-        for index, wanted in enumerate(self._wanted):
-            self._rims[index] += max(-0.01, min(0.01, wanted - self._rims[index]))
+        for index, target in enumerate(self._targets):
+            self._rims[index] += max(-0.01, min(0.01, target - self._rims[index]))
             self._motors[index].target = self._rims[index] / 0.06
 
     def errors(self) -> tuple[float, float]:
-        """How far it is from where it should be, in m, and the angle that it is turned wrong, in rad."""
-        x, y, _, *turn = self.simulation.model_pose("mbot")
-        heading = rpy_from_quaternion((turn[0], turn[1], turn[2], turn[3]))[2]
+        """Return the distance from the ideal position in m, and the heading error in rad."""
+        x, y, _, *orientation = self.simulation.model_pose("mbot")
+        heading = rpy_from_quaternion((orientation[0], orientation[1], orientation[2], orientation[3]))[2]
         return hypot(x - self.ideal[0], y - self.ideal[1]), (heading - self.ideal[2] + pi) % (2 * pi) - pi
 
 
 @pytest.mark.parametrize(
-    ("forward", "turning", "off", "turned"),
+    ("forward", "yaw_rate", "max_distance", "max_angle"),
     [(0.5, 0.0, 1e-3, 1e-3), (1.0, 1.0, 10e-3, 2e-3), (0.0, 1.0, 1e-3, 0.1 * pi / 180)],
     ids=["straight", "arc", "spin"],
 )
-def test_robot_motion_matches_wheel_rotation(forward, turning, off, turned):
-    driver = Driver(forward, turning)
+def test_robot_motion_matches_wheel_rotation(forward, yaw_rate, max_distance, max_angle):
+    driver = Driver(forward, yaw_rate)
     driver.simulation.advance(10 * NANOSECONDS_PER_SECOND + 500 * MILLISECOND)
     distance, angle = driver.errors()
-    assert distance < off
-    assert abs(angle) < turned
+    assert distance < max_distance
+    assert abs(angle) < max_angle

@@ -23,7 +23,7 @@ _BALL = "<sphere><radius>{radius}</radius></sphere>"
 
 
 def world(*parts: str, step: float = 0.001, gravity: str = "0 0 -9.81") -> World:
-    """A world of models and what else is given, as SDF."""
+    """Return a world in SDF with these elements."""
     text = (
         f'<sdf version="1.7"><world name="test"><gravity>{gravity}</gravity>'
         f'<physics type="ode"><max_step_size>{step}</max_step_size></physics>{"".join(parts)}</world></sdf>'
@@ -32,7 +32,7 @@ def world(*parts: str, step: float = 0.001, gravity: str = "0 0 -9.81") -> World
 
 
 def model(text: str) -> Model:
-    """A model of its own."""
+    """Return the only model of a text."""
     return _read(f'<sdf version="1.7">{text}</sdf>').models[0]
 
 
@@ -44,24 +44,24 @@ def _read(text: str):
 
 
 def finder(*folders: Path) -> ResourceFinder:
-    """Finds models in folders only."""
+    """Return a finder that searches only these folders."""
     return ResourceFinder(PackageFinder(start=folders), {})
 
 
-def simulated(*parts: str, step: float = 0.001, gravity: str = "0 0 -9.81") -> Simulation:
-    """A simulation of a world of models."""
+def make_simulation(*parts: str, step: float = 0.001, gravity: str = "0 0 -9.81") -> Simulation:
+    """Return a simulation of a world with these elements."""
     return Simulation(world(*parts, step=step, gravity=gravity), finder())
 
 
-def loaded(path: Path) -> Simulation:
-    """A simulation of a world in a file."""
+def load_simulation(path: Path) -> Simulation:
+    """Return a simulation of the world in a file."""
     description = examine_world(path)
     assert description.sdf is not None
     return Simulation(description.sdf.worlds[0], ResourceFinder(PackageFinder(start=[path.parent])))
 
 
 def box(name: str, pose: str, size: str = "1 1 1", mass: float = 1.0, surface: str = "") -> str:
-    """A box that moves; its inertia is that of a solid box."""
+    """Return a movable box; its inertia is that of a solid box."""
     x, y, z = (float(length) for length in size.split())
     inertia = (
         f"<ixx>{mass * (y * y + z * z) / 12}</ixx><iyy>{mass * (x * x + z * z) / 12}</iyy>"
@@ -75,7 +75,7 @@ def box(name: str, pose: str, size: str = "1 1 1", mass: float = 1.0, surface: s
 
 
 def mbot(pose: str = "0 0 0.11 0 0 0") -> str:
-    """A robot with two wheels and two casters, of the measures of the tutorial's."""
+    """Return a robot with two wheels and two casters, as large as the tutorial's."""
     wheel = _part(_DRUM.format(radius=0.06, length=0.025), 0.2, (1.9e-4, 1.9e-4, 3.6e-4))
     caster = _part(_BALL.format(radius=0.015), 0.02, (2e-6, 2e-6, 2e-6), friction=0.0)
     base = _part(_DRUM.format(radius=0.2, length=0.16), 5.0, (0.0607, 0.0607, 0.1))

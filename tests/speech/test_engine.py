@@ -1,4 +1,4 @@
-"""Engines of speech by their names."""
+"""Speech engines by name."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ def test_engine_is_created_with_options():
 
 
 def test_unknown_engine_is_rejected_with_suggestion():
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         make_engine("daef", EngineOptions(("stop",)))
-    (diagnostic,) = caught.value.diagnostics
+    (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "VOICE101"
     assert "'daef'" in str(diagnostic.message)
     assert "'deaf'" in str(diagnostic.hint)

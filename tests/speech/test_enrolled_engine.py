@@ -1,4 +1,4 @@
-"""The engine of enrolled words, on words made of numbers, in blocks as they come from a microphone."""
+"""The engine of enrolled words, with synthetic words in blocks as from a microphone."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from linkwright.speech.enrolled.enrollment import enroll
 from linkwright.speech.enrolled.recognition import Guess
 from linkwright.speech.enrolled.words import Words
 from linkwright.speech.sound.samples import BLOCK, RATE
-from tests.speech.voices import WORDS, babble, beside, say
+from tests.speech.voices import WORDS, add_noise, babble, say
 
 OTHERS = ("mumi", "faso.t", "ri.tamu", "om", "se.pifu", "tatata", "u", "moramifu")
-"""What is no command, in the letters of `voices`."""
+"""Words that are not commands, in the letters of `voices`."""
 
 
 @pytest.fixture(scope="module")
@@ -70,37 +70,37 @@ def test_word_is_recognized_in_noise(engine, name):
     assert final_texts(engine, samples) == [name]
 
 
-def in_a_room(samples, direct, seed):
-    """In a room with a reverberation time of 0.4 s; its energy is so many dB below that of the direct sound."""
+def with_reverberation(samples, direct_db, seed):
+    """Add a reverberation of 0.4 s; its energy is `direct` dB below that of the direct sound."""
     at = np.arange(int(0.4 * RATE)) / RATE
     decay = np.random.default_rng(seed).normal(size=len(at)) * 10 ** (-3 * at / 0.4)
-    decay *= 10 ** (-direct / 20) / np.sqrt(np.sum(decay**2))
+    decay *= 10 ** (-direct_db / 20) / np.sqrt(np.sum(decay**2))
     decay[0] = 1.0
     size = len(samples) + len(decay)
     sound = np.fft.irfft(np.fft.rfft(samples, size) * np.fft.rfft(decay, size), size)[: len(samples)]
     return np.rint(sound).astype(np.int16)
 
 
-def heard_in_a_room(engine, phones, number):
+def results_in_room(engine, phones, number):
     samples = say(phones, speed=(0.9, 1.1)[number % 2], level=2000, silence=0.8, seed=20 + number)
-    return final_texts(engine, in_a_room(samples, 8.0, number))
+    return final_texts(engine, with_reverberation(samples, 8.0, number))
 
 
 def test_word_is_recognized_two_meters_away_in_room(engine):
-    result = [(name, heard_in_a_room(engine, WORDS[name], number)) for name in WORDS for number in range(3)]
+    result = [(name, results_in_room(engine, WORDS[name], number)) for name in WORDS for number in range(3)]
     assert all(set(texts) <= {name, ""} for name, texts in result)
     assert sum(texts == [name] for name, texts in result) >= 13
 
 
 @pytest.mark.parametrize("phones", OTHERS)
 def test_unknown_word_is_not_recognized_in_room(engine, phones):
-    assert set(heard_in_a_room(engine, phones, 1)) <= {""}
+    assert set(results_in_room(engine, phones, 1)) <= {""}
 
 
 def test_phrase_with_number_requires_higher_confidence(words, tmp_path, monkeypatch):
     phrases = ("stop", "two meters", "两米")
-    numbered = Words({name: words.takes("stop") for name in phrases})
-    numbered.write(tmp_path / "words.json")
+    words_with_numbers = Words({name: words.takes("stop") for name in phrases})
+    words_with_numbers.write(tmp_path / "words.json")
     engine = EnrolledEngine(EngineOptions(phrases, model=tmp_path / "words.json"))
     for name, confidence, expected in (
         *((name, 0.6, name if name == "stop" else "") for name in phrases),
@@ -110,9 +110,9 @@ def test_phrase_with_number_requires_higher_confidence(words, tmp_path, monkeypa
         assert final_texts(engine, say("mumi", silence=0.8)) == [expected]
 
 
-def in_babble(phones, seed):
+def with_babble(phones, seed):
     samples = say(phones, speed=1.05, level=2000, silence=0.8, seed=10)
-    return beside(samples, babble(len(samples) / RATE + 0.1, np.random.default_rng(seed)), 15.0, 2000.0)
+    return add_noise(samples, babble(len(samples) / RATE + 0.1, np.random.default_rng(seed)), 15.0, 2000.0)
 
 
 def test_words_are_recognized_in_babble(path):
@@ -120,7 +120,7 @@ def test_words_are_recognized_in_babble(path):
     for name in ("forward", "turn left", "turn right", "stop"):
         for seed in range(1, 4):
             engine = EnrolledEngine(EngineOptions(tuple(WORDS), model=path))
-            results = results_of(engine, in_babble(WORDS[name], seed)) + list(engine.finish())
+            results = results_of(engine, with_babble(WORDS[name], seed)) + list(engine.finish())
             text = {result.text for result in results if result.final} - {""}
             assert text <= {name}
             right.append(text == {name})
@@ -129,7 +129,7 @@ def test_words_are_recognized_in_babble(path):
 
 @pytest.mark.parametrize("phones", OTHERS)
 def test_unknown_word_is_not_recognized_in_babble(engine, phones):
-    results = results_of(engine, in_babble(phones, 1)) + list(engine.finish())
+    results = results_of(engine, with_babble(phones, 1)) + list(engine.finish())
     assert {result.text for result in results} <= {""}
 
 
@@ -150,13 +150,17 @@ def test_word_differing_in_one_sound_is_not_recognized(engine, phones):
 
 
 def test_similar_utterance_reports_nearest_word(engine, path):
-    in_noise = say(WORDS["turn left"], speed=1.05, level=2000, noise=1000, silence=0.8, seed=1)
-    (final_result,) = [result for result in results_of(engine, in_noise) if result.final]
+    noisy = say(WORDS["turn left"], speed=1.05, level=2000, noise=1000, silence=0.8, seed=1)
+    (final_result,) = [result for result in results_of(engine, noisy) if result.final]
     assert (final_result.text, final_result.nearest) == ("", "turn left")
-    others = EnrolledEngine(EngineOptions(("stop", "back"), model=path))  # a word that is no phrase is not told
-    (final_result,) = [result for result in results_of(others, in_noise) if result.final]
+    other_engine = EnrolledEngine(
+        EngineOptions(("stop", "back"), model=path)
+    )  # a word that is not a phrase is not reported
+    (final_result,) = [result for result in results_of(other_engine, noisy) if result.final]
     assert (final_result.text, final_result.nearest) == ("", "")
-    (final_result,) = [result for result in results_of(others, say(OTHERS[0], silence=0.8, seed=11)) if result.final]
+    (final_result,) = [
+        result for result in results_of(other_engine, say(OTHERS[0], silence=0.8, seed=11)) if result.final
+    ]
     assert (final_result.text, final_result.nearest) == ("", "")
 
 
@@ -177,14 +181,14 @@ def test_sound_without_speech_is_not_recognized(engine, kind):
 def test_partial_is_reported_within_300_ms_of_word(engine):
     samples = say(WORDS["stop"], silence=0.8, seed=13)
     end = len(samples) - int(0.8 * RATE)
-    known = None
+    partial_time = None
     for at in range(0, len(samples), BLOCK):
         results = engine.hear(samples[at : at + BLOCK])
-        if known is None and any(result.text == "stop" for result in results):
-            known = at + BLOCK
+        if partial_time is None and any(result.text == "stop" for result in results):
+            partial_time = at + BLOCK
             assert not results[0].final
-    assert known is not None
-    assert known - end <= 0.3 * RATE
+    assert partial_time is not None
+    assert partial_time - end <= 0.3 * RATE
 
 
 def test_templates_are_computed_before_first_word(engine, monkeypatch):
@@ -250,6 +254,6 @@ def test_words_file_is_followed_when_created_changed_and_deleted(words, tmp_path
 
 def test_damaged_words_file_is_rejected_at_start(tmp_path):
     (tmp_path / "words.json").write_text("[]", encoding="utf-8")
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         make_engine("enrolled", EngineOptions(("stop",), model=tmp_path / "words.json"))
-    assert caught.value.diagnostics[0].code == "VOICE203"
+    assert error.value.diagnostics[0].code == "VOICE203"

@@ -1,4 +1,4 @@
-"""Enrolled words: what is taken and what is not, and their file."""
+"""Enrolled words: accepted and rejected recordings, and the file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.speech.sound.spectra import BANDS
 from tests.speech.voices import WORDS, say
 
 
-def enrolled(names=("forward", "stop")):
+def enrolled_words(names=("forward", "stop")):
     words = Words()
     for name in names:
         for number in range(3):
@@ -23,7 +23,7 @@ def enrolled(names=("forward", "stop")):
 
 
 def test_words_keep_order_and_takes():
-    words = enrolled()
+    words = enrolled_words()
     assert words.names == ("forward", "stop")
     assert len(words.takes("stop")) == 3
     assert words.takes("stop")[0].powers.shape[1] == BANDS
@@ -31,14 +31,14 @@ def test_words_keep_order_and_takes():
 
 
 def test_word_can_be_removed():
-    words = enrolled()
+    words = enrolled_words()
     words.remove("forward")
     words.remove("forward")
     assert words.names == ("stop",)
 
 
 def test_words_file_round_trip_is_exact(tmp_path):
-    words = enrolled()
+    words = enrolled_words()
     path = tmp_path / "a" / "words.json"
     words.write(path)
     words_read = Words.read(path)
@@ -111,14 +111,14 @@ def test_different_word_is_rejected_as_second_take(name, other):
 
 
 def test_take_unlike_previous_takes_is_rejected():
-    words = enrolled()
+    words = enrolled_words()
     (finding,) = enroll(words, "stop", say("mumi", seed=5))
     assert (finding.code, finding.severity) == ("VOICE208", Severity.ERROR)
     assert len(words.takes("stop")) == 3
 
 
 def test_word_similar_to_other_is_enrolled_with_warning():
-    words = enrolled()
+    words = enrolled_words()
     assert enroll(words, "halt", say(WORDS["stop"], seed=6)) == ()
     (finding,) = enroll(words, "halt", say(WORDS["stop"], seed=7))
     assert (finding.code, finding.severity) == ("VOICE209", Severity.WARNING)
@@ -134,7 +134,7 @@ def test_invalid_word_name_is_rejected(name):
 
 
 def test_number_of_words_is_limited():
-    take = enrolled(("stop",)).takes("stop")
+    take = enrolled_words(("stop",)).takes("stop")
     words = Words({str(number): take[:1] for number in range(MAX_WORDS)})
     assert enroll(words, "more", say(WORDS["stop"]))[0].code == "VOICE204"
     assert enroll(words, "7", say(WORDS["stop"]))[0].code == "VOICE209"
@@ -142,7 +142,7 @@ def test_number_of_words_is_limited():
 
 
 @pytest.mark.parametrize(
-    ("change", "why"),
+    ("change", "reason"),
     [
         (lambda document: document.update(format="words"), "is not marked"),
         (lambda document: document.update(version=2), "version is '2', but only version 1 is supported"),
@@ -156,17 +156,17 @@ def test_number_of_words_is_limited():
         (lambda document: document["words"][1]["takes"][0].update(frames="AAAA"), "the wrong length"),
     ],
 )
-def test_damaged_words_file_is_reported_with_hint(tmp_path, change, why):
+def test_damaged_words_file_is_reported_with_hint(tmp_path, change, reason):
     path = tmp_path / "words.json"
-    enrolled().write(path)
+    enrolled_words().write(path)
     document = json.loads(path.read_text(encoding="utf-8"))
     change(document)
     path.write_text(json.dumps(document), encoding="utf-8")
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         Words.read(path)
-    (finding,) = caught.value.diagnostics
+    (finding,) = error.value.diagnostics
     assert finding.code == "VOICE203"
-    assert why in str(finding.message)
+    assert reason in str(finding.message)
     assert finding.hint is not None
 
 
@@ -174,24 +174,24 @@ def test_damaged_words_file_is_reported_with_hint(tmp_path, change, why):
 def test_file_that_is_not_a_words_file_is_reported(tmp_path, data):
     path = tmp_path / "words.json"
     path.write_bytes(data)
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         Words.read(path)
-    assert caught.value.diagnostics[0].code == "VOICE203"
+    assert error.value.diagnostics[0].code == "VOICE203"
 
 
 def test_json_error_is_reported_with_position(tmp_path):
     path = tmp_path / "words.json"
     path.write_text('{\n "format": }', encoding="utf-8")
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         Words.read(path)
-    span = caught.value.diagnostics[0].span
+    span = error.value.diagnostics[0].span
     assert (span.line, span.column) == (2, 12)
 
 
 def test_missing_words_file_is_reported(tmp_path):
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         Words.read(tmp_path / "none.json")
-    assert caught.value.diagnostics[0].code == "VOICE202"
+    assert error.value.diagnostics[0].code == "VOICE202"
 
 
 def test_words_file_is_in_user_configuration_folder(monkeypatch, tmp_path):

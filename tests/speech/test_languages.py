@@ -1,4 +1,4 @@
-"""What is written down by language covers the languages of the catalog."""
+"""Language-dependent data covers all languages of the catalog."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sound: WAV files in all forms, resampling, spectra, and where somebody speaks."""
+"""Sound: WAV files in all formats, resampling, spectra, and voice activity."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.speech.sound.resampling import Resampler, resample
 from linkwright.speech.sound.samples import RATE
 from linkwright.speech.sound.spectra import BANDS, HOP, MelFrames, mel_frames
 from linkwright.speech.sound.wav import encode_wav, parse_wav, read_wav
-from tests.speech.voices import WORDS, babble, beside, say
+from tests.speech.voices import WORDS, add_noise, babble, say
 
 
 def tone(hertz, rate=RATE, seconds=0.5, level=0.5):
@@ -33,10 +33,10 @@ def encoded(values, kind, bits):
         return values.astype(f"<f{bits // 8}").tobytes()
     if bits == 8:
         return np.rint(values * 127 + 128).astype(np.uint8).tobytes()
-    whole = np.rint(values * (2 ** (bits - 1) - 1)).astype("<i4")
+    integers = np.rint(values * (2 ** (bits - 1) - 1)).astype("<i4")
     if bits == 24:
-        return whole.reshape(-1, 1).view(np.uint8)[:, :3].tobytes()
-    return whole.astype(f"<i{bits // 8}").tobytes()
+        return integers.reshape(-1, 1).view(np.uint8)[:, :3].tobytes()
+    return integers.astype(f"<i{bits // 8}").tobytes()
 
 
 @pytest.mark.parametrize(("kind", "bits"), [(1, 8), (1, 16), (1, 24), (1, 32), (3, 32), (3, 64)])
@@ -48,8 +48,8 @@ def test_wav_bit_depths_give_same_samples(kind, bits, extensible):
 
 
 def test_channels_are_averaged():
-    both = np.stack((tone(440), -tone(440)), axis=1).reshape(-1)
-    assert not parse_wav(wav(encoded(both, 1, 16), channels=2), "a.wav").any()
+    stereo = np.stack((tone(440), -tone(440)), axis=1).reshape(-1)
+    assert not parse_wav(wav(encoded(stereo, 1, 16), channels=2), "a.wav").any()
 
 
 def test_unneeded_wav_chunks_are_skipped_with_padding():
@@ -68,7 +68,7 @@ def test_encoded_wav_reads_back(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("data", "why"),
+    ("data", "reason"),
     [
         (b"", "has no WAV header"),
         (b"OggS" + bytes(60), "has no WAV header"),
@@ -82,20 +82,20 @@ def test_encoded_wav_reads_back(tmp_path):
         (wav(bytes(8), rate=10_000_000), "10000000 Hz"),
     ],
 )
-def test_malformed_wav_is_rejected_with_reason(data, why):
-    with pytest.raises(LinkwrightError) as caught:
+def test_malformed_wav_is_rejected_with_reason(data, reason):
+    with pytest.raises(LinkwrightError) as error:
         parse_wav(data, "a.wav")
-    (finding,) = caught.value.diagnostics
+    (finding,) = error.value.diagnostics
     assert finding.code == "VOICE402"
     assert "'a.wav'" in str(finding.message)
-    assert why in str(finding.message)
+    assert reason in str(finding.message)
     assert finding.hint is not None
 
 
 def test_missing_wav_is_reported(tmp_path):
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         read_wav(tmp_path / "none.wav")
-    assert caught.value.diagnostics[0].code == "VOICE401"
+    assert error.value.diagnostics[0].code == "VOICE401"
 
 
 @pytest.mark.parametrize("rate", [8_000, 11_025, 22_050, 44_100, 48_000, 96_000])
@@ -116,10 +116,10 @@ def test_resampling_does_not_alias(hertz):
 def test_streamed_resampling_matches_whole(length):
     values = np.random.default_rng(1).normal(size=20_000) / 10
     resampler = Resampler(44_100)
-    parts = [resampler.feed(values[at : at + length]) for at in range(0, len(values), length)]
-    resampled = np.concatenate((*parts, resampler.flush()))
-    whole = resample(values, 44_100)
-    assert np.abs(resampled[: len(whole)].astype(int) - whole).max() <= 1
+    blocks = [resampler.feed(values[offset : offset + length]) for offset in range(0, len(values), length)]
+    resampled = np.concatenate((*blocks, resampler.flush()))
+    expected = resample(values, 44_100)
+    assert np.abs(resampled[: len(expected)].astype(int) - expected).max() <= 1
 
 
 def test_resampling_clips_values_and_silences_nan():
@@ -132,8 +132,8 @@ def test_mel_frames_do_not_depend_on_block_size(length):
     if length == 1:
         samples = samples[:1000]
     stream = MelFrames()
-    parts = [stream.feed(samples[at : at + length]) for at in range(0, len(samples), length)]
-    assert np.allclose(np.concatenate(parts), mel_frames(samples))
+    blocks = [stream.feed(samples[offset : offset + length]) for offset in range(0, len(samples), length)]
+    assert np.allclose(np.concatenate(blocks), mel_frames(samples))
 
 
 def test_tone_is_strongest_in_its_band():
@@ -193,7 +193,7 @@ def test_sudden_noise_counts_as_speech_for_at_most_two_seconds():
 
 
 def floor_and_unsteady_noise(samples):
-    """The floor at the end of a recording, and the noise beside it where it is no steady one."""
+    """Return the noise floor at the end of a recording, and the unsteady noise above it."""
     powers, activity = mel_frames(samples), VoiceActivity()
     for frame in powers:
         activity.step(frame)
@@ -210,7 +210,7 @@ def test_wavering_hum_and_soft_onset_are_not_unsteady_noise():
     at = np.arange(2 * RATE) / RATE
     hum = (1.0 + 0.3 * np.sin(2 * np.pi * 11 * at)) * np.sin(2 * np.pi * 100 * at)
     samples = say(WORDS["forward"], level=3000.0)
-    assert floor_and_unsteady_noise(beside(samples, hum, 10.0, 3000.0))[1] is None
+    assert floor_and_unsteady_noise(add_noise(samples, hum, 10.0, 3000.0))[1] is None
     softly = samples * np.clip((at[: len(samples)] - 0.5) / 0.3, 0.02, 1.0)
     assert floor_and_unsteady_noise(np.rint(softly).astype(np.int16))[1] is None
 
@@ -218,10 +218,10 @@ def test_wavering_hum_and_soft_onset_are_not_unsteady_noise():
 def test_babble_beside_word_is_unsteady_noise_above_floor():
     samples = say(WORDS["forward"], level=3000.0)
     talk = babble(len(samples) / RATE + 0.1, np.random.default_rng(5))
-    floor, noise = floor_and_unsteady_noise(beside(samples, talk, 15.0, 3000.0))
+    floor, noise = floor_and_unsteady_noise(add_noise(samples, talk, 15.0, 3000.0))
     assert noise is not None
     assert (noise >= floor).all()
-    before = mel_frames(beside(np.zeros_like(samples), talk, 15.0, 3000.0))
+    before = mel_frames(add_noise(np.zeros_like(samples), talk, 15.0, 3000.0))
     assert np.mean(before <= noise) > 0.85
     assert np.mean(before <= floor) < 0.5
 
@@ -234,9 +234,9 @@ def test_short_lead_gives_no_unsteady_noise():
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 def test_wav_with_non_finite_samples_is_rejected(value):
     sound = np.array([0.0, 0.5, value, 0.1], "<f4").tobytes()
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         parse_wav(wav(sound, kind=3, bits=32), "sound.wav")
-    assert caught.value.diagnostics[0].code == "VOICE402"
+    assert error.value.diagnostics[0].code == "VOICE402"
 
 
 def test_values_far_beyond_full_scale_are_clipped():

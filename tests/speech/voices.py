@@ -1,4 +1,4 @@
-"""Words made of numbers: phones of a source-filter voice, said faster or slower, higher or lower, with noise."""
+"""Synthetic words: phones of a source-filter voice, with variable speed, pitch, and noise."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ WORDS = {
     "turn right": ".trurai.t",
     "stop": "s.to.p",
 }
-"""Names of words and their phones, about as they are said."""
+"""The names of words, and their phones in approximate pronunciation."""
 
 
 def say(
@@ -42,30 +42,30 @@ def say(
     noise: float = 3.0,
     seed: int = 0,
 ) -> Samples:
-    """A recording of a word.
+    """Return a recording of a word.
 
     Args:
-        phones: letters of those that are known here, a closure as a full stop.
-        speed: 2 for twice as fast.
-        pitch: Hz.
-        size: of the speaker: formants are divided by it.
-        level: effective value of the word.
-        silence: seconds before and after.
-        noise: effective value of the white noise in all of it.
-        seed: of noise and breath.
+        phones: the letters of known phones; a full stop is a closure.
+        speed: the factor of speed.
+        pitch: the pitch in Hz.
+        size: the size of the speaker, which divides the formants.
+        level: the effective value of the word.
+        silence: the seconds of silence before and after.
+        noise: the effective value of the white noise.
+        seed: the seed of noise and breath.
     """
     rng = np.random.default_rng(seed)
     targets, durations = zip(*((_PHONES[phone][:2], _PHONES[phone][2] / speed) for phone in phones), strict=True)
     ends = np.cumsum(durations)
     count = int(ends[-1] * RATE)
-    at = np.arange(count) / RATE
+    times = np.arange(count) / RATE
     middles = ends - np.array(durations) / 2
-    voiced = np.interp(at, middles, [share for _, share in targets])
-    phase = 2 * np.pi * np.cumsum(pitch * (1.1 - 0.2 * at / ends[-1])) / RATE
+    voiced = np.interp(times, middles, [share for _, share in targets])
+    phase = 2 * np.pi * np.cumsum(pitch * (1.1 - 0.2 * times / ends[-1])) / RATE
     sound = np.zeros(count)
     breath = rng.normal(size=count)
     for formant in range(3):
-        hertz = np.interp(at, middles, [formants[formant] for formants, _ in targets]) / size
+        hertz = np.interp(times, middles, [formants[formant] for formants, _ in targets]) / size
         carrier = np.cos(2 * np.pi * np.cumsum(hertz) / RATE)
         hum = np.exp(6.0 * (np.cos(phase) - 1.0))
         hiss = np.convolve(breath, np.ones(12) / 3.5, "same")
@@ -75,14 +75,14 @@ def say(
     sound += 0.05 * breath * np.maximum(voiced, 0.0)
     sound *= np.clip((voiced + 1.0) * 3.0, 0.0, 1.0)
     sound *= level / np.sqrt(np.mean(sound**2))
-    rest = np.zeros(int(silence * RATE))
-    whole = np.concatenate((rest, sound, rest))
-    whole += noise * rng.normal(size=len(whole))
-    return np.clip(np.rint(whole), -32_768, 32_767).astype(np.int16)
+    quiet = np.zeros(int(silence * RATE))
+    recording = np.concatenate((quiet, sound, quiet))
+    recording += noise * rng.normal(size=len(recording))
+    return np.clip(np.rint(recording), -32_768, 32_767).astype(np.int16)
 
 
 def babble(seconds: float, rng: np.random.Generator) -> np.ndarray:
-    """Three others who talk at once, in words with pauses between them; with an effective value of 1."""
+    """Return three simultaneous speakers with pauses between their words, at an effective value of 1."""
     count = int(seconds * RATE)
     total = np.zeros(count)
     sounds = [phone for phone in _PHONES if phone != "."]
@@ -94,6 +94,6 @@ def babble(seconds: float, rng: np.random.Generator) -> np.ndarray:
     return np.asarray(total / np.sqrt(np.mean(total**2)))
 
 
-def beside(samples: Samples, noise: np.ndarray, decibels: float, level: float) -> Samples:
-    """A recording with noise added that is so far below the level of the word in it."""
+def add_noise(samples: Samples, noise: np.ndarray, decibels: float, level: float) -> Samples:
+    """Add noise to a recording, so many decibels below the level of its word."""
     return np.rint(samples + level / 10 ** (decibels / 20) * noise[: len(samples)]).astype(np.int16)

@@ -14,7 +14,7 @@ HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 @pytest.fixture(autouse=True)
 def _fresh_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Each test finds the module as it is when it was just imported, in a folder of its own."""
+    """Let each test use the module as after its import, in a folder of its own."""
     import xacro
 
     monkeypatch.chdir(tmp_path)
@@ -27,7 +27,7 @@ def _fresh_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[N
 
 @pytest.fixture
 def write(tmp_path: Path) -> Callable[[str, str], Path]:
-    """Writes a file of a robot's, put between the tags of the root."""
+    """Return a function that writes a robot's file; it adds the tags of the root."""
 
     def file(name: str, inside: str) -> Path:
         path = tmp_path / name

@@ -1,4 +1,4 @@
-"""Assigns values to fields of messages and tells what came of it, as JSON; for real ROS 2 and for ours."""
+"""Assign values to fields of messages, and print the results as JSON; for real ROS 2 and for ours."""
 
 import json
 from array import array

@@ -14,7 +14,7 @@ from tf_transformations import quaternion_from_euler
 
 @pytest.fixture
 def turned():
-    """One meter along x, and a quarter of a turn around z."""
+    """Return a transform of one meter along x and a quarter turn around z."""
     transform = TransformStamped(child_frame_id="lidar")
     transform.header.frame_id = "base"
     transform.transform.translation.x = 1.0

@@ -1,4 +1,4 @@
-"""What users' programs may assign to fields: as in the ROS 2 that they are written for."""
+"""Values that users' programs may assign to fields, as in their ROS 2 distribution."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ BASE = {"PATH": os.environ["PATH"], "LINKWRIGHT_DDS": "0"}
 
 
 def outcomes(python=sys.executable, command=(PROGRAM,), **variables):
-    """What came of each assignment: the text of an AssertionError, the name of another error, or type and values."""
+    """Return the result of each assignment: an AssertionError's text, another error's name, or type and values."""
     environment = {**BASE, **variables} if python == PYTHON else process.environment({**BASE, **variables})
     result = subprocess.run(
         [python, *command], env=environment, check=False, capture_output=True, text=True, timeout=120
@@ -66,7 +66,7 @@ def test_numpy_arrays_are_accepted_unless_ros_distro_is_set_to_humble(variables)
 
 
 def test_own_commands_accept_numpy_arrays(tmp_path):
-    """In the shell their processes find stand-ins as users' programs do."""
+    """Their processes find the stand-ins in the shell, as users' programs do."""
     program = tmp_path / "ours.py"
     imports = "import json, linkwright.cli, numpy, rclpy\nfrom sensor_msgs.msg import Image"
     program.write_text(

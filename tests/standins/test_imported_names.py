@@ -1,4 +1,4 @@
-"""What modules offer only because those of ROS import it: many programs take it from there."""
+"""Names that modules offer only because ROS's modules import them: many programs use these."""
 
 from __future__ import annotations
 

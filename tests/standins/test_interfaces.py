@@ -32,7 +32,7 @@ MANIFEST = """<?xml version="1.0"?>
 
 
 def run(program, folder):
-    """What a program prints that runs in a folder."""
+    """Return the output of a program in a folder."""
     result = subprocess.run(
         [sys.executable, "-c", PREAMBLE + textwrap.dedent(program)],
         cwd=folder, capture_output=True, text=True, check=False, timeout=60,

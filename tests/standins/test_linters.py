@@ -29,14 +29,14 @@ def start():
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    """What ``pkg create`` writes."""
+    """Return the package that ``pkg create`` writes."""
     words = ["pkg", "create", "my_nodes", "--build-type", "ament_python", "--license", "MIT", "--node-name", "first"]
     assert main([*words, "--destination-directory", str(tmp_path)]) == 0
     return tmp_path / "my_nodes"
 
 
 def plain_pytest(package: Path, *words: str, **variables: str) -> tuple[int, str]:
-    """The status and output of ``python -m pytest``, without what a shell of Linkwright sets."""
+    """Return the status and output of ``python -m pytest``, without the settings of Linkwright's shell."""
     environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "LINKWRIGHT_SITE")}
     result = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "-p", "no:asyncio", *words],
@@ -51,7 +51,7 @@ def plain_pytest(package: Path, *words: str, **variables: str) -> tuple[int, str
 
 
 def hide(folder: Path, *names: str) -> str:
-    """A folder for PYTHONPATH with which modules of these names are not found."""
+    """Return a folder for PYTHONPATH that hides modules of these names."""
     folder.mkdir()
     code = f"import sys\nsys.modules.update(dict.fromkeys({names!r}))\n"
     (folder / "sitecustomize.py").write_text(code)

@@ -1,4 +1,4 @@
-"""Processes in which the stand-ins can be imported, with nothing but an environment variable set."""
+"""Processes that can import the stand-ins, with only an environment variable set."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def fibonacci(order):
 
 
 class Server(Node):
-    """Counts, tells of it, and can be stopped."""
+    """An action server that counts, sends feedback, and can be canceled."""
 
     def __init__(self, pause=0.005, **options):
         super().__init__("fibonacci_server")
@@ -75,7 +75,7 @@ class Server(Node):
 
 
 class Client(Node):
-    """Sends a goal, and goes on by callbacks."""
+    """An action client that continues in callbacks."""
 
     def __init__(self):
         super().__init__("fibonacci_client")
@@ -109,7 +109,7 @@ class Client(Node):
 
 @pytest.fixture
 def spun():
-    """Spins nodes in a thread of many."""
+    """Spin nodes in one of several threads."""
     executor = MultiThreadedExecutor(4)
     thread = threading.Thread(target=executor.spin, daemon=True)
     thread.start()

@@ -259,7 +259,7 @@ def test_action_entities_are_counted(node):
 
 
 def test_feedback_arrives_before_goal_response(node):
-    """Where one thread does everything, rclpy executes the goal and tells of it first."""
+    """With a single thread, rclpy executes the goal and sends feedback first."""
     order = []
 
     def execute(goal):

@@ -1,4 +1,4 @@
-"""What the less simple of the public examples do: own executors and groups, asyncio, events, messages used again."""
+"""The advanced public examples: custom executors and groups, asyncio, events, reused messages."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def node():
 
 
 class TestMessageSnapshots:
-    """Nothing that is done to a message after it was sent, or after it came, is seen by others."""
+    """Changes of a message after it was sent or received do not affect others."""
 
     def test_reused_message_is_published_as_snapshot(self, node):
         texts, message = [], String()
@@ -130,7 +130,7 @@ class PriorityExecutor(Executor):
 
 
 class ThrottledCallbackGroup(CallbackGroup):
-    """Lets two callbacks begin, and more when a timer says so."""
+    """A group that lets two callbacks start, and more after a timer's call."""
 
     def __init__(self, node):
         super().__init__()
@@ -226,7 +226,7 @@ class TestEvents:
 
 class TestAsyncio:
     def test_action_goal_is_awaited_in_asyncio(self, node):
-        """As the asyncio client among the examples: the loop spins the node between its own steps."""
+        """As the asyncio client of the examples: the loop spins the node between its own steps."""
 
         def execute(goal_handle):
             goal_handle.succeed()

@@ -157,7 +157,7 @@ def test_all_interfaces_work_between_two_processes(tmp_path, surroundings):
 
 
 def test_message_published_right_after_match_arrives(tmp_path, surroundings):
-    """A reliable reader that is there gets what is published as soon as it is matched."""
+    """A reliable reader gets all messages that are published after the match."""
     listener = start(
         tmp_path,
         "listener",

@@ -1,4 +1,4 @@
-"""What the stand-ins export is seen by type checkers."""
+"""Type checkers see the exports of the stand-ins."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What programs take of ``ros2pkg.api`` and ``ros2topic.api``."""
+"""The functions of ``ros2pkg.api`` and ``ros2topic.api`` that programs use."""
 
 from __future__ import annotations
 

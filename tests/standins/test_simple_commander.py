@@ -21,7 +21,7 @@ from tests.docs.pages import DOCS, blocks
 
 
 class Servers(Node):
-    """What nav2 offers, as far as it is asked for here."""
+    """The servers of nav2 that are needed here."""
 
     def __init__(self):
         super().__init__("servers")

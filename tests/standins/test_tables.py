@@ -52,7 +52,7 @@ def test_names_that_ros_does_not_export_cannot_be_imported(module, name):
 
 
 def test_origins_are_names_of_other_tables():
-    """So that a table's mistake is not hidden by what the module of another one imports."""
+    """An import in another table's module must not hide a table's mistake."""
     for name, module in MODULES.items():
         for attribute, origin in module.names.items():
             other = MODULES.get(origin.origin)

@@ -123,7 +123,7 @@ class TestTopics:
         assert threading.active_count() == before - 1
 
     def test_lookup_waits_in_callback_of_same_node(self, node):
-        """The listener's callbacks are in a reentrant group, so a second thread takes them meanwhile."""
+        """The listener's callbacks are in a reentrant group, so that a second thread processes them meanwhile."""
         buffer, transforms = Buffer(), []
         TransformListener(buffer, node)
         broadcaster = TransformBroadcaster(node)
@@ -225,7 +225,7 @@ class TestBuffer:
 class TestClient:
     @pytest.fixture
     def client(self, node):
-        """A client of a buffer server that knows one transform."""
+        """Return a client of a buffer server that knows one transform."""
         buffer = tf2_ros.BufferCore()
         buffer.set_transform_static(transform("a", "b", Time()), "test")
 
@@ -279,7 +279,7 @@ class TestClient:
     ],
 )
 def test_importing_conversion_package_registers_types(package, type_name):
-    """Nothing of it has to be used: its import alone registers the types with every buffer."""
+    """The import alone registers the types with all buffers."""
     module, _, name = type_name.rpartition(".")
     program = (
         f"import {package}, tf2_ros\nfrom {module} import {name}\nprint(tf2_ros.TransformRegistration().get({name}))"

@@ -1,4 +1,4 @@
-"""What the module ``xacro`` makes of files, texts and documents."""
+"""The module ``xacro`` with files, texts and documents."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The module ``xacro`` gives what the engine gives, for every rule of the language."""
+"""The module ``xacro`` returns the engine's results, for every rule of the language."""
 
 from __future__ import annotations
 

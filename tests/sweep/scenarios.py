@@ -16,16 +16,16 @@ def squares(n, drawn, seed):
 
 
 def write(folder: Path, text: str = SQUARES, name: str = "squares.py") -> Path:
-    """A scenario file."""
+    """Write a scenario file."""
     path = folder / name
     path.write_text(text, encoding="utf-8")
     return path
 
 
 def loaded(folder: Path, text: str = SQUARES) -> Scenario:
-    """A scenario of a text."""
+    """Return the scenario of a text."""
     return load_scenario(write(folder, text))
 
 
 def ignore(_: Outcome) -> None:
-    """A report that nobody reads."""
+    """Ignore a report."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwright.sweep.paths import as_path, recorded
+from linkwright.sweep.paths import as_path, recorded_paths
 from linkwright.testing.paths import MAX_POINTS
 
 
@@ -43,4 +43,4 @@ def test_long_path_keeps_both_ends():
 
 def test_recorded_paths_have_numbers_from_the_second_one():
     point = (0.0, 0.0, 0.0)
-    assert recorded([[point], [], [point]]) == {"robot": [point], "robot 2": [point]}
+    assert recorded_paths([[point], [], [point]]) == {"robot": [point], "robot 2": [point]}

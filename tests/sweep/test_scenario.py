@@ -1,4 +1,4 @@
-"""Scenarios, and the runs that they come to."""
+"""Scenarios, and their runs."""
 
 import pytest
 

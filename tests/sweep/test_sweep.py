@@ -26,7 +26,7 @@ def mixed(world, n):
 
 
 def backwards(scenario, until=None):
-    """A runner in this process that begins with the last row, and is interrupted before a row."""
+    """A runner in this process that starts with the last row, and is interrupted before a row."""
 
     def run(runs, report):
         for planned_run in reversed(runs):
@@ -162,7 +162,7 @@ def test_sweep_failing_before_first_row_leaves_no_files(tmp_path):
 
 
 class Page(HTMLParser):
-    """What a page is made of."""
+    """The content of a page."""
 
     def __init__(self, text):
         super().__init__()

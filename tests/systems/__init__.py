@@ -1,1 +1,1 @@
-"""Other systems, as far as they can be told from here: what the code takes from one only, and a Python without it."""
+"""Other systems, as far as tests on this one can check them: system-specific modules, and a limited Python."""

@@ -1,4 +1,4 @@
-"""Packages whose files have the line ends of Windows, as git checks them out there, mean what they mean elsewhere."""
+"""Packages with the line ends of Windows, as git checks them out there, give the same results."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ TEXTS = {".cfg", ".config", ".launch", ".py", ".rviz", ".sdf", ".txt", ".urdf", 
 
 @pytest.fixture(params=[b"\n", b"\r\n"], ids=["LF", "CRLF"])
 def packages(request, tmp_path, monkeypatch) -> Path:
-    """A folder with packages whose texts have these line ends."""
+    """Return a folder with packages whose texts have these line ends."""
     for package in (PACKAGE, GAZEBO_PACKAGE):
         shutil.copytree(package, tmp_path / package.name, ignore=shutil.ignore_patterns("__pycache__"))
     for file in tmp_path.rglob("*"):

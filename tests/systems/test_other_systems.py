@@ -1,4 +1,4 @@
-"""Linkwright on a Python that lacks what Windows or macOS lacks: see `sitecustomize`."""
+"""Linkwright on a Python without the features that Windows or macOS lacks: see `sitecustomize`."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def generate_launch_description():
 
 @pytest.fixture(params=SYSTEMS)
 def elsewhere(request, tmp_path):
-    """Starts ``linkwright`` with some words on another system."""
+    """Return a function that starts ``linkwright`` on another system."""
     environment = {
         **os.environ,
         "LINKWRIGHT_TESTS_SYSTEM": request.param,
@@ -71,7 +71,7 @@ def elsewhere(request, tmp_path):
 
 
 def output_of(process: subprocess.Popen[str]) -> str:
-    """What a command printed, which has to end well."""
+    """Return the output of a command, which must succeed."""
     out, error = process.communicate(timeout=120)
     assert process.returncode == 0, out + error
     return out

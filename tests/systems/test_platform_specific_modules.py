@@ -1,4 +1,4 @@
-"""Which modules use what only some systems have: each is listed here, and run without it in `test_other_systems`."""
+"""The modules that use features of some systems: each is listed here, and runs without them in `test_other_systems`."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def test_modules_with_platform_specific_code_are_listed() -> None:
 
 @pytest.mark.parametrize("path", sorted(path for path, names in KNOWN.items() if set(names.split()) & set(MODULES)))
 def test_platform_specific_modules_are_imported_only_in_functions(path: str) -> None:
-    """A module whose head imports one of them cannot be imported elsewhere at all."""
+    """A module that imports one of them at its top cannot be imported on other systems."""
     head = ast.parse((ROOT / path).read_text(encoding="utf-8")).body
     assert not {name for node in head for name in imported(node)} & set(MODULES)
 

@@ -354,7 +354,7 @@ def test_program_with_own_ctrl_c_handling_can_stop_robot(write):
 
 
 def test_after_ctrl_c_rclpy_publishes_nothing(write, capsys):
-    """The program fails as under ROS 2, but the test does not: the test ends the program."""
+    """The program fails as under ROS 2, but the test does not: it ends the program."""
     messages, ended = run_until_ctrl_c(write(STOPS_AT_CTRL_C.format(options="")))
     assert messages == []
     assert ended.exit_code == 1

@@ -1,4 +1,4 @@
-"""Simulated worlds whose time passes in steps, together with that of a graph."""
+"""Simulated worlds with stepped time, together with that of a graph."""
 
 import doctest
 import os
@@ -61,7 +61,7 @@ def test_mbot_drives_one_meter_and_odometry_matches():
 
 @pytest.mark.parametrize(("linear", "angular"), [(0.5, 0.0), (-0.5, 0.0), (0.0, 1.0), (0.3, 0.6), (0.3, -0.6)])
 def test_accelerating_wheels_match_odometry(linear, angular):
-    """The plugin steps the speeds that it asks of the motors."""
+    """The plugin ramps the commanded wheel speeds."""
     with SteppedSimulation("empty", MBOT) as test:
         odometry = test.record("/odom")
         test.drive(linear, angular)
@@ -104,7 +104,7 @@ def test_rclpy_node_drives_robot_without_thread():
     from linkwright.standins.rclpy_api.node import Node
 
     class Keeper(Node):
-        """Drives on until odometry says half a meter, and looks at the clock."""
+        """A node that drives until odometry reports half a meter, and reads the clock."""
 
         def __init__(self):
             super().__init__("keeper", parameter_overrides=[Parameter("use_sim_time", value=True)])

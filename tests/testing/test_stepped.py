@@ -1,4 +1,4 @@
-"""Graphs whose time passes in steps."""
+"""Graphs with stepped time."""
 
 import asyncio
 import doctest

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from linkwright.urdf.values import looks_like_degrees, number, number_hint, numbers, plain, vector3, vector_hint
+from linkwright.urdf.values import looks_like_degrees, number, number_hint, numbers, shortest_text, vector3, vector_hint
 
 
 def stream_reads(text: str) -> bool:
@@ -69,7 +69,7 @@ def test_number_matches_cpp_stream(text):
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_plain_number_round_trips(value):
-    written = plain(value)
+    written = shortest_text(value)
     assert math.copysign(1, number(written)) == math.copysign(1, value)
     assert number(written) == value
     assert not written.endswith(".0")

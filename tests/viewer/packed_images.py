@@ -75,7 +75,7 @@ def header(first: float = 0.0, second: float = 0.0) -> bytes:
 
 
 def depth_message(values, packing: str = "png", frame: str = "base"):
-    """A message of `compressedDepth` of depths: whole millimeters (uint16), or meters (float), at most 10 of them."""
+    """Return a `compressedDepth` message of depths: whole millimeters (uint16), or up to 10 meters (float)."""
     values = np.asarray(values)
     scale = header()
     encoding = "16UC1"

@@ -80,7 +80,7 @@ async def test_display_of_another_package_is_created_and_offered(brought):
         first = await client.opened()
         (fence,) = [display for display in first["tree"]["displays"] if display["cls"] == "brought/Fence"]
         assert (fence["supported"], fence["drawing"]) == (True, "rviz_default_plugins/Polygon")
-        await client.send("ask_display_choices")
+        await client.send("request_display_choices")
         offered = (await client.until("display_choices"))["classes"]
         assert {"cls": "brought/Fence", "messages": ["geometry_msgs/msg/PolygonStamped"]} in offered
 

@@ -73,7 +73,7 @@ async def _until(
 
 
 def _is_stored(kind: str, content: dict[str, Any]) -> bool:
-    """Whether a message reports that the last minutes have messages, which is sent each second."""
+    """Return whether a message is the history's report, which is sent each second."""
     return kind == "history_extent" and content["size"] > 0
 
 

@@ -1,4 +1,4 @@
-"""Detections: what they hold."""
+"""Detections, and their fields."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Average precision by cases that can be counted on fingers; docs/vision-training.md tells of pycocotools."""
+"""Average precision in small, countable cases; docs/vision-training.md explains the comparison with pycocotools."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ ELSEWHERE = (50.0, 50.0, 80.0, 80.0)
 
 
 def objects(*rows, ignored=()):
-    """Rows of class, left, top, right, bottom; places of those that are ignored."""
+    """Return rows of class, left, top, right, bottom, and the indices of ignored ones."""
     table = np.array(rows, np.float32).reshape(-1, 5)
     hidden = np.array([place in ignored for place in range(len(table))], bool)
     return GroundTruth(table[:, 1:], table[:, 0].astype(np.int32), hidden)
 
 
 def detections_of(*rows, names=NAMES):
-    """Rows of class, score, left, top, right, bottom."""
+    """Return rows of class, score, left, top, right, bottom."""
     table = np.array(rows, np.float32).reshape(-1, 6)
     return Detections(table[:, 2:], table[:, 1], table[:, 0].astype(np.int32), names)
 

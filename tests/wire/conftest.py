@@ -34,12 +34,12 @@ JOINS = {"dds": dds.join, "zenoh": zenoh.join}
 PACKAGES = {"dds": "cyclonedds", "zenoh": "zenoh"}
 
 both_wires = pytest.mark.parametrize("wire", list(JOINS), indirect=True)
-"""For a test that says the same of DDS and of Zenoh."""
+"""Run a test with DDS and with Zenoh."""
 
 
 @pytest.fixture(autouse=True)
 def domain(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> int:
-    """A domain for this worker of a parallel run, and nothing else of ROS in the environment."""
+    """Use a domain of this worker, and remove the other variables of ROS from the environment."""
     for name in ROS_VARIABLES:
         monkeypatch.delenv(name, raising=False)
     number = own_domain(1 if "command" in request.node.nodeid else 0)
@@ -49,13 +49,13 @@ def domain(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> i
 
 @pytest.fixture
 def wire(request: pytest.FixtureRequest) -> str:
-    """The transport of a test: DDS, unless it asks for both."""
+    """Return the transport of a test: DDS, unless the test is parametrized with `both_wires`."""
     return getattr(request, "param", "dds")
 
 
 @pytest.fixture
 def router_port() -> int:
-    """A port that nobody listens at: no router of this machine takes part in a test."""
+    """Return a port without a listener, so that no router of this machine takes part in a test."""
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         return int(listener.getsockname()[1])
@@ -63,7 +63,7 @@ def router_port() -> int:
 
 @pytest.fixture
 def zenoh_variables(monkeypatch: pytest.MonkeyPatch, domain: int, router_port: int) -> None:
-    """Zenoh, and a router that is looked for at a port of the test's own."""
+    """Select Zenoh, with a router at a port of the test's own."""
     for name in (ATTEMPTS, ROUTER_FILE, SESSION_FILE):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_zenoh_cpp")
@@ -71,12 +71,12 @@ def zenoh_variables(monkeypatch: pytest.MonkeyPatch, domain: int, router_port: i
 
 
 class Process:
-    """What a process has on a domain: a graph, an executor, a transport. Several of them live in one test process.
+    """The graph, executor and transport of a process in a domain. Several of them share one test process.
 
     Args:
         name: the name of its node.
         wire: its transport, one of `JOINS`.
-        join_now: whether it joins at once.
+        join_now: whether it joins immediately.
     """
 
     def __init__(self, name: str, *, wire: str = "dds", join_now: bool = True) -> None:
@@ -97,10 +97,10 @@ class Process:
         return self.transport
 
     def spin_until(self, condition: Callable[[], object], seconds: float = SECONDS) -> None:
-        """Run callbacks until something holds; fails when it does not in time."""
+        """Run callbacks until a condition is met, and fail after the time limit."""
         until = time.monotonic() + seconds
         while not condition():
-            assert time.monotonic() < until, f"not so within {seconds} s"
+            assert time.monotonic() < until, f"condition not met within {seconds} s"
             self.executor.spin_once(timeout_sec=0.02)
 
     def warnings(self) -> list[str]:
@@ -113,8 +113,8 @@ class Process:
 
 @pytest.fixture
 def processes(wire: str, request: pytest.FixtureRequest) -> Iterator[Callable[..., Process]]:
-    """Makes graphs that meet on the wire alone, closed after the test."""
-    pytest.importorskip(PACKAGES[wire], reason=f"there is no {wire} here")
+    """Return a function that creates graphs; they meet only over the transport, and are closed after the test."""
+    pytest.importorskip(PACKAGES[wire], reason=f"{wire} is not installed")
     if wire == "zenoh":
         request.getfixturevalue("zenoh_variables")
     processes: list[Process] = []
@@ -130,13 +130,13 @@ def processes(wire: str, request: pytest.FixtureRequest) -> Iterator[Callable[..
 
 @pytest.fixture
 def programs() -> Iterator[Callable[..., Program]]:
-    """Starts a program of this folder in a Python of its own; gone after the test."""
-    started: list[Program] = []
+    """Return a function that starts a program of this folder in another process; it ends after the test."""
+    programs: list[Program] = []
 
-    def start(name: str, *words: str, **environment: str) -> Program:
-        started.append(Program(name, *words, **environment))
-        return started[-1]
+    def start(name: str, *arguments: str, **environment: str) -> Program:
+        programs.append(Program(name, *arguments, **environment))
+        return programs[-1]
 
     yield start
-    for program in started:
+    for program in programs:
         program.end()

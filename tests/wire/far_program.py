@@ -1,4 +1,4 @@
-"""A process with a graph of ours on some host: ``python -m tests.wire.far_program NODE_NAME``."""
+"""A process with a graph on some host: ``python -m tests.wire.far_program NODE_NAME``."""
 
 from __future__ import annotations
 
@@ -29,35 +29,35 @@ class FarProgram:
         self.node = self.graph.create_node(name)
         self.executor = SingleThreadedExecutor()
         self.executor.add_node(self.node)
-        self.heard: dict[str, list[int]] = {}
-        self.said: dict[str, int] = {}
+        self.numbers: dict[str, list[int]] = {}
+        self.published_counts: dict[str, int] = {}
         self.publishers: dict[str, Any] = {}
         transport = join(self.graph)
         assert transport is not None
-        transport.wait_until_ready(60)  # or not at all, where it is not let in
+        transport.wait_until_ready(60)  # returns False if the router rejects this process
         threading.Thread(target=self.executor.spin, daemon=True).start()
 
-    def hear(self, topic: str, qos: str) -> None:
-        """Take down the numbers of messages."""
-        texts = self.heard.setdefault(topic, [])
-        self.node.create_subscription(Image, topic, lambda message: texts.append(message.width), QOS[qos])
+    def subscribe(self, topic: str, qos: str) -> None:
+        """Record the numbers of the topic's messages."""
+        numbers = self.numbers.setdefault(topic, [])
+        self.node.create_subscription(Image, topic, lambda message: numbers.append(message.width), QOS[qos])
 
-    def offer(self, topic: str, qos: str) -> None:
-        """Have a publisher."""
-        self.said[topic] = 0
+    def advertise(self, topic: str, qos: str) -> None:
+        """Create a publisher."""
+        self.published_counts[topic] = 0
         self.publishers[topic] = self.node.create_publisher(Image, topic, QOS[qos])
 
-    def say(self, topic: str, count: int, rate: float, size: int) -> None:
-        """Number so many messages, in a thread."""
+    def publish_numbers(self, topic: str, count: int, rate: float, size: int) -> None:
+        """Publish numbered messages from a thread."""
         publisher, message = self.publishers[topic], Image(data=os.urandom(size))
 
         def run() -> None:
-            begin, first = time.monotonic(), self.said[topic]
+            start, first = time.monotonic(), self.published_counts[topic]
             for number in range(count):
                 message.width = first + number
                 publisher.publish(message)
-                self.said[topic] += 1
-                time.sleep(max(0.0, begin + (number + 1) / rate - time.monotonic()))
+                self.published_counts[topic] += 1
+                time.sleep(max(0.0, start + (number + 1) / rate - time.monotonic()))
 
         threading.Thread(target=run, daemon=True).start()
 
@@ -69,12 +69,12 @@ if __name__ == "__main__":
     program = FarProgram(sys.argv[1])
     serve(
         {
-            "hear": program.hear,
-            "heard": lambda topic: program.heard[topic],
-            "offer": program.offer,
-            "say": program.say,
-            "said": lambda topic: program.said[topic],
-            "listeners": lambda topic: program.publishers[topic].get_subscription_count(),
+            "subscribe": program.subscribe,
+            "received": lambda topic: program.numbers[topic],
+            "advertise": program.advertise,
+            "publish_numbers": program.publish_numbers,
+            "published_count": lambda topic: program.published_counts[topic],
+            "subscription_count": lambda topic: program.publishers[topic].get_subscription_count(),
             "nodes": program.nodes,
         }
     )

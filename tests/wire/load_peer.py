@@ -1,7 +1,7 @@
-"""A node with services and an action that are asked all at once, on whichever rclpy the interpreter has.
+"""A node with services and an action for many simultaneous calls, on any rclpy of the interpreter.
 
 ``-m tests.wire.load_peer NODE_NAME``. Below ``/NODE_NAME`` it serves `SetBool`, `BasicTypes`, `SetCameraInfo` and its
-parameters, and one goal at a time of `Fibonacci`: a new one aborts the one before.
+parameters, and one goal of `Fibonacci` at a time: a new goal aborts the previous one.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from test_msgs.srv import BasicTypes
 
 from tests.wire.node_program import SECONDS, result_of, serve_node
 
-AT_ONCE = 3
-"""So many calls of one process wait for their answers: with three such processes no more than the 10
-that a service keeps."""
-LONG = 1_000_000
-"""The order of a goal that does not end by itself."""
+MAX_PENDING_CALLS = 3
+"""The number of simultaneous calls of one process; three such processes stay within the 10 requests that a
+service's queue holds."""
+ENDLESS = 1_000_000
+"""The order of a goal that does not end on its own."""
 
 
 class LoadPeer(Node):
@@ -49,50 +49,55 @@ class LoadPeer(Node):
             cancel_callback=lambda _: CancelResponse.ACCEPT,
         )
         self._states = self.create_publisher(JointState, f"/{name}/states", 10)
-        self._others_states = 0
+        self._received_count = 0
 
-    def chatter(self, rate: float, other: str) -> None:
-        """Publish for as long as it lives, and hear somebody else who does."""
-        self.create_subscription(JointState, f"/{other}/states", self._hear, 10)
+    def exchange_states(self, rate: float, other: str) -> None:
+        """Publish states until the node ends, and count those of another node."""
+        self.create_subscription(JointState, f"/{other}/states", self._on_state, 10)
         self.create_timer(1 / rate, lambda: self._states.publish(JointState(name=["a"] * 12, position=[0.5] * 12)))
 
-    def heard(self) -> int:
-        return self._others_states
+    def received_count(self) -> int:
+        return self._received_count
 
-    def storm(self, server: str, count: int, tag: str) -> int:
-        """How many of many calls of four kinds got the answer that was meant for them; several wait at a time."""
-        kinds = {"flip": SetBool, "basic": BasicTypes, "camera": SetCameraInfo, "get_parameters": GetParameters}
-        clients = [self.create_client(kind, f"/{server}/{own}") for own, kind in kinds.items()]
+    def count_correct_calls(self, server: str, count: int, tag: str) -> int:
+        """Make many calls to four kinds of services, several at a time, and return the number of correct responses."""
+        service_types = {"flip": SetBool, "basic": BasicTypes, "camera": SetCameraInfo, "get_parameters": GetParameters}
+        clients = [
+            self.create_client(service_type, f"/{server}/{name}") for name, service_type in service_types.items()
+        ]
         assert all(client.wait_for_service(SECONDS) for client in clients)
-        room = threading.Semaphore(AT_ONCE)
+        slots = threading.Semaphore(MAX_PENDING_CALLS)
         futures = []
         for number in range(count):
-            if not room.acquire(timeout=SECONDS):
+            if not slots.acquire(timeout=SECONDS):
                 break
             future = clients[number % 4].call_async(request(number, tag))
-            future.add_done_callback(lambda _: room.release())
+            future.add_done_callback(lambda _: slots.release())
             futures.append(future)
-        for _ in range(AT_ONCE):
-            room.acquire(timeout=SECONDS)  # the last ones
-        return sum(future.done() and is_right(number, tag, future.result()) for number, future in enumerate(futures))
+        for _ in range(MAX_PENDING_CALLS):
+            slots.acquire(timeout=SECONDS)  # wait for the last calls
+        return sum(future.done() and is_correct(number, tag, future.result()) for number, future in enumerate(futures))
 
-    def goals(self, server: str, count: int) -> list[str]:
-        """What becomes of long goals one after another: each third is cancelled, all others by the next one."""
+    def run_goals(self, server: str, count: int) -> list[str]:
+        """Send endless goals one after another, and return how each ends.
+
+        Every third goal is cancelled; each of the others is aborted by the next goal.
+        """
         client = ActionClient(self, Fibonacci, f"/{server}/single")
         assert client.wait_for_server(SECONDS)
         results = []
         for number in range(count):
             feedback_event = threading.Event()
-            order = LONG if number < count - 1 else 5
+            order = ENDLESS if number < count - 1 else 5
             sent = client.send_goal_async(
                 Fibonacci.Goal(order=order), feedback_callback=lambda _, on=feedback_event: on.set()
             )
             goal = result_of(sent)
             assert goal.accepted
             results.append(goal.get_result_async())
-            if order == LONG:
+            if order == ENDLESS:
                 assert feedback_event.wait(SECONDS)
-            if number % 3 == 2 and order == LONG:
+            if number % 3 == 2 and order == ENDLESS:
                 assert len(result_of(goal.cancel_goal_async()).goals_canceling) == 1
         names = {getattr(GoalStatus, f"STATUS_{name}"): name for name in ("SUCCEEDED", "ABORTED", "CANCELED")}
         ends = [names[result_of(result).status] for result in results]
@@ -113,18 +118,20 @@ class LoadPeer(Node):
             if goal is not self._current:
                 goal.abort()
                 return Fibonacci.Result(sequence=sequence)
-            sequence = [*sequence, 1][-20:] if goal.request.order == LONG else [*sequence, sequence[-1] + sequence[-2]]
+            sequence = (
+                [*sequence, 1][-20:] if goal.request.order == ENDLESS else [*sequence, sequence[-1] + sequence[-2]]
+            )
             goal.publish_feedback(Fibonacci.Feedback(sequence=sequence))
             time.sleep(0.02)
         goal.succeed()
         return Fibonacci.Result(sequence=sequence)
 
-    def _hear(self, _: JointState) -> None:
-        self._others_states += 1
+    def _on_state(self, _: JointState) -> None:
+        self._received_count += 1
 
 
 def request(number: int, tag: str) -> Any:
-    """The request number n of the four kinds in turn."""
+    """Return request n; the four kinds of services take turns."""
     if number % 4 == 0:
         return SetBool.Request(data=number % 8 == 0)
     if number % 4 == 1:
@@ -136,15 +143,15 @@ def request(number: int, tag: str) -> Any:
     return GetParameters.Request(names=[f"number_{number % 10}"])
 
 
-def is_right(number: int, tag: str, answer: Any) -> bool:
-    """Whether an answer is that to the request of this number."""
+def is_correct(number: int, tag: str, response: Any) -> bool:
+    """Return whether a response belongs to the request of this number."""
     if number % 4 == 0:
-        return bool(answer.success) != (number % 8 == 0)
+        return bool(response.success) != (number % 8 == 0)
     if number % 4 == 1:
-        return (answer.int64_value, answer.string_value) == (-number, f"{tag} {number}")
+        return (response.int64_value, response.string_value) == (-number, f"{tag} {number}")
     if number % 4 == 2:
-        return bool(answer.status_message == f"{tag} {number}")
-    return [value.integer_value for value in answer.values] == [number % 10]
+        return bool(response.status_message == f"{tag} {number}")
+    return [value.integer_value for value in response.values] == [number % 10]
 
 
 def flip(request: Any, response: Any) -> Any:
@@ -163,4 +170,4 @@ def camera(request: Any, response: Any) -> Any:
 
 
 if __name__ == "__main__":
-    serve_node(LoadPeer, "chatter heard storm goals", threads=6)
+    serve_node(LoadPeer, "exchange_states received_count count_correct_calls run_goals", threads=6)

@@ -1,7 +1,7 @@
-"""A managed node with an action, on whichever rclpy the interpreter has: ``-m tests.wire.managed_peer NODE_NAME``.
+"""A managed node with an action, on any rclpy of the interpreter: ``-m tests.wire.managed_peer NODE_NAME``.
 
-The action is ``/NODE_NAME/fibonacci``; it refuses negative orders and aborts order 0. The node hears all parameter
-events and, of the node that it is asked to watch, the transitions.
+The action is ``/NODE_NAME/fibonacci``; it rejects negative orders and aborts order 0. The node records all parameter
+events, and the transitions of the nodes that it watches.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class ManagedPeer(LifecycleNode):
         super().__init__(name)
         self.changes: list[list[str]] = []
         self.events: list[list[Any]] = []
-        self._asking: dict[str, Any] = {}
+        self._action_clients: dict[str, Any] = {}
         self._action = f"/{name}/fibonacci"
         self._server = ActionServer(
             self,
@@ -39,22 +39,23 @@ class ManagedPeer(LifecycleNode):
         )
         self.create_subscription(ParameterEvent, "/parameter_events", self._on_parameters, QoSProfile(depth=1000))
 
-    def act(self, action: str, order: int, cancel_after: int = -1) -> dict[str, Any]:
-        """What becomes of a goal, which may be cancelled after some feedback."""
+    def send_goal(self, action: str, order: int, cancel_after: int = -1) -> dict[str, Any]:
+        """Send a goal, cancel it after some feedback if asked to, and return its result."""
         feedback: list[list[int]] = []
-        client = self._asking.get(action) or ActionClient(self, Fibonacci, action)
-        self._asking[action] = client  # another one would have to be found by the server first, to get feedback
+        client = self._action_clients.get(action) or ActionClient(self, Fibonacci, action)
+        self._action_clients[action] = client  # a new client gets no feedback until the server has discovered it
         assert client.wait_for_server(SECONDS)
         sent = client.send_goal_async(
-            Fibonacci.Goal(order=order), feedback_callback=lambda text: feedback.append(list(text.feedback.sequence))
+            Fibonacci.Goal(order=order),
+            feedback_callback=lambda message: feedback.append(list(message.feedback.sequence)),
         )
         goal = result_of(sent)
         if not goal.accepted:
             return {"accepted": False}
         result = goal.get_result_async()
         if cancel_after >= 0:
-            until = time.monotonic() + SECONDS
-            while len(feedback) < cancel_after and time.monotonic() < until:
+            deadline = time.monotonic() + SECONDS
+            while len(feedback) < cancel_after and time.monotonic() < deadline:
                 time.sleep(0.01)
             assert len(result_of(goal.cancel_goal_async()).goals_canceling) == 1
         answer = result_of(result)
@@ -62,8 +63,8 @@ class ManagedPeer(LifecycleNode):
         sequence = list(answer.result.sequence)
         return {"accepted": True, "status": names[answer.status], "sequence": sequence, "feedback": feedback}
 
-    def acts_are_right(self, action: str, count: int) -> int:
-        """How many of many goals had the result that was meant for them."""
+    def count_correct_goals(self, action: str, count: int) -> int:
+        """Send many goals, and return the number of correct results."""
         client = ActionClient(self, Fibonacci, action)
         assert client.wait_for_server(SECONDS)
         goals = [result_of(client.send_goal_async(Fibonacci.Goal(order=number % 5 + 2))) for number in range(count)]
@@ -75,25 +76,25 @@ class ManagedPeer(LifecycleNode):
         self.create_subscription(
             TransitionEvent,
             f"/{node}/transition_event",
-            lambda text: self.changes.append([node, text.start_state.label, text.goal_state.label]),
+            lambda event: self.changes.append([node, event.start_state.label, event.goal_state.label]),
             10,
         )
 
     def change(self, node: str, transition: str) -> bool:
         request = ChangeState.Request(transition=Transition(label=transition))
         request.transition.id = getattr(Transition, f"TRANSITION_{transition.upper()}")
-        return bool(self._called(ChangeState, f"/{node}/change_state", request).success)
+        return bool(self._call(ChangeState, f"/{node}/change_state", request).success)
 
     def state(self, node: str) -> str:
-        return str(self._called(GetState, f"/{node}/get_state", GetState.Request()).current_state.label)
+        return str(self._call(GetState, f"/{node}/get_state", GetState.Request()).current_state.label)
 
-    def possible(self, node: str) -> list[str]:
+    def available_transitions(self, node: str) -> list[str]:
         request = GetAvailableTransitions.Request()
-        answer = self._called(GetAvailableTransitions, f"/{node}/get_available_transitions", request)
-        return sorted(available_transition.transition.label for available_transition in answer.available_transitions)
+        response = self._call(GetAvailableTransitions, f"/{node}/get_available_transitions", request)
+        return sorted(available_transition.transition.label for available_transition in response.available_transitions)
 
-    def ends_of(self, topic: str) -> list[int]:
-        """How many publishers and subscriptions it knows."""
+    def endpoint_counts(self, topic: str) -> list[int]:
+        """Return the number of publishers and of subscriptions that the node has discovered."""
         return [self.count_publishers(topic), self.count_subscribers(topic)]
 
     def declare(self, name: str, value: float) -> None:
@@ -105,13 +106,13 @@ class ManagedPeer(LifecycleNode):
     def events_of(self, node: str, parameter: str) -> list[Any]:
         return [event[1:] for event in self.events if event[0] == f"/{node}" and event[2] == parameter]
 
-    def changes_seen(self) -> list[list[str]]:
+    def watched_transitions(self) -> list[list[str]]:
         return self.changes
 
     def _execute(self, goal: Any) -> Any:
-        until = time.monotonic() + SECONDS
-        while not self.count_subscribers(f"{self._action}/_action/feedback") and time.monotonic() < until:
-            time.sleep(0.01)  # whose request has come may not have been found yet by the publisher of feedback
+        deadline = time.monotonic() + SECONDS
+        while not self.count_subscribers(f"{self._action}/_action/feedback") and time.monotonic() < deadline:
+            time.sleep(0.01)  # a request may arrive before the feedback publisher has discovered its client
         sequence = fibonacci(1)
         for _ in range(goal.request.order - 1):
             if goal.is_cancel_requested:
@@ -128,16 +129,16 @@ class ManagedPeer(LifecycleNode):
         return Fibonacci.Result(sequence=sequence)
 
     def _on_parameters(self, event: ParameterEvent) -> None:
-        for kind in ("new", "changed", "deleted"):
-            for parameter in getattr(event, f"{kind}_parameters"):
-                self.events.append([event.node, kind, parameter.name, parameter.value.double_value])
+        for change in ("new", "changed", "deleted"):
+            for parameter in getattr(event, f"{change}_parameters"):
+                self.events.append([event.node, change, parameter.name, parameter.value.double_value])
 
-    def _called(self, kind: Any, name: str, request: Any) -> Any:
-        client = self.create_client(kind, name)
+    def _call(self, service_type: Any, name: str, request: Any) -> Any:
+        client = self.create_client(service_type, name)
         assert client.wait_for_service(SECONDS)
-        answer = result_of(client.call_async(request))
+        response = result_of(client.call_async(request))
         self.destroy_client(client)
-        return answer
+        return response
 
 
 def fibonacci(order: int) -> list[int]:
@@ -150,6 +151,7 @@ def fibonacci(order: int) -> list[int]:
 if __name__ == "__main__":
     serve_node(
         ManagedPeer,
-        "act acts_are_right watch change state possible ends_of declare set events_of changes_seen",
+        "send_goal count_correct_goals watch change state available_transitions endpoint_counts declare set events_of "
+        "watched_transitions",
         threads=4,
     )

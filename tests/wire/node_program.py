@@ -1,4 +1,4 @@
-"""Programs of this folder that are a node, on whichever rclpy their interpreter has."""
+"""Functions for the programs of this folder that are a node, on any rclpy of their interpreter."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from rclpy.node import Node
 from tests.wire.programs import serve
 
 SECONDS = 60.0
-"""How long a program waits for another one's answer."""
+"""The time limit for another program's answer."""
 
 
 def serve_node(make: Callable[[str], Node], questions: str, *, threads: int = 1) -> None:
-    """Run a node, and answer questions by its methods until standard input is closed.
+    """Run a node whose methods answer questions until standard input is closed.
 
     Args:
-        make: makes the node, of the name that the program is called with.
+        make: creates the node with the name that is the program's argument.
         questions: the names of the methods.
-        threads: that run its callbacks.
+        threads: the number of threads that run its callbacks.
     """
     rclpy.init()
     node = make(sys.argv[1])
@@ -35,13 +35,13 @@ def serve_node(make: Callable[[str], Node], questions: str, *, threads: int = 1)
 
 
 def result_of(future: Any, seconds: float = SECONDS) -> Any:
-    """What another thread hands over.
+    """Return the result that another thread delivers.
 
     Raises:
-        TimeoutError: not in time.
+        TimeoutError: the result is not there in time.
     """
-    came = threading.Event()
-    future.add_done_callback(lambda _: came.set())
-    if not came.wait(seconds):
+    done = threading.Event()
+    future.add_done_callback(lambda _: done.set())
+    if not done.wait(seconds):
         raise TimeoutError
     return future.result()

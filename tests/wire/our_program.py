@@ -1,4 +1,4 @@
-"""A process with a graph of ours: ``python -m tests.wire.our_program NODE_NAME``."""
+"""A process with a graph of Linkwright: ``python -m tests.wire.our_program NODE_NAME``."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class OurProgram:
         return sorted(name for name, _ in self.node.get_node_names_and_namespaces())
 
     def fork(self) -> list[Any]:
-        """What a forked child has: whether it could publish and end by itself."""
+        """Fork, and return whether the child could publish and end, and the number of our threads."""
         child = os.fork()
         if not child:
             self.publisher.publish(Int32(data=1))

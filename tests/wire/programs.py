@@ -1,4 +1,4 @@
-"""Runs a program of this folder in a process of its own and talks with it: a line of JSON a question, one an answer."""
+"""Control of a program of this folder in another process: each question and each answer is a line of JSON."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ FOLDER = Path(__file__).parent
 
 
 class Program:
-    """A process that answers, of this interpreter or another.
+    """A process that answers questions, with this interpreter or another.
 
     Args:
         name: the program.
-        words: its arguments.
+        arguments: its arguments.
         python: the interpreter.
-        within: what goes before the command, for one that runs elsewhere.
-        folder: where it runs; the repository when left out.
-        environment: what it has beside this process's.
+        within: the words before the command, such as those that run it on another host.
+        folder: its working directory; by default the repository.
+        environment: variables in addition to those of this process.
     """
 
     def __init__(
         self,
         name: str,
-        *words: str,
+        *arguments: str,
         python: str = sys.executable,
         within: Sequence[str] = (),
         folder: Path | None = None,
@@ -42,7 +42,7 @@ class Program:
         repository = FOLDER.parents[1]
         variables = {} if folder is None else {"PYTHONPATH": str(repository)}
         self.process = subprocess.Popen(
-            [*within, python, "-m", f"tests.wire.{name}", *words],
+            [*within, python, "-m", f"tests.wire.{name}", *arguments],
             cwd=folder or repository,
             env={**os.environ, **variables, **environment},
             stdin=subprocess.PIPE,
@@ -56,27 +56,27 @@ class Program:
         assert self.answer() == "ready"
 
     def ask(self, question: str, *arguments: Any) -> Any:
-        """The answer to a question."""
+        """Ask a question, and return the answer."""
         return self._ask(SECONDS, question, arguments)
 
     def ask_slowly(self, question: str, *arguments: Any) -> Any:
-        """The answer to a question that stands for much work."""
+        """Ask a question that takes long to answer, and return the answer."""
         return self._ask(5 * SECONDS, question, arguments)
 
     def ask_until(
         self, condition: Callable[[Any], object], question: str, *arguments: Any, seconds: float = SECONDS
     ) -> Any:
-        """The first answer for which something holds."""
-        until = time.monotonic() + seconds
+        """Repeat a question until the answer meets a condition, and return that answer."""
+        deadline = time.monotonic() + seconds
         while True:
             answer = self.ask(question, *arguments)
             if condition(answer):
                 return answer
-            assert time.monotonic() < until, f"still {answer!r} after {SECONDS} s"
+            assert time.monotonic() < deadline, f"still {answer!r} after {SECONDS} s"
             time.sleep(0.05)
 
     def answer(self, seconds: float = SECONDS) -> Any:
-        """What it says next; at once an error when it has ended."""
+        """Return the next answer; fail at once if the process has ended."""
         try:
             result = self._answers.get(timeout=seconds)
         except Empty:
@@ -84,16 +84,16 @@ class Program:
         if not result:
             self.process.kill()
             self._reader.join()
-            raise AssertionError(f"silence; its errors: {self.process.communicate()[1]}")
+            raise AssertionError(f"no answer; its errors: {self.process.communicate()[1]}")
         return json.loads(result)
 
     def kill(self) -> None:
-        """End it as ``kill -9`` does."""
+        """Kill the process as ``kill -9`` does."""
         self.process.kill()
         self.process.wait()
 
     def end(self) -> int:
-        """End it by closing its standard input; its exit status."""
+        """End the process by closing its standard input, and return its exit status."""
         assert self.process.stdin is not None
         assert self.process.stdout is not None
         assert self.process.stderr is not None
@@ -121,16 +121,16 @@ class Program:
 
 
 def serve(answers: dict[str, Callable[..., Any]]) -> None:
-    """In the program: answer questions until standard input is closed."""
+    """Answer questions until standard input is closed; for use in the program."""
     print(json.dumps("ready"), flush=True)
     for line in sys.stdin:
         question, *arguments = json.loads(line)
         print(json.dumps(answers[question](*arguments)), flush=True)
 
 
-def linkwright(*words: str) -> tuple[str, str, int]:
-    """What a command prints, its errors and its exit status."""
+def linkwright(*arguments: str) -> tuple[str, str, int]:
+    """Run a command, and return its output, its errors and its exit status."""
     result = subprocess.run(
-        [sys.executable, "-m", "linkwright", *words], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-m", "linkwright", *arguments], capture_output=True, text=True, timeout=60, check=False
     )
     return result.stdout, result.stderr, result.returncode

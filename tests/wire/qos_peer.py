@@ -1,6 +1,6 @@
-"""A node whose endpoints have any quality of service, on whichever rclpy: ``-m tests.wire.qos_peer NODE_NAME``.
+"""A node whose endpoints have any quality of service, on any rclpy: ``-m tests.wire.qos_peer NODE_NAME``.
 
-A quality of service is given as a dictionary: ``{"preset": "sensor_data"}``, or policies by name and, in seconds,
+A quality of service is a dictionary: ``{"preset": "sensor_data"}``, or policies by name and, in seconds,
 ``deadline``, ``lifespan`` and ``lease``.
 """
 
@@ -29,64 +29,64 @@ DURATIONS = {"deadline": "deadline", "lifespan": "lifespan", "lease": "livelines
 class QosPeer(Node):
     def __init__(self, name: str) -> None:
         super().__init__(name)
-        self._out: dict[str, Any] = {}
-        self._heard: dict[str, list[str]] = {}
-        self._told: dict[str, list[list[Any]]] = {}
-        self._timers_of: dict[str, Any] = {}
+        self._publishers: dict[str, Any] = {}
+        self._received: dict[str, list[str]] = {}
+        self._events: dict[str, list[list[Any]]] = {}
+        self._timers: dict[str, Any] = {}
 
     def publisher(self, topic: str, qos: dict[str, Any]) -> None:
         callbacks = self._callbacks(PublisherEventCallbacks, topic)
-        self._out[topic] = self.create_publisher(String, topic, profile(qos), event_callbacks=callbacks)
+        self._publishers[topic] = self.create_publisher(String, topic, profile(qos), event_callbacks=callbacks)
 
     def subscription(self, topic: str, qos: dict[str, Any]) -> None:
-        texts = self._heard.setdefault(topic, [])
+        texts = self._received.setdefault(topic, [])
         self.create_subscription(
             String,
             topic,
-            lambda text: texts.append(text.data),
+            lambda message: texts.append(message.data),
             profile(qos),
             event_callbacks=self._callbacks(SubscriptionEventCallbacks, topic),
         )
 
-    def say(self, topic: str, text: str) -> None:
-        self._out[topic].publish(String(data=text))
+    def publish(self, topic: str, text: str) -> None:
+        self._publishers[topic].publish(String(data=text))
 
-    def keep_saying(self, topic: str, period: float) -> None:
-        self._timers_of[topic] = self.create_timer(period, lambda: self.say(topic, "again"))
+    def keep_publishing(self, topic: str, period: float) -> None:
+        self._timers[topic] = self.create_timer(period, lambda: self.publish(topic, "again"))
 
-    def fall_silent(self, topic: str) -> None:
-        self._timers_of.pop(topic).cancel()
+    def stop_publishing(self, topic: str) -> None:
+        self._timers.pop(topic).cancel()
 
     def assert_liveliness(self, topic: str) -> None:
-        self._out[topic].assert_liveliness()
+        self._publishers[topic].assert_liveliness()
 
-    def heard(self, topic: str) -> list[str]:
-        return self._heard[topic]
+    def received(self, topic: str) -> list[str]:
+        return self._received[topic]
 
-    def told(self, topic: str) -> list[list[Any]]:
-        """The events of an endpoint: kind and what is told."""
-        return self._told.get(topic, [])
+    def events(self, topic: str) -> list[list[Any]]:
+        """Return the events of a topic's endpoints: the kind of each, and its numbers."""
+        return self._events.get(topic, [])
 
-    def listeners(self) -> dict[str, int]:
-        """How many hear what is published on each topic."""
-        return {topic: publisher.get_subscription_count() for topic, publisher in self._out.items()}
+    def subscription_counts(self) -> dict[str, int]:
+        """Return the number of matched subscriptions by topic."""
+        return {topic: publisher.get_subscription_count() for topic, publisher in self._publishers.items()}
 
-    def publishers(self, topic: str) -> int:
-        """How many are known."""
+    def publisher_count(self, topic: str) -> int:
+        """Return the number of discovered publishers."""
         return self.count_publishers(topic)
 
-    def _callbacks(self, kind: Any, topic: str) -> Any:
-        received = self._told.setdefault(topic, [])
+    def _callbacks(self, callbacks_type: Any, topic: str) -> Any:
+        events = self._events.setdefault(topic, [])
         callbacks = {
-            "incompatible_qos": lambda info: received.append(["incompatible", int(info.last_policy_kind)]),
-            "deadline": lambda info: received.append(["deadline", info.total_count]),
-            "matched": lambda info: received.append(["matched", info.current_count]),
+            "incompatible_qos": lambda info: events.append(["incompatible", int(info.last_policy_kind)]),
+            "deadline": lambda info: events.append(["deadline", info.total_count]),
+            "matched": lambda info: events.append(["matched", info.current_count]),
         }
-        if kind is PublisherEventCallbacks:
-            callbacks["liveliness"] = lambda info: received.append(["lost", info.total_count])
+        if callbacks_type is PublisherEventCallbacks:
+            callbacks["liveliness"] = lambda info: events.append(["lost", info.total_count])
         else:
-            callbacks["liveliness"] = lambda info: received.append(["alive", info.alive_count, info.not_alive_count])
-        return kind(**callbacks)
+            callbacks["liveliness"] = lambda info: events.append(["alive", info.alive_count, info.not_alive_count])
+        return callbacks_type(**callbacks)
 
 
 def profile(qos: dict[str, Any]) -> Any:
@@ -100,5 +100,6 @@ def profile(qos: dict[str, Any]) -> Any:
 if __name__ == "__main__":
     serve_node(
         QosPeer,
-        "publisher subscription say keep_saying fall_silent assert_liveliness heard told listeners publishers",
+        "publisher subscription publish keep_publishing stop_publishing assert_liveliness received events "
+        "subscription_counts publisher_count",
     )

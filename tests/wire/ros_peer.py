@@ -1,7 +1,7 @@
-"""A process that behaves on the wire as one of real ROS 2 with rmw_cyclonedds_cpp does, made with `cyclonedds` alone.
+"""A process that behaves on the wire like real ROS 2 with rmw_cyclonedds_cpp, and needs only `cyclonedds`.
 
 ``python -m tests.wire.ros_peer humble|jazzy NODE_NAME``. It has a publisher on ``/from_ros``, a subscription to
-``/to_ros``, a server of ``/ros_flip``, a client of ``/our_flip``; its CDR is written by hand.
+``/to_ros``, a server of ``/ros_flip``, and a client of ``/our_flip``; it writes CDR by hand.
 """
 
 from __future__ import annotations
@@ -43,13 +43,13 @@ HASHES = {"std_msgs/msg/String": "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db12
 DISCOVERY_HASH = "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e"
 
 
-def described(type_name: str, members: dict[str, Any]) -> type[IdlStruct]:
-    """A type."""
+def make_type(type_name: str, members: dict[str, Any]) -> type[IdlStruct]:
+    """Return the type with these members."""
     return make_idl_struct(type_name.rpartition(".")[2], type_name, members, dataclassify=False)
 
 
-def raw(base: type[IdlStruct]) -> type[IdlStruct]:
-    """The type with its samples as CDR bytes."""
+def as_bytes(base: type[IdlStruct]) -> type[IdlStruct]:
+    """Return a type whose samples are CDR bytes."""
 
     class Raw(base):  # type: ignore[misc,valid-type]
         def __init__(self, data: bytes = b"") -> None:
@@ -80,25 +80,27 @@ class RosPeer:
         self.domain = Domain(number, CONFIGURATIONS[network])
         self.participant = DomainParticipant(number, Qos(Policy.Userdata(b"enclave=/;")))
         self.name = name
-        string = raw(described("std_msgs.msg.dds_.String_", {"data": str}))
+        string = as_bytes(make_type("std_msgs.msg.dds_.String_", {"data": str}))
         header = {"client_guid": types.uint64, "sequence_number": types.int64}
-        request = raw(described("std_srvs.srv.dds_.SetBool_Request_", {**header, "data": bool}))
-        response = raw(described("std_srvs.srv.dds_.SetBool_Response_", {**header, "success": bool, "message": str}))
+        request = as_bytes(make_type("std_srvs.srv.dds_.SetBool_Request_", {**header, "data": bool}))
+        response = as_bytes(
+            make_type("std_srvs.srv.dds_.SetBool_Response_", {**header, "success": bool, "message": str})
+        )
         info = self._discovery_type()
         facts = "" if self.old else f"typehash={HASHES['std_msgs/msg/String']};"
         self.info_writer = self._writer(
-            "ros_discovery_info", info, "" if self.old else f"typehash={DISCOVERY_HASH};", lasting=True
+            "ros_discovery_info", info, "" if self.old else f"typehash={DISCOVERY_HASH};", latched=True
         )
-        self.info_reader = self._reader("ros_discovery_info", info, "", lasting=True)
+        self.info_reader = self._reader("ros_discovery_info", info, "", latched=True)
         self.publisher = self._writer("rt/from_ros", string, facts)
         self.subscription = self._reader("rt/to_ros", string, facts)
         self.requests = self._reader("rq/ros_flipRequest", request, "serviceid=1.2.3;")
         self.replies = self._writer("rr/ros_flipReply", response, "serviceid=1.2.3;")
-        self.asking = self._writer("rq/our_flipRequest", request, "clientid=4.5.6;")
-        self.answers = self._reader("rr/our_flipReply", response, "clientid=4.5.6;")
+        self.client_requests = self._writer("rq/our_flipRequest", request, "clientid=4.5.6;")
+        self.client_replies = self._reader("rr/our_flipReply", response, "clientid=4.5.6;")
         self.publications = BuiltinDataReader(self.participant, BuiltinTopicDcpsPublication)
         self.subscriptions = BuiltinDataReader(self.participant, BuiltinTopicDcpsSubscription)
-        self.heard: dict[str, Any] = {}
+        self.nodes_by_participant: dict[str, Any] = {}
         self.endpoints: dict[str, Any] = {}
         self._announce()
 
@@ -106,7 +108,7 @@ class RosPeer:
         self.publisher.write(self.publisher.data_type(b"\0\1\0\0" + text(value)))
 
     def publish_bytes(self, data: str) -> str:
-        """Bytes as they are; what Cyclone says to that."""
+        """Publish bytes unchanged, and return Cyclone's error, or "written"."""
         try:
             self.publisher.write(self.publisher.data_type(bytes.fromhex(data)))
         except DDSException as error:
@@ -117,36 +119,36 @@ class RosPeer:
         samples = [sample for sample in self.subscription.take(100) if hasattr(sample, "cdr")]
         return [sample.cdr[8:].split(b"\0")[0].decode() for sample in samples]
 
-    def answer(self) -> int:
-        """Answer the requests that have come; how many those were."""
+    def answer_requests(self) -> int:
+        """Answer the requests so far, and return their number."""
         requests = [sample for sample in self.requests.take(100) if hasattr(sample, "cdr")]
         for request in requests:
-            head, wanted = request.cdr[4:20], request.cdr[20]
+            head, value = request.cdr[4:20], request.cdr[20]
             self.replies.write(
-                self.replies.data_type(b"\0\1\0\0" + head + bytes([not wanted, 0, 0, 0]) + text("by ROS"))
+                self.replies.data_type(b"\0\1\0\0" + head + bytes([not value, 0, 0, 0]) + text("by ROS"))
             )
         return len(requests)
 
     def call(self, value: bool, number: int) -> None:
         head = struct.pack("<Qq", 0x0123456789ABCDEF, number)
-        self.asking.write(self.asking.data_type(b"\0\1\0\0" + head + bytes([value, 0, 0, 0])))
+        self.client_requests.write(self.client_requests.data_type(b"\0\1\0\0" + head + bytes([value, 0, 0, 0])))
 
     def replies_to_calls(self) -> list[list[Any]]:
-        samples = [sample for sample in self.answers.take(100) if hasattr(sample, "cdr")]
+        samples = [sample for sample in self.client_replies.take(100) if hasattr(sample, "cdr")]
         return [
             [*struct.unpack_from("<Qq", sample.cdr, 4), bool(sample.cdr[20]), sample.cdr[28:].split(b"\0")[0].decode()]
             for sample in samples
         ]
 
     def nodes(self) -> list[Any]:
-        """What is heard in ``ros_discovery_info`` with gids of the distribution's size."""
+        """Return the nodes in ``ros_discovery_info``, with gids of the distribution's size."""
         for sample in self.info_reader.take(100):
             if hasattr(sample, "cdr"):
-                self.heard[sample.cdr[4:20].hex()] = self._decode(sample.cdr[4:])
-        return [node for nodes in self.heard.values() for node in nodes]
+                self.nodes_by_participant[sample.cdr[4:20].hex()] = self._decode(sample.cdr[4:])
+        return [node for nodes in self.nodes_by_participant.values() for node in nodes]
 
-    def seen(self) -> dict[str, Any]:
-        """The endpoints of others: DDS topic -> type, USER_DATA, GUID, whether it writes."""
+    def remote_endpoints(self) -> dict[str, Any]:
+        """Return the remote endpoints by key: topic, type and USER_DATA in DDS, and whether it is a writer."""
         for reader, writes in ((self.publications, True), (self.subscriptions, False)):
             for sample in reader.take(500):
                 if sample.sample_info.instance_state != 16:
@@ -156,8 +158,8 @@ class RosPeer:
                     self.endpoints[sample.key.bytes.hex()] = [sample.topic_name, sample.type_name, data, writes]
         return self.endpoints
 
-    def _qos(self, facts: str, lasting: bool) -> Qos:
-        durability = Policy.Durability.TransientLocal if lasting else Policy.Durability.Volatile
+    def _qos(self, facts: str, latched: bool) -> Qos:
+        durability = Policy.Durability.TransientLocal if latched else Policy.Durability.Volatile
         return Qos(
             Policy.Reliability.Reliable(1_000_000_000),
             durability,
@@ -167,21 +169,21 @@ class RosPeer:
             Policy.Userdata(facts.encode()),
         )
 
-    def _writer(self, topic: str, described: Any, facts: str, *, lasting: bool = False) -> Any:
-        return DataWriter(self.participant, Topic(self.participant, topic, described), self._qos(facts, lasting))
+    def _writer(self, topic: str, make_type: Any, facts: str, *, latched: bool = False) -> Any:
+        return DataWriter(self.participant, Topic(self.participant, topic, make_type), self._qos(facts, latched))
 
-    def _reader(self, topic: str, described: Any, facts: str, *, lasting: bool = False) -> Any:
-        return DataReader(self.participant, Topic(self.participant, topic, described), self._qos(facts, lasting))
+    def _reader(self, topic: str, make_type: Any, facts: str, *, latched: bool = False) -> Any:
+        return DataReader(self.participant, Topic(self.participant, topic, make_type), self._qos(facts, latched))
 
     def _announce(self) -> None:
         def gids(*entities: Any) -> bytes:
-            packed = b"".join(entity.guid.bytes.ljust(self.gid_size, b"\0") for entity in entities)
-            return struct.pack("<I", len(entities)) + packed
+            data = b"".join(entity.guid.bytes.ljust(self.gid_size, b"\0") for entity in entities)
+            return struct.pack("<I", len(entities)) + data
 
         body = self.participant.guid.bytes.ljust(self.gid_size, b"\0") + struct.pack("<I", 1)
         body += text("/") + text(self.name)
-        body += gids(self.subscription, self.requests, self.answers)
-        body += gids(self.publisher, self.replies, self.asking)
+        body += gids(self.subscription, self.requests, self.client_replies)
+        body += gids(self.publisher, self.replies, self.client_requests)
         self.info_writer.write(self.info_writer.data_type(b"\0\1\0\0" + body))
 
     def _decode(self, data: bytes) -> list[Any]:
@@ -212,8 +214,8 @@ class RosPeer:
 
     def _discovery_type(self) -> Any:
         prefix = "rmw_dds_common.msg.dds_."
-        gid = described(prefix + "Gid_", {"data": types.array[types.uint8, self.gid_size]})
-        node = described(
+        gid = make_type(prefix + "Gid_", {"data": types.array[types.uint8, self.gid_size]})
+        node = make_type(
             prefix + "NodeEntitiesInfo_",
             {
                 "node_namespace": types.bounded_str[256],
@@ -223,7 +225,7 @@ class RosPeer:
             },
         )
         members = {"gid": gid, "node_entities_info_seq": types.sequence[node]}
-        return raw(described(prefix + "ParticipantEntitiesInfo_", members))
+        return as_bytes(make_type(prefix + "ParticipantEntitiesInfo_", members))
 
 
 if __name__ == "__main__":
@@ -233,10 +235,10 @@ if __name__ == "__main__":
             "publish": peer.publish,
             "publish_bytes": peer.publish_bytes,
             "received": peer.received,
-            "answer": peer.answer,
+            "answer_requests": peer.answer_requests,
             "call": peer.call,
             "replies": peer.replies_to_calls,
             "nodes": peer.nodes,
-            "seen": peer.seen,
+            "remote_endpoints": peer.remote_endpoints,
         }
     )

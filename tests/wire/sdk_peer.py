@@ -26,38 +26,38 @@ FLIP = {
 class SdkPeer:
     def __init__(self, name: str) -> None:
         self.name = name
-        self.heard: list[str] = []
-        self.served: list[bool] = []
+        self.received: list[str] = []
+        self.requests: list[bool] = []
         self.publisher = ROS2Publisher("/from_sdk", node_name=name, **STRING)
-        self.subscriber = ROS2Subscriber("/to_sdk", callback=self.hear, node_name=name, **STRING)
+        self.subscriber = ROS2Subscriber("/to_sdk", callback=self.on_message, node_name=name, **STRING)
         self.server = ROS2ServiceServer("/flip_sdk", callback=self.flip, node_name=name, **FLIP)
 
-    def hear(self, message: Any) -> None:
-        self.heard.append(message.data)
+    def on_message(self, message: Any) -> None:
+        self.received.append(message.data)
 
     def flip(self, request: Any) -> Any:
-        self.served.append(request.data)
-        return self.server.response_msg_class(success=not request.data, message=f"{self.name} {len(self.served)}")
+        self.requests.append(request.data)
+        return self.server.response_msg_class(success=not request.data, message=f"{self.name} {len(self.requests)}")
 
-    def say(self, first: int, count: int) -> None:
+    def publish(self, first: int, count: int) -> None:
         for number in range(first, first + count):
             self.publisher.publish(data=str(number))
 
     def call(self, clients: int, calls_per_client: int) -> list[list[str | None]]:
-        """What several clients are told, each of which asks so many times, all at once."""
+        """Call the service from several clients at once, and return their responses."""
         messages: list[list[str | None]] = [[] for _ in range(clients)]
 
-        def ask(which: int) -> None:
-            client = ROS2ServiceClient("/flip", node_name=f"{self.name}_{which}", **FLIP)
+        def run_client(index: int) -> None:
+            client = ROS2ServiceClient("/flip", node_name=f"{self.name}_{index}", **FLIP)
             for number in range(calls_per_client):
                 response = client.call(data=number % 2 == 1)
-                messages[which].append(None if response is None else f"{response.success} {response.message}")
+                messages[index].append(None if response is None else f"{response.success} {response.message}")
             client.close()
 
-        asking = [threading.Thread(target=ask, args=(which,)) for which in range(clients)]
-        for thread in asking:
+        threads = [threading.Thread(target=run_client, args=(index,)) for index in range(clients)]
+        for thread in threads:
             thread.start()
-        for thread in asking:
+        for thread in threads:
             thread.join()
         return messages
 
@@ -67,14 +67,14 @@ def main() -> None:
     peer = SdkPeer(sys.argv[1])
     serve(
         {
-            "heard": lambda: peer.heard,
-            "served": lambda: len(peer.served),
-            "say": peer.say,
-            "listeners": lambda: bool(peer.publisher.pub.matching_status.matching),
+            "received": lambda: peer.received,
+            "request_count": lambda: len(peer.requests),
+            "publish": peer.publish,
+            "has_subscription": lambda: bool(peer.publisher.pub.matching_status.matching),
             "call": peer.call,
         }
     )
-    os._exit(0)  # threads of the SDK would keep it for ever; its session is gone all the same
+    os._exit(0)  # threads of the SDK never end, although its session is closed
 
 
 if __name__ == "__main__":

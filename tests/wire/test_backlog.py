@@ -10,7 +10,7 @@ DEPTH = 2
 
 
 class Writer:
-    """A writer of two samples whose readers acknowledge when they are told to."""
+    """A writer with a queue of two samples; the test decides when its readers have acknowledged."""
 
     def __init__(self) -> None:
         self.written: list[int] = []

@@ -1,4 +1,4 @@
-"""What the `cyclonedds` command shows of us: a view from outside that knows nothing of ROS."""
+"""The output of the `cyclonedds` command about our participants: an outside view without any knowledge of ROS."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ pytestmark = pytest.mark.skipif(not TOOL.exists(), reason="the tool is not insta
 
 @pytest.fixture
 def tool(domain, monkeypatch):
-    def run(*words: str) -> str:
+    def run(*arguments: str) -> str:
         result = subprocess.run(
-            [str(TOOL), *words, "--suppress-progress-bar", "-r", "1s"],
+            [str(TOOL), *arguments, "--suppress-progress-bar", "-r", "1s"],
             capture_output=True,
             text=True,
             timeout=60,
@@ -37,26 +37,26 @@ def tool(domain, monkeypatch):
 def test_cyclonedds_ps_shows_participant(processes, tool, domain):
     process = processes("ours")
     process.node.create_publisher(JointState, "joint_states", 10)
-    shown = tool("ps", "-i", str(domain))
-    assert "linkwright/" in shown
-    assert str(os.getpid()) in shown
+    output = tool("ps", "-i", str(domain))
+    assert "linkwright/" in output
+    assert str(os.getpid()) in output
     for topic in ("ros_discovery_info", "rt/joint_states", "rt/rosout", "rq/ours/get_parametersRequest"):
-        assert topic in shown
+        assert topic in output
 
 
 def test_cyclonedds_ls_shows_endpoints_and_qos(processes, tool, domain):
     process = processes("ours")
     process.node.create_publisher(JointState, "joint_states", 7)
-    shown = tool("ls", "-i", str(domain), "-q", "-t", "rt/joint_states")
-    assert "sensor_msgs::msg::dds_::JointState_" in shown
-    assert "History.KeepLast(depth=7)" in shown
-    assert "Reliability.Reliable(max_blocking_time='100 milliseconds')" in shown
-    assert f"typehash={type_hash(JointState)};" in shown
-    assert "enclave=/;" in shown
+    output = tool("ls", "-i", str(domain), "-q", "-t", "rt/joint_states")
+    assert "sensor_msgs::msg::dds_::JointState_" in output
+    assert "History.KeepLast(depth=7)" in output
+    assert "Reliability.Reliable(max_blocking_time='100 milliseconds')" in output
+    assert f"typehash={type_hash(JointState)};" in output
+    assert "enclave=/;" in output
 
 
 def test_cyclonedds_typeof_shows_no_type_description(processes, tool, domain):
-    """Descriptions of types are not sent: rmw_fastrtps_cpp and Humble's Cyclone DDS do not get on with ours."""
+    """Type descriptions are not sent: rmw_fastrtps_cpp and Humble's Cyclone DDS do not cope with ours."""
     process = processes("ours")
     process.node.create_publisher(JointState, "joint_states", 10)
     assert "struct" not in tool("typeof", "rt/joint_states", "-i", str(domain))

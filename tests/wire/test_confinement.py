@@ -22,14 +22,14 @@ GROUP = "0xefff0001"
 
 
 def memberships() -> set[str]:
-    """The addresses that are the only source of the group of announcements on their interface."""
+    """Return the addresses that are the only source of the announcement group on their interface."""
     rows = [line.split() for line in Path("/proc/self/net/mcfilter").read_text().splitlines()[1:]]
     sources = [source for _, _, group, source, included, _ in rows if group == GROUP and int(included)]
     return {socket.inet_ntoa(int(source, 16).to_bytes(4, "big")) for source in sources}
 
 
 def join_network() -> Graph:
-    """Return a graph that is on the network as far as the settings allow."""
+    """Return a graph that has joined the network as far as the settings allow."""
     graph = Graph(threads=True)
     transport = join(graph)
     assert transport is not None

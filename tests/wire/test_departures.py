@@ -1,4 +1,4 @@
-"""Publishers that are lost, told from those that left."""
+"""Lost publishers, as distinct from those that left."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.graph import EndpointInfo, NodeIdentity, QoSProfile
 from linkwright.graph.faults import ExternalShutdownException
 from linkwright.messages import String
 from linkwright.wire.dds import departures
-from linkwright.wire.dds.departures import GRACE, WITHDRAWAL_TIMEOUT_S, DdsDepartureMonitor
+from linkwright.wire.dds.departures import GRACE_S, WITHDRAWAL_TIMEOUT_S, DdsDepartureMonitor
 from linkwright.wire.dds.discovery_info import NodeEntities, ParticipantEntities
 from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant
 from linkwright.wire.engine import ends_by_error
@@ -18,8 +18,8 @@ from linkwright.wire.engine import ends_by_error
 PARTICIPANT, WRITER, OTHER = b"p" * 16, b"w" * 16, b"o" * 16
 
 
-class Scene:
-    """A participant with a writer, as discovery tells of it, and who is told to be lost."""
+class DepartureScene:
+    """A discovered participant with two writers, and the publishers that were reported lost."""
 
     def __init__(self, participant: RemoteParticipant | None = None, *, watched: bool = True) -> None:
         self.time = 0.0
@@ -37,7 +37,7 @@ class Scene:
 
     def announce(self, *writers: bytes) -> None:
         nodes = [NodeEntities("/far", "talker", writers=writers)] if writers else []
-        self.remote.entities_announced(ParticipantEntities(PARTICIPANT, nodes))
+        self.remote.on_entities_announced(ParticipantEntities(PARTICIPANT, nodes))
 
     def after(self, seconds: float) -> float | None:
         self.time += seconds
@@ -45,7 +45,7 @@ class Scene:
 
 
 def test_withdrawn_publisher_is_not_lost():
-    scene = Scene()
+    scene = DepartureScene()
     scene.announce(OTHER)
     scene.remote.remove_endpoint(WRITER)
     assert scene.after(0.0) is None
@@ -54,7 +54,7 @@ def test_withdrawn_publisher_is_not_lost():
 
 
 def test_withdrawal_after_participant_removal_is_not_a_loss():
-    scene = Scene()
+    scene = DepartureScene()
     scene.remote.remove_participant(PARTICIPANT)
     assert scene.after(10.0) is not None
     scene.announce()
@@ -63,9 +63,9 @@ def test_withdrawal_after_participant_removal_is_not_a_loss():
 
 
 def test_participant_without_withdrawal_is_lost_with_its_publishers():
-    scene = Scene()
+    scene = DepartureScene()
     scene.remote.remove_participant(PARTICIPANT)
-    scene.after(10.0)  # what had come by then was not taken before
+    scene.after(10.0)  # samples received before the removal are read first
     assert not scene.lost
     scene.after(2 * WITHDRAWAL_TIMEOUT_S)
     (lost,) = scene.lost
@@ -77,12 +77,12 @@ def test_participant_without_withdrawal_is_lost_with_its_publishers():
 def test_participant_of_ended_process_is_lost_before_lease_expires(monkeypatch):
     running = True
     monkeypatch.setattr("linkwright.wire.dds.remote.is_process_running", lambda _: running)
-    scene = Scene(RemoteParticipant(PARTICIPANT, peer_process=7))
+    scene = DepartureScene(RemoteParticipant(PARTICIPANT, peer_process=7))
     assert scene.after(0.0) == departures.POLL_SECONDS
     running = False
     scene.after(1.0)
     assert not scene.lost
-    scene.after(2 * GRACE)
+    scene.after(2 * GRACE_S)
     assert [endpoint.name for endpoint in scene.lost] == ["/chatter"]
     scene.remote.remove_participant(PARTICIPANT)
     assert scene.after(2 * WITHDRAWAL_TIMEOUT_S) is None
@@ -91,7 +91,7 @@ def test_participant_of_ended_process_is_lost_before_lease_expires(monkeypatch):
 
 def test_process_that_ends_after_withdrawal_is_not_lost(monkeypatch):
     monkeypatch.setattr("linkwright.wire.dds.remote.is_process_running", lambda _: False)
-    scene = Scene(RemoteParticipant(PARTICIPANT, peer_process=7))
+    scene = DepartureScene(RemoteParticipant(PARTICIPANT, peer_process=7))
     scene.after(0.0)
     scene.announce()
     scene.remote.remove_participant(PARTICIPANT)
@@ -100,7 +100,7 @@ def test_process_that_ends_after_withdrawal_is_not_lost(monkeypatch):
 
 
 def test_departures_are_not_polled_without_watchers():
-    scene = Scene(RemoteParticipant(PARTICIPANT, peer_process=7), watched=False)
+    scene = DepartureScene(RemoteParticipant(PARTICIPANT, peer_process=7), watched=False)
     assert scene.after(0.0) is None
 
 
@@ -119,7 +119,7 @@ def test_destroyed_publisher_and_leaving_process_are_not_lost(processes, program
     process.node.create_subscription("rcl_interfaces/msg/Log", "/rosout", lambda _: None, 10).watch_lost(lost.append)
     process.spin_until(lambda: process.node.count_publishers("/rosout") == 2)
     marker.kill()
-    process.spin_until(lambda: lost)  # after those that left, if these were told, too
+    process.spin_until(lambda: lost)  # reports about the publishers that left would have come first
     assert {endpoint.node.name for endpoint in lost} == {"marker"}, lost
 
 
@@ -130,7 +130,7 @@ def test_program_that_ends_with_uncaught_exception_is_lost(processes, monkeypatc
     peer = processes("theirs")
     peer.node.create_publisher(String, "/other", 10)
     process.spin_until(lambda: process.node.count_publishers("/other") == 1)
-    monkeypatch.setattr(sys, "last_value", ValueError("nobody caught it"), raising=False)
+    monkeypatch.setattr(sys, "last_value", ValueError("not caught"), raising=False)
     peer.transport.close()  # as at the end of the program
     process.spin_until(lambda: lost)
     assert [endpoint.node.name for endpoint in lost] == ["theirs"]

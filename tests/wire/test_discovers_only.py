@@ -1,4 +1,4 @@
-"""Transports that only look: for verbs that ask what there is and speak to nobody."""
+"""Transports that only discover: for verbs that list the graph and take no part in it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.waiting import SECONDS, wait_until
 
 pytest.importorskip("cyclonedds", reason="there is no DDS here")
 
-on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the system does not tell who is there")
+on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the sockets of others are not listed")
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def observer():
 
 @pytest.fixture
 def never_settled(monkeypatch):
-    """Nobody concludes from silence that all have answered."""
+    """Never conclude from silence that all processes have answered."""
     monkeypatch.setattr(module, "SETTLE_TIME_S", float("inf"))
 
 
@@ -39,14 +39,14 @@ def test_discovers_only_transport_sees_others_and_is_not_seen(observer, processe
     graph, _ = observer
     node = graph.create_node("looks")
     node.create_publisher(String, "unheard", 10)
-    others = processes("others")
-    others.node.create_subscription(String, "chatter", print, 10)
-    assert others.transport.wait_until_ready(SECONDS)
+    other = processes("others")
+    other.node.create_subscription(String, "chatter", print, 10)
+    assert other.transport.wait_until_ready(SECONDS)
     wait_until(lambda: graph.count_subscribers("/chatter") == 1)
-    seen_by = processes("third")
-    seen_by.spin_until(lambda: seen_by.node.count_subscribers("chatter") == 1)
-    assert sorted(name for name, _ in seen_by.node.get_node_names_and_namespaces()) == ["others", "third"]
-    assert seen_by.node.count_publishers("unheard") == 0
+    third = processes("third")
+    third.spin_until(lambda: third.node.count_subscribers("chatter") == 1)
+    assert sorted(name for name, _ in third.node.get_node_names_and_namespaces()) == ["others", "third"]
+    assert third.node.count_publishers("unheard") == 0
 
 
 @on_linux
@@ -71,10 +71,10 @@ def test_wait_for_discovery_ends_when_all_processes_are_discovered(programs, nev
 @on_linux
 def test_unanswered_process_is_waited_for(observer, monkeypatch):
     _, transport = observer
-    here = 1
-    monkeypatch.setattr(module, "other_processes", lambda _domain: here)
+    process_count = 1
+    monkeypatch.setattr(module, "other_processes", lambda _domain: process_count)
     assert not transport._knows_all_processes()
-    here = 0
+    process_count = 0
     assert transport._knows_all_processes()
 
 

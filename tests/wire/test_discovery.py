@@ -40,9 +40,9 @@ def test_graph_watchers_are_notified(processes):
     a.transport.watch(lambda: changes.append(1))
     b = processes("b")
     a.spin_until(lambda: changes and "b" in names(a))
-    seen = len(changes)
+    count_before = len(changes)
     b.node.create_publisher(String, "chatter", 10)
-    a.spin_until(lambda: len(changes) > seen and a.node.count_publishers("chatter") == 1)
+    a.spin_until(lambda: len(changes) > count_before and a.node.count_publishers("chatter") == 1)
 
 
 def test_endpoints_of_nodes_are_discovered(processes):
@@ -74,13 +74,13 @@ def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeyp
 
     announced = []
     other = processes("other")
-    entities_announced = other.transport._remote.entities_announced
+    on_entities_announced = other.transport._remote.on_entities_announced
 
     def listen(entities: ParticipantEntities) -> None:
         announced.append(entities)
-        entities_announced(entities)
+        on_entities_announced(entities)
 
-    monkeypatch.setattr(other.transport._remote, "entities_announced", listen)
+    monkeypatch.setattr(other.transport._remote, "on_entities_announced", listen)
     monkeypatch.setattr(engine, "Engine", Late)
     monkeypatch.setattr(engine, "_FIRST_ANNOUNCE_SPAN", float("inf"))
     process = processes("ours", join_now=False)
@@ -108,7 +108,7 @@ def test_killed_process_and_its_successor_are_listed_once(processes, programs):
 
 
 def test_local_process_is_recognized_by_host_name_and_machine_id(monkeypatch):
-    """Fast DDS 3 tells the id, Fast DDS 2 and Cyclone tell the name."""
+    """Fast DDS 3 announces the machine ID, Fast DDS 2 and Cyclone the host name."""
     here = socket.gethostname()
     monkeypatch.setattr(discovery, "machine_id", lambda: "3d12")
     for text in ("3d12", f"{here}:0", here):
@@ -128,7 +128,7 @@ def test_fifty_nodes_with_services_are_discovered(processes, programs):
 
 
 def test_type_hash_of_fast_dds_request_is_not_service_hash():
-    """Its two halves tell each its own hash, where Cyclone's tell that of the service."""
+    """Request and response each announce their own hash; with Cyclone both announce that of the service."""
     hashes = {
         guid[:2]: [
             RemoteEndpoint(guid, 1, guid, False, topic, type_name, QoSProfile(1), {"typehash": "RIHS01_1"})

@@ -43,8 +43,8 @@ def test_layout_matches_rmw_dds_common():
     body += struct.pack("<I", 2) + b"/\0" + bytes(2)
     body += struct.pack("<I", 4) + b"abc\0"
     assert encode(info, 16) == b"\0\1\0\0" + gid + body + struct.pack("<I", 1) + second_gid + struct.pack("<I", 0)
-    padded = second_gid + bytes(8)
-    assert encode(info, 24) == b"\0\1\0\0" + gid + bytes(8) + body + struct.pack("<I", 1) + padded + struct.pack(
+    padded_gid = second_gid + bytes(8)
+    assert encode(info, 24) == b"\0\1\0\0" + gid + bytes(8) + body + struct.pack("<I", 1) + padded_gid + struct.pack(
         "<I", 0
     )
 

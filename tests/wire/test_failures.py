@@ -1,4 +1,4 @@
-"""What users' code raises in a thread of the transport is told, and the thread goes on."""
+"""Errors of users' code in a thread of the transport: they are reported, and the thread continues."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import threading
 
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
 from linkwright.messages import String, get_service
-from linkwright.wire.guarded_calls import guarded
+from linkwright.wire.guarded_calls import call_guarded
 from tests.waiting import wait_until
 from tests.wire.conftest import both_wires
 
@@ -14,8 +14,8 @@ SetBool = get_service("std_srvs/srv/SetBool")
 LASTING = QoSProfile(5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
-class Once:
-    """Calls something; the first time it fails instead."""
+class FailsOnce:
+    """A callable that raises an error the first time."""
 
     def __init__(self, call=lambda: None):
         self.call, self.calls = call, 0
@@ -27,11 +27,11 @@ class Once:
         return self.call(*arguments)
 
 
-def warnings_of(process, what):
+def warnings_of(process, prefix):
     return [
         text
         for text in process.warnings()
-        if text.startswith(what) and text.endswith("ValueError: the user's own mistake")
+        if text.startswith(prefix) and text.endswith("ValueError: the user's own mistake")
     ]
 
 
@@ -45,7 +45,7 @@ def test_failing_message_does_not_affect_others(processes):
     a, b = processes("a"), processes("b")
     texts = []
     subscription = b.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
-    subscription.receive = Once(subscription.receive)
+    subscription.receive = FailsOnce(subscription.receive)
     publisher = a.node.create_publisher(String, "chatter", 10)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     for word in ("one", "two", "three"):
@@ -58,11 +58,11 @@ def test_failing_message_does_not_affect_others(processes):
 @both_wires
 def test_failing_graph_watcher_does_not_affect_others(processes):
     a = processes("a")
-    failing, after = Once(), Once()
-    after.calls = 1
+    failing, succeeding = FailsOnce(), FailsOnce()
+    succeeding.calls = 1
     a.graph.watch(failing)
-    a.graph.watch(after)
-    a.transport.watch(Once())
+    a.graph.watch(succeeding)
+    a.transport.watch(FailsOnce())
     b = processes("b")
     b.node.create_service(SetBool, "flip", flip)
     client = a.node.create_client(SetBool, "flip")
@@ -70,7 +70,7 @@ def test_failing_graph_watcher_does_not_affect_others(processes):
     wait_until(lambda: "b" in a.node.get_node_names())
     wait_until(lambda: warnings_of(a, "a callback for changes to remote nodes failed:"))
     assert len(warnings_of(a, "a callback for changes to the graph failed:")) == 1
-    assert after.calls > 1
+    assert succeeding.calls > 1
 
 
 @both_wires
@@ -79,8 +79,8 @@ def test_failing_request_and_response_are_reported(processes):
     service = b.node.create_service(SetBool, "flip", flip)
     client = a.node.create_client(SetBool, "flip")
     assert client.wait_for_service(60)
-    service.receive = Once(service.receive)
-    client.announce = Once(client.announce)
+    service.receive = FailsOnce(service.receive)
+    client.announce = FailsOnce(client.announce)
     futures = [client.call_async(SetBool.Request(data=data)) for data in (True, True, False)]
 
     def both_spin():
@@ -95,7 +95,7 @@ def test_failing_request_and_response_are_reported(processes):
 
 
 def with_invalid_data(message, value):
-    """A message with a value that does not fit, which nothing has looked at."""
+    """Return a message with a value of the wrong type that was never checked."""
     message._data = value
     return message
 
@@ -135,8 +135,8 @@ def test_unserializable_queued_request_fails_and_next_is_answered(processes):
 
 
 def test_thread_continues_when_logging_fails(monkeypatch):
-    seen = []
-    monkeypatch.setattr(threading, "excepthook", lambda hook: seen.append((hook.exc_type, str(hook.exc_value))))
+    errors = []
+    monkeypatch.setattr(threading, "excepthook", lambda hook: errors.append((hook.exc_type, str(hook.exc_value))))
 
     def fail():
         raise ValueError("first")
@@ -144,7 +144,7 @@ def test_thread_continues_when_logging_fails(monkeypatch):
     def report(error):
         raise OSError(f"no log for '{error}'")
 
-    assert guarded(lambda: 5) == 5
-    assert guarded(fail) is None
-    assert guarded(fail, report) is None
-    assert seen == [(ValueError, "first"), (OSError, "no log for 'first'")]
+    assert call_guarded(lambda: 5) == 5
+    assert call_guarded(fail) is None
+    assert call_guarded(fail, report) is None
+    assert errors == [(ValueError, "first"), (OSError, "no log for 'first'")]

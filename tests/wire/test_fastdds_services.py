@@ -1,4 +1,4 @@
-"""Services with Fast DDS, played by a process that sends what it sends; `test_real_services` has the real one."""
+"""Services with Fast DDS, imitated by a process that sends the same packets; `test_real_services` has the real one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.messages import get_service, serialize
 from linkwright.wire.dds.fastdds_services import EarlyRequest, FastClient, FastServer
 from linkwright.wire.dds.rtps.messages import Data
 from linkwright.wire.dds.rtps.values import read_parameters, related_identity
-from tests.wire.test_failures import Once, warnings_of
+from tests.wire.test_failures import FailsOnce, warnings_of
 
 SetCameraInfo = get_service("sensor_msgs/srv/SetCameraInfo")
 LARGE = "x" * 300_000
@@ -44,7 +44,7 @@ def test_client_takes_response_with_its_identity(processes, programs, text):
     assert future.result().status_message == text
     assert not process.warnings()
     peer.end()
-    process.spin_until(lambda: not client.service_is_ready(), 5.0)  # it said so: its lease of 10 s need not run out
+    process.spin_until(lambda: not client.service_is_ready(), 5.0)  # it announced its end before its lease of 10 s
 
 
 @pytest.mark.parametrize("text", ["hej", LARGE])
@@ -54,7 +54,7 @@ def test_service_responds_with_identity_of_request(processes, programs, text):
     peer = programs("fast_peer")
     process.spin_until(lambda: peer.ask("is_matched"))
     answers = []
-    thread = threading.Thread(target=lambda: answers.append(peer.ask("ask", text)))
+    thread = threading.Thread(target=lambda: answers.append(peer.ask("call", text)))
     thread.start()
     process.spin_until(lambda: answers)
     thread.join()
@@ -82,11 +82,11 @@ def test_missing_socket_is_reported_once_and_other_services_work(processes, prog
     assert process.warnings() == ["Services and clients of nodes on Fast DDS are out of reach: no sockets today"]
 
 
-class _Heard:
-    """What a participant knows of one client's writer."""
+class _Participant:
+    """A participant that knows one client's writer."""
 
-    def __init__(self, heard_at, last):
-        self.heard_at, self.last = heard_at, last
+    def __init__(self, discovered_at, last_number):
+        self.discovered_at, self.last = discovered_at, last_number
 
     def add_writer(self, *_):
         return "writer"
@@ -96,7 +96,7 @@ class _Heard:
         return "reader"
 
     def matched_writers(self, _):
-        return {b"w" * 16: self.heard_at}
+        return {b"w" * 16: self.discovered_at}
 
     def last_of(self, *_):
         return self.last
@@ -109,36 +109,36 @@ class _Service:
     destroyed = False
 
     def __init__(self):
-        self.asked = []
+        self.requests = []
 
     def receive(self, request, _reply, request_id):
-        self.asked.append((request.camera_info.distortion_model, request_id.number))
+        self.requests.append((request.camera_info.distortion_model, request_id.number))
 
 
 def test_early_requests_get_numbers_before_first_received(monkeypatch):
     now = 100.0
     monkeypatch.setattr("linkwright.wire.dds.fastdds_services.time.monotonic", lambda: now)
-    service, participant = _Service(), _Heard(heard_at=None, last=7)
+    service, participant = _Service(), _Participant(discovered_at=None, last_number=7)
     server = FastServer(service, participant)
     for number, text in enumerate(["six", "seven"]):
         server.on_early_request(EarlyRequest(b"w" * 16, serialize(camera_request(text)), 1_000_000 * number, now))
     server.write_pending_replies()
-    assert service.asked == []
-    participant.heard_at = now
+    assert service.requests == []
+    participant.discovered_at = now
     server.write_pending_replies()
     assert server.has_more_to_do
     now += 0.2
     server.write_pending_replies()
-    assert service.asked == [("six", 6), ("seven", 7)]
+    assert service.requests == [("six", 6), ("seven", 7)]
     assert not server.has_more_to_do
     server.on_early_request(EarlyRequest(b"w" * 16, serialize(camera_request("eight")), 9_000_000, now))
-    assert not server.has_more_to_do  # what comes from now on comes with its number
+    assert not server.has_more_to_do  # from now on, requests have numbers
 
 
 def test_early_request_repeated_with_number_is_executed_once(monkeypatch):
     now = 100.0
     monkeypatch.setattr("linkwright.wire.dds.fastdds_services.time.monotonic", lambda: now)
-    service, participant = _Service(), _Heard(heard_at=now, last=1)
+    service, participant = _Service(), _Participant(discovered_at=now, last_number=1)
     server = FastServer(service, participant)
     server.on_early_request(EarlyRequest(b"w" * 16, serialize(camera_request("first")), 5_000_000, now))
     now += 0.2
@@ -146,7 +146,7 @@ def test_early_request_repeated_with_number_is_executed_once(monkeypatch):
     for number, text in enumerate(["first", "second"], 1):
         request = serialize(camera_request(text))
         participant.deliver(Data(b"w" * 12, b"r" * 4, b"w" * 16, number, "<", {}, request, 5_000_000 * number + 1))
-    assert service.asked == [("first", 1), ("second", 2)]
+    assert service.requests == [("first", 1), ("second", 2)]
 
 
 def test_replies_to_others_during_client_creation_are_ignored():
@@ -154,7 +154,7 @@ def test_replies_to_others_during_client_creation_are_ignored():
     inline, _ = read_parameters(related_identity(b"o" * 16, 1), 0, "<")
     reply = Data(b"s" * 12, b"r" * 4, b"s" * 16, 1, "<", inline, b"")
 
-    class Hasty:
+    class EarlyReplyParticipant:
         def add_reader(self, _topic, _type_name, _facts, on_data):
             on_data(reply)
             return SimpleNamespace(reader=SimpleNamespace(guid=b"r" * 16))
@@ -165,7 +165,7 @@ def test_replies_to_others_during_client_creation_are_ignored():
         def write(self, *_, **__):
             return 1
 
-    client = FastClient(CLIENT, Hasty(), lambda _: False)
+    client = FastClient(CLIENT, EarlyReplyParticipant(), lambda _: False)
     answers = []
     client.send(camera_request("hej"), answers.append)
     client._on_data(replace(reply, inline=read_parameters(related_identity(b"r" * 16, 1), 0, "<")[0], payload=ANSWER))
@@ -177,20 +177,20 @@ def test_error_in_participant_thread_is_reported_and_next_call_answered(processe
     client = process.node.create_client(SetCameraInfo, "/fast_echo")
     peer = programs("fast_peer")
     process.spin_until(client.service_is_ready)
-    client.announce = Once(client.announce)
+    client.announce = FailsOnce(client.announce)
     futures = [client.call_async(camera_request(text)) for text in ("one", "two")]
-    process.spin_until(lambda: all(future.done() for future in futures))
+    process.spin_until(lambda: all(call.done() for call in futures))
     assert warnings_of(process, "client of service '/fast_echo' failed:")
-    seen = []
-    monkeypatch.setattr(threading, "excepthook", lambda hook: seen.append((hook.thread.name, str(hook.exc_value))))
+    errors = []
+    monkeypatch.setattr(threading, "excepthook", lambda hook: errors.append((hook.thread.name, str(hook.exc_value))))
     participant = process.transport._engine._fast
-    participant.changed = Once(participant.changed)
+    participant.changed = FailsOnce(participant.changed)
     peer.end()
-    process.spin_until(lambda: seen)
-    assert seen == [("linkwright-rtps", "the user's own mistake")]
+    process.spin_until(lambda: errors)
+    assert errors == [("linkwright-rtps", "the user's own mistake")]
     programs("fast_peer")
     process.spin_until(lambda: participant.changed.calls > 2)
     process.spin_until(client.service_is_ready)
-    again = client.call_async(camera_request("again"))
-    process.spin_until(again.done)
-    assert again.result().status_message == "again"
+    call = client.call_async(camera_request("again"))
+    process.spin_until(call.done)
+    assert call.result().status_message == "again"

@@ -1,4 +1,4 @@
-"""How many other processes take part in a domain, by the ports that they listen on."""
+"""The number of other processes in a domain, counted by the ports on which they listen."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="look
 
 @pytest.fixture
 def tables(tmp_path):
-    """Writes the system's tables, of sockets at these ports."""
+    """Return a function that writes the system's tables with sockets at these ports."""
 
     def write(*ports: int, **inodes: int) -> object:
         lines = ["  sl  local_address rem_address   st ..."]
@@ -39,10 +39,10 @@ def tables(tmp_path):
         ((), 0),
         ((FIRST, FIRST + 1, FIRST + 10, FIRST + 11), 1),  # as Cyclone and Fast DDS listen
         ((FIRST, FIRST + 10, FIRST, FIRST + 12, FIRST, FIRST + 14), 3),
-        ((FIRST + 10, FIRST + 11, FIRST + 30), 2),  # on unicast alone
-        ((FIRST, FIRST), 2),  # on multicast alone, with unicast ports of the system's choice
+        ((FIRST + 10, FIRST + 11, FIRST + 30), 2),  # only unicast
+        ((FIRST, FIRST), 2),  # only multicast, with unicast ports that the system chose
         ((FIRST + 10, FIRST, FIRST), 2),
-        ((FIRST - 250, FIRST + 250, 53, 5353), 0),  # other domains, and what is not DDS
+        ((FIRST - 250, FIRST + 250, 53, 5353), 0),  # other domains, and sockets without DDS
     ],
 )
 def test_processes_are_counted_by_their_ports(tables, ports, count):
@@ -51,8 +51,8 @@ def test_processes_are_counted_by_their_ports(tables, ports, count):
 
 @on_linux
 def test_sockets_of_this_process_are_not_counted(tables):
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own:
-        inode = os.fstat(own.fileno()).st_ino
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own_socket:
+        inode = os.fstat(own_socket.fileno()).st_ino
         assert other_processes(DOMAIN, tables(FIRST, **{f"p{FIRST}": inode})) == 0
 
 

@@ -1,4 +1,4 @@
-"""Large samples for readers of Fast DDS, which go packet by packet; `test_real_ros` has a real reader."""
+"""Large samples for readers of Fast DDS, sent packet by packet; `test_real_ros` has a real reader."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ Image = get_message("sensor_msgs/msg/Image")
 ADDRESS = ("127.0.0.1", 7411)
 WRITER, READER = bytes(range(16)), bytes(range(100, 116))
 PACKET = 60_832
-"""What Linux counts for a packet with a full fragment."""
+"""The bytes that Linux charges to the buffer for a packet with a full fragment."""
 
 SMALL, LARGE = bytes(100), os.urandom(150_000)
 
 
 class Buffer:
-    """What waits in a receive buffer; it is looked at once a packet."""
+    """A receive buffer with a sequence of fill levels; the sender reads the level once a packet."""
 
-    def __init__(self, *waiting):
-        self.waiting = list(waiting)
+    def __init__(self, *levels):
+        self.levels = list(levels)
         self.pauses = 0
         self.receiver = Receiver(ADDRESS, self.look, self.pause)
         self.receiver.begin()
 
     def look(self, port):
         assert port == ADDRESS[1]
-        return self.waiting.pop(0) if len(self.waiting) > 1 else self.waiting[0]
+        return self.levels.pop(0) if len(self.levels) > 1 else self.levels[0]
 
     def pause(self, _):
         self.pauses += 1
@@ -52,7 +52,7 @@ def test_blocked_reader_is_waited_for_once():
     buffer.receiver.begin()
     assert not buffer.receiver.wait_for_room()
     assert buffer.pauses == pauses + 1
-    buffer.waiting = [0]
+    buffer.levels = [0]
     buffer.receiver.begin()
     assert buffer.receiver.wait_for_room()
 
@@ -75,20 +75,20 @@ def test_paced_sample_has_guid_of_writer():
     reader.close()
     fragments = [text for packet in packets for text in parse(packet, READER[:12])]
     assert [(text.writer, text.number, text.first, text.size) for text in fragments] == [
-        (WRITER, 7, which, len(LARGE)) for which in (1, 2, 3)
+        (WRITER, 7, number, len(LARGE)) for number in (1, 2, 3)
     ]
     assert {text.time for text in fragments} == {5_000_000_000}
     assert b"".join(text.payload for text in fragments) == LARGE
-    assert not list(parse(packets[0], WRITER[:12]))  # it is for the participant of the reader alone
+    assert not list(parse(packets[0], WRITER[:12]))  # other participants ignore it
 
 
-class Line:
-    """A writer, and what went by the pacer before it was written."""
+class Sender:
+    """A paced writer, with a log of the samples that its pacer sent and that it wrote."""
 
     def __init__(self, *, depth=10, readers=(READER,)):
         self.log = []
         self.works = True
-        self.added = 0
+        self.added_writers = 0
         self.readers = readers
         self.writer = PacedWriter(WRITER, depth, self.write, lambda: self.readers, self)
 
@@ -100,7 +100,7 @@ class Line:
         return {reader[:12]: ADDRESS for reader in readers}
 
     def add(self, _):
-        self.added += 1
+        self.added_writers += 1
 
     def send(self, guid, number, sample, _published, places):
         assert (guid, places) == (WRITER, {READER[:12]: ADDRESS})
@@ -115,7 +115,7 @@ class Line:
 
 
 def test_large_samples_are_sent_before_write_in_order():
-    line = Line()
+    line = Sender()
     line.publish(1, len(SMALL))
     line.publish(2, len(LARGE))
     line.publish(3, len(SMALL))
@@ -124,13 +124,13 @@ def test_large_samples_are_sent_before_write_in_order():
     line.send_all()
     assert line.log[1:] == [("sent", 2, 2), ("written", 2, False), ("written", 3, False)]
     assert line.writer.wait_until_written(0)
-    assert line.added == 1
+    assert line.added_writers == 1
     line.publish(4, len(SMALL))
     assert line.log[-1] == ("written", 4, True)
 
 
 def test_newer_samples_replace_queued_ones():
-    line = Line(depth=2)
+    line = Sender(depth=2)
     for number in (1, 2, 3):
         line.publish(number, len(LARGE))
     line.send_all()
@@ -138,14 +138,14 @@ def test_newer_samples_replace_queued_ones():
 
 
 def test_samples_are_written_at_once_without_fast_dds_readers():
-    line = Line(readers=())
+    line = Sender(readers=())
     line.publish(1, len(LARGE))
     assert line.log == [("written", 1, True)]
 
 
 def test_sequence_number_is_not_sent_with_two_samples():
-    """Cyclone has not written what was sent as number 1, and will give that number to the next sample."""
-    line = Line()
+    """Cyclone has not written sample 1, and will give that number to the next sample."""
+    line = Sender()
     line.works = False
     line.publish(1, len(LARGE))
     line.send_all()
@@ -155,7 +155,7 @@ def test_sequence_number_is_not_sent_with_two_samples():
 
 
 def test_closed_writer_sends_nothing():
-    line = Line()
+    line = Sender()
     line.publish(1, len(LARGE))
     line.writer.close()
     line.send_all()
@@ -163,7 +163,7 @@ def test_closed_writer_sends_nothing():
 
 
 def test_image_is_sent_packet_by_packet_before_cyclone(processes, monkeypatch):
-    """Cyclone's reader counts as one of Fast DDS here, and a socket of the test listens in its place."""
+    """Here, Cyclone's reader counts as one of Fast DDS, and a socket of the test listens in its place."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listening:
         listening.bind(("127.0.0.1", 0))
         listening.settimeout(60)

@@ -17,14 +17,14 @@ from tests.wire.programs import linkwright
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 GOALS = 100
 SIDES = [("theirs", "ours"), ("ours", "theirs")]
-"""Who asks, and who is asked."""
+"""The side of the client, and the side of the server."""
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 
 
 @pytest.fixture
 def peers(programs):
-    """Starts the program on one side or the other, under the name of its side."""
+    """Return a function that starts the program on a side, with the side's name as the node's name."""
 
     def start(side):
         if side == "theirs":
@@ -34,61 +34,61 @@ def peers(programs):
     return start
 
 
-@pytest.mark.parametrize(("asking", "asked"), SIDES)
+@pytest.mark.parametrize(("client_side", "server_side"), SIDES)
 @pytest.mark.parametrize("server_is_first", [True, False])
-def test_goal_is_executed_with_feedback(peers, asking, asked, server_is_first):
-    first, second = (asked, asking) if server_is_first else (asking, asked)
-    both = {first: peers(first), second: peers(second)}
-    message = both[asking].ask("act", f"/{asked}/fibonacci", 5)
+def test_goal_is_executed_with_feedback(peers, client_side, server_side, server_is_first):
+    first, second = (server_side, client_side) if server_is_first else (client_side, server_side)
+    peers_by_side = {first: peers(first), second: peers(second)}
+    message = peers_by_side[client_side].ask("send_goal", f"/{server_side}/fibonacci", 5)
     assert (message["accepted"], message["status"], message["sequence"]) == (True, "SUCCEEDED", [0, 1, 1, 2, 3, 5])
 
 
-@pytest.mark.parametrize(("asking", "asked"), SIDES)
-def test_goals_are_rejected_aborted_and_canceled(peers, asking, asked):
-    peers(asked)
-    asks = peers(asking)
-    action = f"/{asked}/fibonacci"
-    assert asks.ask("act", action, -1) == {"accepted": False}
-    assert asks.ask("act", action, 0)["status"] == "ABORTED"
-    message = asks.ask("act", action, 500, 3)
+@pytest.mark.parametrize(("client_side", "server_side"), SIDES)
+def test_goals_are_rejected_aborted_and_canceled(peers, client_side, server_side):
+    peers(server_side)
+    client = peers(client_side)
+    action = f"/{server_side}/fibonacci"
+    assert client.ask("send_goal", action, -1) == {"accepted": False}
+    assert client.ask("send_goal", action, 0)["status"] == "ABORTED"
+    message = client.ask("send_goal", action, 500, 3)
     assert message["status"] == "CANCELED"
     assert 4 < len(message["sequence"]) < 500
     assert message["feedback"][0] == [0, 1, 1]
 
 
-@pytest.mark.parametrize(("asking", "asked"), SIDES)
-def test_simultaneous_goals_get_their_own_results(peers, asking, asked):
-    peers(asked)
-    assert peers(asking).ask("acts_are_right", f"/{asked}/fibonacci", GOALS) == GOALS
+@pytest.mark.parametrize(("client_side", "server_side"), SIDES)
+def test_simultaneous_goals_get_their_own_results(peers, client_side, server_side):
+    peers(server_side)
+    assert peers(client_side).ask("count_correct_goals", f"/{server_side}/fibonacci", GOALS) == GOALS
 
 
-@pytest.mark.parametrize(("asking", "asked"), SIDES)
-def test_managed_node_changes_states(peers, asking, asked):
-    answers, asks = peers(asked), peers(asking)
-    asks.ask("watch", asked)
-    for peer in (asks, answers):
-        peer.ask_until(lambda known: known == [1, 1], "ends_of", f"/{asked}/transition_event")
-    assert asks.ask("state", asked) == "unconfigured"
-    assert asks.ask("possible", asked) == ["configure", "shutdown"]
+@pytest.mark.parametrize(("client_side", "server_side"), SIDES)
+def test_managed_node_changes_states(peers, client_side, server_side):
+    server, client = peers(server_side), peers(client_side)
+    client.ask("watch", server_side)
+    for peer in (client, server):
+        peer.ask_until(lambda counts: counts == [1, 1], "endpoint_counts", f"/{server_side}/transition_event")
+    assert client.ask("state", server_side) == "unconfigured"
+    assert client.ask("available_transitions", server_side) == ["configure", "shutdown"]
     for transition, state in (("configure", "inactive"), ("activate", "active"), ("deactivate", "inactive")):
-        assert asks.ask("change", asked, transition) is True
-        assert asks.ask("state", asked) == state
-    assert asks.ask("change", asked, "activate") is True
-    assert asks.ask("change", asked, "configure") is False
+        assert client.ask("change", server_side, transition) is True
+        assert client.ask("state", server_side) == state
+    assert client.ask("change", server_side, "activate") is True
+    assert client.ask("change", server_side, "configure") is False
     states = ["unconfigured", "configuring", "inactive", "activating", "active", "deactivating", "inactive"]
     states += ["activating", "active"]
-    steps = [[asked, *step] for step in pairwise(states)]
-    assert asks.ask_until(lambda seen: len(seen) >= len(steps), "changes_seen") == steps
+    steps = [[server_side, *step] for step in pairwise(states)]
+    assert client.ask_until(lambda transitions: len(transitions) >= len(steps), "watched_transitions") == steps
 
 
-@pytest.mark.parametrize(("asking", "asked"), SIDES)
-def test_parameter_events_are_received(peers, asking, asked):
-    hears, tells = peers(asking), peers(asked)
-    for peer in (hears, tells):
-        peer.ask_until(lambda known: known == [2, 2], "ends_of", "/parameter_events")
-    tells.ask("declare", "speed", 1.5)
-    tells.ask("set", "speed", 2.5)
-    events = hears.ask_until(lambda events: len(events) >= 2, "events_of", asked, "speed")
+@pytest.mark.parametrize(("client_side", "server_side"), SIDES)
+def test_parameter_events_are_received(peers, client_side, server_side):
+    observer, node = peers(client_side), peers(server_side)
+    for peer in (observer, node):
+        peer.ask_until(lambda counts: counts == [2, 2], "endpoint_counts", "/parameter_events")
+    node.ask("declare", "speed", 1.5)
+    node.ask("set", "speed", 2.5)
+    events = observer.ask_until(lambda events: len(events) >= 2, "events_of", server_side, "speed")
     assert events == [["new", "speed", 1.5], ["changed", "speed", 2.5]]
 
 
@@ -99,7 +99,7 @@ def test_verbs_use_actions_and_lifecycle_of_real_node(peers):
     )
     assert "Goal finished with status: SUCCEEDED" in out
     assert (err, status) == ("", 0)
-    # A verb that lists does not wait long for nodes that a busy machine has not let speak yet.
+    # A verb that lists waits only briefly; on a busy machine, nodes may announce themselves later.
     wait_until(lambda: linkwright("action", "list")[0] == "/theirs/fibonacci\n")
     wait_until(lambda: "    /theirs\n" in linkwright("action", "info", "/theirs/fibonacci")[0])
     wait_until(lambda: linkwright("lifecycle", "nodes")[0] == "/theirs\n")

@@ -25,14 +25,14 @@ def real_node(programs):
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_bag_records_real_node_and_plays_to_it(real_node, tmp_path, storage):
-    """Images, joint states and what was said before, each once and in order."""
+    """Record images, joint states and earlier latched messages, each once and in order."""
     bag = tmp_path / "bag"
     real = real_node()
     topics = ["/states_from_ros", "/images_from_ros", "/lasting_from_ros"]
     command = [sys.executable, "-m", "linkwright", "bag", "record", "-o", str(bag), "-s", storage, *topics]
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as recording:
         for kind in ("states_", "images_", "lasting_"):
-            real.ask_until(lambda count: count == 1, "listeners", kind)
+            real.ask_until(lambda count: count == 1, "subscription_count", kind)
         for number in range(STATES):
             real.ask("publish_state", ["a", "b"], [float(number), 0.5])
         real.ask("publish_images", IMAGES, 10.0)
@@ -41,14 +41,14 @@ def test_bag_records_real_node_and_plays_to_it(real_node, tmp_path, storage):
         real.ask("wait_for_all", "states_")
         recording.send_signal(signal.SIGINT)
         assert recording.wait(60) == 0
-    assert f"Count: {STATES} |" in counted(bag, "/states_from_ros")
-    assert f"Count: {IMAGES} |" in counted(bag, "/images_from_ros")
-    assert "Count: 1 |" in counted(bag, "/lasting_from_ros")
+    assert f"Count: {STATES} |" in info_line(bag, "/states_from_ros")
+    assert f"Count: {IMAGES} |" in info_line(bag, "/images_from_ros")
+    assert "Count: 1 |" in info_line(bag, "/lasting_from_ros")
     remapped = [f"{topic}:={topic.replace('from', 'to')}" for topic in topics]
     command = [sys.executable, "-m", "linkwright", "bag", "play", str(bag), "--start-paused", "--remap", *remapped]
     with subprocess.Popen(command, stdin=subprocess.DEVNULL) as playing:
         for topic in topics:
-            real.ask_until(lambda count: count == 1, "tellers", topic.replace("from", "to"))
+            real.ask_until(lambda count: count == 1, "publisher_count", topic.replace("from", "to"))
         resumed = linkwright("service", "call", "/rosbag2_player/resume", "rosbag2_interfaces/srv/Resume")
         assert resumed[2] == 0, resumed
         assert playing.wait(60) == 0
@@ -58,6 +58,6 @@ def test_bag_records_real_node_and_plays_to_it(real_node, tmp_path, storage):
     assert real.ask_until(bool, "received", "lasting_to_ros") == ["said before"]
 
 
-def counted(bag, topic):
-    """The line of ``bag info`` about a topic."""
+def info_line(bag, topic):
+    """Return the line of ``bag info`` about a topic."""
     return next(line for line in linkwright("bag", "info", str(bag))[0].splitlines() if f"{topic} " in line)

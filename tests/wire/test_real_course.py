@@ -1,4 +1,4 @@
-"""The nodes of the course's solutions run under the real rclpy, unchanged, beside ours; see `test_real_ros`."""
+"""The nodes of the course's solutions under the real rclpy, unchanged, together with ours; see `test_real_ros`."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ pytestmark = [
 
 @pytest.fixture(scope="module", params=["11"])
 def workspace(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Path:
-    """The workspace of a learner at the end of lesson 11, or of the lesson that the test names."""
+    """Return a learner's workspace at the end of lesson 11, or of the lesson that the test names."""
     folder = tmp_path_factory.mktemp("workspace")
     finish([lesson for lesson in load_course(find_course("robot")).lessons if lesson.id[:2] <= request.param], folder)
     return folder
@@ -40,25 +40,31 @@ def workspace(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureR
 
 @pytest.fixture
 def run(workspace):
-    """Starts an executable of the workspace in the real ROS 2; gone after the test."""
-    started: list[subprocess.Popen[str]] = []
+    """Return a function that starts an executable of the workspace in the real ROS 2; it is killed after the test."""
+    processes: list[subprocess.Popen[str]] = []
 
     def start(package: str, executable: str, *parameters: str) -> subprocess.Popen[str]:
         folder = workspace / "src" / package
         entry = source_programs(folder).entry_points[executable]
-        words = [word for parameter in parameters for word in ("-p", parameter)]
-        started.append(
+        arguments = [argument for parameter in parameters for argument in ("-p", parameter)]
+        processes.append(
             subprocess.Popen(
-                [PYTHON, "-c", f"from {entry.module} import {entry.function} as main; main()", "--ros-args", *words],
+                [
+                    PYTHON,
+                    "-c",
+                    f"from {entry.module} import {entry.function} as main; main()",
+                    "--ros-args",
+                    *arguments,
+                ],
                 env={**os.environ, "PYTHONPATH": str(folder), "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"},
                 stderr=subprocess.PIPE,
                 text=True,
             )
         )
-        return started[-1]
+        return processes[-1]
 
     yield start
-    for process in started:
+    for process in processes:
         process.kill()
         process.wait()
         assert process.stderr is not None
@@ -67,7 +73,7 @@ def run(workspace):
 
 @pytest.fixture
 def velocities(processes):
-    """Our node, and what it hears on /cmd_vel."""
+    """Return a node of ours, and the commands that it receives on /cmd_vel."""
     process = processes("ours")
     commands: list[tuple[float, float]] = []
     process.node.create_subscription(
@@ -77,7 +83,7 @@ def velocities(processes):
 
 
 def interrupt(process: subprocess.Popen[str]) -> str:
-    """End a program as Ctrl-C does, while nobody publishes to it, and return its errors.
+    """End a program as Ctrl-C does, while it receives no messages, and return its errors.
 
     In the middle of taking a message, rclpy turns Ctrl-C into a RuntimeError.
     """

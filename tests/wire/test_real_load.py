@@ -1,4 +1,4 @@
-"""Much at once between nodes of real ROS 2 on Fast DDS and ours; see `test_real_ros`.
+"""Many simultaneous calls and goals between nodes of real ROS 2 on Fast DDS and ours; see `test_real_ros`.
 
 Both sides run one program, `load_peer`: one with the real rclpy, one with ours.
 """
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 
 @pytest.fixture
 def peers(programs):
-    """Starts the program under a name, which says on which side."""
+    """Return a function that starts the program; its name says on which side."""
 
     def start(name):
         if name.startswith("theirs"):
@@ -35,13 +35,13 @@ def peers(programs):
 
 @pytest.mark.parametrize("server", ["theirs", "ours"])
 def test_thousand_mixed_calls_from_three_clients_are_answered(peers, server):
-    """None is lost, and none gets the answer to another one."""
+    """Every call gets its own response."""
     peers(server)
     clients = [peers(name) for name in CLIENTS]
     with ThreadPoolExecutor(len(clients)) as threads:
         share = CALLS // len(clients) + 1
         asking = [
-            threads.submit(client.ask_slowly, "storm", server, share, name)
+            threads.submit(client.ask_slowly, "count_correct_calls", server, share, name)
             for name, client in zip(CLIENTS, clients, strict=True)
         ]
         assert [future.result() for future in asking] == [share] * len(clients)
@@ -50,13 +50,13 @@ def test_thousand_mixed_calls_from_three_clients_are_answered(peers, server):
 @pytest.mark.parametrize(("asks", "answers"), [("theirs", "ours"), ("ours", "theirs")])
 def test_goals_are_canceled_and_preempted_under_load(peers, asks, answers):
     client, server, other = peers(asks), peers(answers), peers(f"{asks}_2")
-    client.ask("chatter", RATE, answers)
-    server.ask("chatter", RATE, asks)
+    client.ask("exchange_states", RATE, answers)
+    server.ask("exchange_states", RATE, asks)
     for peer in (client, server):
-        peer.ask_until(lambda heard: heard > RATE, "heard")
+        peer.ask_until(lambda heard: heard > RATE, "received_count")
     with ThreadPoolExecutor(1) as threads:
-        storm = threads.submit(other.ask_slowly, "storm", answers, CALLS // 4, "other")
-        ends = client.ask_slowly("goals", answers, GOALS)
+        storm = threads.submit(other.ask_slowly, "count_correct_calls", answers, CALLS // 4, "other")
+        ends = client.ask_slowly("run_goals", answers, GOALS)
         assert storm.result() == CALLS // 4
     cancelled = ["CANCELED" if number % 3 == 2 else "ABORTED" for number in range(GOALS - 1)]
     assert ends == [*cancelled, "SUCCEEDED"]

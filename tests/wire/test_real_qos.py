@@ -1,4 +1,4 @@
-"""Every quality of service between nodes of real ROS 2 on Fast DDS and ours, and the events of it; see `test_real_ros`.
+"""All qualities of service between nodes of real ROS 2 on Fast DDS and ours, with their events; see `test_real_ros`.
 
 Both sides run one program, `qos_peer`: one with the real rclpy, one with ours.
 """
@@ -16,7 +16,7 @@ from linkwright.standins.process import environment
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 SIDES = [("theirs", "ours"), ("ours", "theirs")]
-"""Who publishes, and who subscribes."""
+"""The side of the publisher, and the side of the subscription."""
 SENSOR_DATA = {"preset": "sensor_data"}
 LATCHED = {"durability": "transient_local", "depth": 1}
 LIVELY = {"lease": 1.0}
@@ -40,14 +40,14 @@ SERVED_BY = {
     "by hand": {"by hand"},
     "lively": {"by hand", "lively"},
 }
-"""What may be offered to who requests a profile."""
+"""The indices of the offered profiles that match each requested profile."""
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 
 
 @pytest.fixture
 def peers(programs, monkeypatch):
-    """Starts the program on one side or the other, under the name of its side."""
+    """Return a function that starts the program on a side, with the side's name as the node's name."""
     monkeypatch.setenv("ROS_DISTRO", "jazzy")  # rclpy's module of events has had its name since Iron
 
     def start(side):
@@ -58,7 +58,7 @@ def peers(programs, monkeypatch):
     return start
 
 
-@pytest.mark.parametrize(("says", "hears"), SIDES)
+@pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
 @pytest.mark.parametrize(
     ("offered", "requested", "policy"),
     [
@@ -70,120 +70,122 @@ def peers(programs, monkeypatch):
     ],
     ids=lambda value: str(getattr(value, "name", value)),
 )
-def test_incompatible_qos_is_reported_on_both_sides(peers, says, hears, offered, requested, policy):
-    publishes, subscribes = peers(says), peers(hears)
+def test_incompatible_qos_is_reported_on_both_sides(peers, publisher_side, subscriber_side, offered, requested, policy):
+    publishes, subscribes = peers(publisher_side), peers(subscriber_side)
     publishes.ask("publisher", "/topic", offered)
     subscribes.ask("subscription", "/topic", requested)
     for peer in (publishes, subscribes):
-        assert peer.ask_until(bool, "told", "/topic") == [["incompatible", int(policy)]]
+        assert peer.ask_until(bool, "events", "/topic") == [["incompatible", int(policy)]]
 
 
-@pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_only_compatible_qos_profiles_match(peers, says, hears):
-    publishes, subscribes = peers(says), peers(hears)
+@pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
+def test_only_compatible_qos_profiles_match(peers, publisher_side, subscriber_side):
+    publishes, subscribes = peers(publisher_side), peers(subscriber_side)
     fits = {}
     for number, (offered, requested) in enumerate(product(PROFILES, PROFILES)):
         topic = f"/topic_{number}"
         fits[topic] = offered in SERVED_BY[requested]
         publishes.ask("publisher", topic, PROFILES[offered])
         subscribes.ask("subscription", topic, PROFILES[requested])
-    publishes.ask_until(lambda counts: counts == {topic: int(fit) for topic, fit in fits.items()}, "listeners")
+    publishes.ask_until(
+        lambda counts: counts == {topic: int(fit) for topic, fit in fits.items()}, "subscription_counts"
+    )
     for topic in fits:
-        publishes.ask("keep_saying", topic, 1.0)
+        publishes.ask("keep_publishing", topic, 1.0)
     for topic, fit in fits.items():
         for peer in (publishes, subscribes):
-            answer = peer.ask_until(partial(has_event, "matched" if fit else "incompatible"), "told", topic)
+            answer = peer.ask_until(partial(has_event, "matched" if fit else "incompatible"), "events", topic)
             assert not has_event("incompatible" if fit else "matched", answer)
     for topic, fit in fits.items():
         if fit:
-            subscribes.ask_until(bool, "heard", topic)
-    assert [topic for topic, fit in fits.items() if not fit and subscribes.ask("heard", topic)] == []
+            subscribes.ask_until(bool, "received", topic)
+    assert [topic for topic, fit in fits.items() if not fit and subscribes.ask("received", topic)] == []
 
 
 def has_event(kind, events):
-    """Whether an event of a kind is among those that an endpoint was told of."""
+    """Return whether an endpoint's events have one of a kind."""
     return kind in [event for event, *_ in events]
 
 
-@pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_best_available_qos_always_matches(peers, says, hears):
-    publishes, subscribes = peers(says), peers(hears)
+@pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
+def test_best_available_qos_always_matches(peers, publisher_side, subscriber_side):
+    publishes, subscribes = peers(publisher_side), peers(subscriber_side)
     for number, offered in enumerate(({}, SENSOR_DATA, LATCHED, LIVELY)):
         publishes.ask("publisher", f"/topic_{number}", offered)
-        publishes.ask("say", f"/topic_{number}", "before")
+        publishes.ask("publish", f"/topic_{number}", "before")
     subscribes.ask("subscription", "/asks", LATCHED)
     for number in range(4):
-        # What is best is chosen among those that are known then.
-        subscribes.ask_until(lambda known: known == 1, "publishers", f"/topic_{number}")
+        # The best available profile depends on the publishers that are known at this time.
+        subscribes.ask_until(lambda count: count == 1, "publisher_count", f"/topic_{number}")
         subscribes.ask("subscription", f"/topic_{number}", {"preset": "best_available"})
-    publishes.ask_until(lambda counts: set(counts.values()) == {1}, "listeners")
+    publishes.ask_until(lambda counts: set(counts.values()) == {1}, "subscription_counts")
     publishes.ask("publisher", "/asks", {"preset": "best_available"})
-    publishes.ask_until(lambda counts: counts["/asks"] == 1, "listeners")
+    publishes.ask_until(lambda counts: counts["/asks"] == 1, "subscription_counts")
 
 
-@pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_missed_deadline_is_reported_on_both_sides(peers, says, hears):
-    """It begins with the first message, and is not missed while they come in time."""
-    publishes, subscribes = peers(says), peers(hears)
+@pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
+def test_missed_deadline_is_reported_on_both_sides(peers, publisher_side, subscriber_side):
+    """A deadline begins with the first message, and is not missed while messages come in time."""
+    publishes, subscribes = peers(publisher_side), peers(subscriber_side)
     for topic in ("/topic", "/silent"):
         publishes.ask("publisher", topic, {"deadline": 2.0})
         subscribes.ask("subscription", topic, {"deadline": 3.0})
-    publishes.ask_until(lambda counts: set(counts.values()) == {1}, "listeners")
-    publishes.ask("keep_saying", "/topic", 0.1)
-    subscribes.ask_until(lambda heard: len(heard) > 40, "heard", "/topic")
+    publishes.ask_until(lambda counts: set(counts.values()) == {1}, "subscription_counts")
+    publishes.ask("keep_publishing", "/topic", 0.1)
+    subscribes.ask_until(lambda texts: len(texts) > 40, "received", "/topic")
     for peer in (publishes, subscribes):
         assert missed(peer, "/topic") == 0
-    publishes.ask("fall_silent", "/topic")
+    publishes.ask("stop_publishing", "/topic")
     for peer in (publishes, subscribes):
-        peer.ask_until(lambda text: [kind for kind, *_ in text].count("deadline") >= 2, "told", "/topic")
+        peer.ask_until(lambda events: [kind for kind, *_ in events].count("deadline") >= 2, "events", "/topic")
         assert missed(peer, "/silent") == 0
 
 
 def missed(peer, topic):
-    """How many missed deadlines a side was told of."""
-    return [kind for kind, *_ in peer.ask("told", topic)].count("deadline")
+    """Return the number of missed deadlines that a side reported."""
+    return [kind for kind, *_ in peer.ask("events", topic)].count("deadline")
 
 
-@pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_liveliness_is_lost_and_regained(peers, says, hears):
-    """Asserted by hand, and let go."""
-    publishes, subscribes = peers(says), peers(hears)
+@pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
+def test_liveliness_is_lost_and_regained(peers, publisher_side, subscriber_side):
+    """Liveliness that is asserted by hand and then runs out."""
+    publishes, subscribes = peers(publisher_side), peers(subscriber_side)
     by_hand = {"liveliness": "manual_by_topic", "lease": 1.0}
     publishes.ask("publisher", "/topic", by_hand)
     subscribes.ask("subscription", "/topic", by_hand)
-    publishes.ask_until(lambda counts: counts["/topic"] == 1, "listeners")
+    publishes.ask_until(lambda counts: counts["/topic"] == 1, "subscription_counts")
     publishes.ask("assert_liveliness", "/topic")
-    subscribes.ask_until(lambda text: ["alive", 1, 0] in text, "told", "/topic")
-    subscribes.ask_until(lambda text: ["alive", 0, 1] in text, "told", "/topic")
-    publishes.ask_until(lambda text: "lost" in [kind for kind, *_ in text], "told", "/topic")
-    publishes.ask("say", "/topic", "still here")
-    subscribes.ask_until(lambda text: text.count(["alive", 1, 0]) >= 2, "told", "/topic")
+    subscribes.ask_until(lambda events: ["alive", 1, 0] in events, "events", "/topic")
+    subscribes.ask_until(lambda events: ["alive", 0, 1] in events, "events", "/topic")
+    publishes.ask_until(lambda events: "lost" in [kind for kind, *_ in events], "events", "/topic")
+    publishes.ask("publish", "/topic", "still here")
+    subscribes.ask_until(lambda events: events.count(["alive", 1, 0]) >= 2, "events", "/topic")
 
 
-@pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_killed_publisher_loses_liveliness(peers, says, hears):
-    publishes, subscribes = peers(says), peers(hears)
+@pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
+def test_killed_publisher_loses_liveliness(peers, publisher_side, subscriber_side):
+    publishes, subscribes = peers(publisher_side), peers(subscriber_side)
     publishes.ask("publisher", "/topic", LIVELY)
     subscribes.ask("subscription", "/topic", LIVELY)
-    subscribes.ask_until(lambda text: ["alive", 1, 0] in text, "told", "/topic")
+    subscribes.ask_until(lambda text: ["alive", 1, 0] in text, "events", "/topic")
     publishes.kill()
-    subscribes.ask_until(lambda text: text[-1][:2] == ["alive", 0] or ["alive", 0, 1] in text, "told", "/topic")
-    subscribes.ask_until(lambda text: ["matched", 0] in text, "told", "/topic")
+    subscribes.ask_until(lambda text: text[-1][:2] == ["alive", 0] or ["alive", 0, 1] in text, "events", "/topic")
+    subscribes.ask_until(lambda text: ["matched", 0] in text, "events", "/topic")
 
 
-@pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_message_beyond_its_lifespan_is_not_delivered(peers, says, hears):
-    publishes = peers(says)
+@pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
+def test_message_beyond_its_lifespan_is_not_delivered(peers, publisher_side, subscriber_side):
+    publishes = peers(publisher_side)
     for topic, lifespan in (("/short", 0.5), ("/long", 300.0)):
         publishes.ask("publisher", topic, {"durability": "transient_local", "lifespan": lifespan})
-        publishes.ask("say", topic, "old")
+        publishes.ask("publish", topic, "old")
     publishes.ask("publisher", "/clock", {})
-    publishes.ask("keep_saying", "/clock", 0.1)
-    subscribes = peers(hears)  # takes longer to start than the short one lives
+    publishes.ask("keep_publishing", "/clock", 0.1)
+    subscribes = peers(subscriber_side)  # takes longer to start than the short one lives
     subscribes.ask("subscription", "/clock", {})
-    subscribes.ask_until(lambda heard: len(heard) > 10, "heard", "/clock")
+    subscribes.ask_until(lambda texts: len(texts) > 10, "received", "/clock")
     for topic in ("/short", "/long"):
         subscribes.ask("subscription", topic, {"durability": "transient_local"})
-    assert subscribes.ask_until(bool, "heard", "/long") == ["old"]
-    publishes.ask("say", "/short", "new")
-    assert subscribes.ask_until(bool, "heard", "/short") == ["new"]
+    assert subscribes.ask_until(bool, "received", "/long") == ["old"]
+    publishes.ask("publish", "/short", "new")
+    assert subscribes.ask_until(bool, "received", "/short") == ["new"]

@@ -36,9 +36,9 @@ def test_robot_is_found_with_documented_variables(robot, monkeypatch) -> None:
         monkeypatch.setenv(name, str(own_domain()) if name == "ROS_DOMAIN_ID" else value)
     robot()
     assert "/from_ros" in run("topic list")[0].splitlines()
-    printed, errors, status = run("doctor")
+    output, errors, status = run("doctor")
     (shown,) = (line for block in blocks(PAGE) for line in block.text.splitlines() if ": 1 node, " in line)
-    assert (status, printed.partition("1 node, ")[0]) == (0, shown.partition("1 node, ")[0]), errors
+    assert (status, output.partition("1 node, ")[0]) == (0, shown.partition("1 node, ")[0]), errors
 
 
 @pytest.mark.parametrize(("transports", "found"), [("SHM", False), ("LARGE_DATA", False), ("DEFAULT", True)])

@@ -84,7 +84,7 @@ def test_domains_are_isolated(processes, real_node, domain):
 
 
 def test_late_node_sees_everything_after_wait_for_discovery(processes, real_node):
-    """Down to the last service, which Fast DDS tells some time after the first topic."""
+    """Even the last service, which Fast DDS announces some time after the first topic."""
     real_node()
     process = processes("ours")
     assert process.transport.wait_for_discovery(60)
@@ -112,7 +112,7 @@ def test_topics_work_in_both_directions(processes, real_node):
 
 
 def test_types_with_sequences_work_in_both_directions(processes, real_node):
-    """Cyclone cannot read what Fast DDS 3 says of these."""
+    """Cyclone cannot read the type information of Fast DDS 3 for these."""
     process = processes("ours")
     real = real_node()
     messages = []
@@ -167,7 +167,7 @@ def test_images_replaced_in_transit_do_not_stop_reader(processes, real_node):
 
 
 def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_node):
-    """Most packets of an image sent at once are lost, and nobody sends them again."""
+    """Without pacing, most packets of an image are lost, and they are not resent."""
     process = processes("ours")
     process.node.create_client(
         get_service("std_srvs/srv/SetBool"), "/flip"

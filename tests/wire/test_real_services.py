@@ -46,7 +46,7 @@ def wait_for_result(process, future):
 
 
 def ask_while_spinning(process, peer, *question):
-    """The answer to a question, for which our callbacks have to run meanwhile."""
+    """Ask the peer a question, and run our callbacks until it answers."""
     answers = []
     thread = threading.Thread(target=lambda: answers.append(peer.ask(*question)))
     thread.start()
@@ -77,7 +77,7 @@ def test_thousand_calls_from_real_client_get_their_own_responses(processes, real
 
 
 def test_first_call_of_first_real_node_is_answered(processes, real_node):
-    """It takes the service for ready as soon as it knows what Cyclone tells, so it asks before we know who it is."""
+    """The real node calls as soon as it has read Cyclone's announcement, before Linkwright has discovered it."""
     process = processes("ours")
     process.node.create_service(SetCameraInfo, "/our_echo", echo)
     for attempt in range(3):

@@ -1,6 +1,6 @@
-"""Transforms, and messages of a package of one's own, with nodes of real ROS 2; see `test_real_ros`.
+"""Transforms, and messages of a custom package, with nodes of real ROS 2; see `test_real_ros`.
 
-The wheels of ROS 2 have neither: `tools/ros_types.py` makes them, in the folder that LINKWRIGHT_ROS_TYPES names.
+The wheels of ROS 2 have neither: `tools/ros_types.py` builds them in the folder that LINKWRIGHT_ROS_TYPES names.
 """
 
 from __future__ import annotations
@@ -30,60 +30,60 @@ pytestmark = pytest.mark.skipif(
 
 
 @pytest.fixture
-def theirs(programs):
-    """Starts a program with the real rclpy and the types."""
+def start_real_program(programs):
+    """Return a function that starts a program with the real rclpy and the types."""
     variables = {"PYTHONPATH": f"{TYPES}/python", "LD_LIBRARY_PATH": f"{TYPES}/lib"}
     return lambda name: programs(name, "theirs", python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp", **variables)
 
 
 def transform(parent, child, x):
-    stamped = TransformStamped(child_frame_id=child)
-    stamped.header.frame_id = parent
-    stamped.transform.translation.x = x
-    return stamped
+    message = TransformStamped(child_frame_id=child)
+    message.header.frame_id = parent
+    message.transform.translation.x = x
+    return message
 
 
-def test_transform_chain_of_real_node_is_looked_up(processes, theirs):
-    """Fixed and moving transforms; the fixed ones also by who comes late."""
-    peer = theirs("tf_peer")
-    peer.ask("tell", "/tf_static", "map", "odom", 1.0)
+def test_transform_chain_of_real_node_is_looked_up(processes, start_real_program):
+    """Look up static and moving transforms; a late listener gets the static ones, too."""
+    peer = start_real_program("tf_peer")
+    peer.ask("publish_transform", "/tf_static", "map", "odom", 1.0)
     process = processes("ours")
     buffer = Buffer()
     TransformListener(buffer, process.node)
-    peer.ask("keep_telling", "odom", "base_link", 0.5)
+    peer.ask("keep_publishing", "odom", "base_link", 0.5)
     process.spin_until(lambda: buffer.can_transform("map", "base_link", Time()))
     assert buffer.lookup_transform("map", "base_link", Time()).transform.translation.x == 1.5
     assert process.node.get_publishers_info_by_topic("/tf")[0].qos_profile.durability.name == "VOLATILE"
 
 
-def test_linkwright_transforms_are_received_by_real_node(processes, theirs):
+def test_linkwright_transforms_are_received_by_real_node(processes, start_real_program):
     process = processes("ours")
     StaticTransformBroadcaster(process.node).sendTransform(
         [transform("map", "odom", 1.0), transform("base", "arm", 2.0)]
     )
-    moving = TransformBroadcaster(process.node)
-    peer = theirs("tf_peer")
-    fixed = peer.ask_until(lambda heard: len(heard) == 2, "heard", "/tf_static")
-    assert fixed == {"odom": ["map", 1.0], "arm": ["base", 2.0]}
-    process.spin_until(lambda: moving.pub_tf.get_subscription_count() == 1)
-    moving.sendTransform(transform("odom", "base", 0.25))
-    assert peer.ask_until(bool, "heard", "/tf") == {"base": ["odom", 0.25]}
+    moving_frames = TransformBroadcaster(process.node)
+    peer = start_real_program("tf_peer")
+    static_frames = peer.ask_until(lambda frames: len(frames) == 2, "received", "/tf_static")
+    assert static_frames == {"odom": ["map", 1.0], "arm": ["base", 2.0]}
+    process.spin_until(lambda: moving_frames.pub_tf.get_subscription_count() == 1)
+    moving_frames.sendTransform(transform("odom", "base", 0.25))
+    assert peer.ask_until(bool, "received", "/tf") == {"base": ["odom", 0.25]}
     assert all(
         type_hash("tf2_msgs/msg/TFMessage").removeprefix("RIHS01_") in text for text in peer.ask("hashes", "/tf")
     )
 
 
-def test_verbs_show_transforms_of_real_node(theirs):
-    peer = theirs("tf_peer")
-    peer.ask("tell", "/tf_static", "map", "odom", 1.0)
-    peer.ask("keep_telling", "odom", "base_link", 0.5)
+def test_verbs_show_transforms_of_real_node(start_real_program):
+    peer = start_real_program("tf_peer")
+    peer.ask("publish_transform", "/tf_static", "map", "odom", 1.0)
+    peer.ask("keep_publishing", "odom", "base_link", 0.5)
     assert "child_frame_id: odom" in linkwright("topic", "echo", "--once", "/tf_static")[0]
     assert "child_frame_id: base_link" in linkwright("topic", "echo", "--once", "/tf")[0]
 
 
-@pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_messages_and_services_of_custom_package(programs, tmp_path, says, hears):
-    """Here they are read from the files, there they were compiled from them."""
+@pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
+def test_messages_and_services_of_custom_package(programs, tmp_path, publisher_side, subscriber_side):
+    """Linkwright reads the types from their files; the real side has compiled ones."""
     package = tmp_path / "src" / "wire_msgs"
     shutil.copytree(Path(__file__).parent / "types" / "wire_msgs", package)
     (package / "package.xml").write_text("<package format='3'><name>wire_msgs</name><version>1.0.0</version></package>")
@@ -95,17 +95,19 @@ def test_messages_and_services_of_custom_package(programs, tmp_path, says, hears
         variables = {"PYTHONPATH": f"{TYPES}/python", "LD_LIBRARY_PATH": f"{TYPES}/lib"}
         return programs("typed_peer", side, python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp", **variables)
 
-    both = {side: start(side) for side in ("theirs", "ours")}
+    peers_by_side = {side: start(side) for side in ("theirs", "ours")}
     types = ["wire_msgs/msg/Part", "wire_msgs/msg/Whole"]
-    both[hears].ask("hear", types)
-    both[says].ask("say", types, SEEDS)
-    both[hears].ask_until(lambda counts: set(counts.values()) == {SEEDS}, "counts")
+    peers_by_side[subscriber_side].ask("subscribe", types)
+    peers_by_side[publisher_side].ask("publish", types, SEEDS)
+    peers_by_side[subscriber_side].ask_until(lambda counts: set(counts.values()) == {SEEDS}, "counts")
     for name in types:
-        assert both[hears].ask("heard", name) == both[says].ask("meant", name, SEEDS)
-    both[hears].ask("answer", ["wire_msgs/srv/Judge"])
-    requests, responses = both[hears].ask("meant_by", "wire_msgs/srv/Judge", SEEDS)
-    assert both[says].ask("ask", "wire_msgs/srv/Judge", SEEDS) == responses
-    assert both[hears].ask("asked", "wire_msgs/srv/Judge") == requests
-    if says == "ours":
-        (message,) = set(both["theirs"].ask("hashes", "wire_msgs/msg/Whole"))
-        assert message in both["ours"].ask("hashes", "wire_msgs/msg/Whole")
+        assert peers_by_side[subscriber_side].ask("received", name) == peers_by_side[publisher_side].ask(
+            "expected", name, SEEDS
+        )
+    peers_by_side[subscriber_side].ask("serve", ["wire_msgs/srv/Judge"])
+    requests, responses = peers_by_side[subscriber_side].ask("expected_calls", "wire_msgs/srv/Judge", SEEDS)
+    assert peers_by_side[publisher_side].ask("call", "wire_msgs/srv/Judge", SEEDS) == responses
+    assert peers_by_side[subscriber_side].ask("requests", "wire_msgs/srv/Judge") == requests
+    if publisher_side == "ours":
+        (message,) = set(peers_by_side["theirs"].ask("hashes", "wire_msgs/msg/Whole"))
+        assert message in peers_by_side["ours"].ask("hashes", "wire_msgs/msg/Whole")

@@ -1,4 +1,4 @@
-"""When what is known of other processes counts as all."""
+"""The time at which the remote graph counts as complete."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ def endpoint(guid, *, is_writer, topic=DISCOVERY_TOPIC):
 
 
 def test_graph_is_incomplete_until_writers_of_node_are_discovered(remote):
-    """Fast DDS tells one a second before the other."""
+    """Fast DDS announces one endpoint a second before the other."""
     assert not remote.is_complete()
     remote.add_endpoint(endpoint(LISTENER, is_writer=False))
     assert not remote.is_complete()
     remote.add_endpoint(endpoint(SPEAKER, is_writer=True))
     assert not remote.is_complete()
-    remote.entities_announced(ParticipantEntities(PARTICIPANT, [NodeEntities("/", "talker", writers=(TALKER,))]))
+    remote.on_entities_announced(ParticipantEntities(PARTICIPANT, [NodeEntities("/", "talker", writers=(TALKER,))]))
     assert not remote.is_complete()
     remote.add_endpoint(endpoint(TALKER, is_writer=True, topic="rt/chatter"))
     assert remote.is_complete()

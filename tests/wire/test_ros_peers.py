@@ -1,4 +1,4 @@
-"""Nodes of real ROS 2, played by a process that does on the wire what rmw_cyclonedds_cpp does."""
+"""Nodes of real ROS 2, imitated by a process that behaves on the wire like rmw_cyclonedds_cpp."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ def test_ros_node_and_endpoints_are_discovered(processes, programs, distribution
     assert seen[EndpointKind.SUBSCRIPTION, "/to_ros"].node == NodeIdentity("real_node", "/")
     assert seen[EndpointKind.SERVICE, "/ros_flip"].type_name == "std_srvs/srv/SetBool"
     assert seen[EndpointKind.CLIENT, "/our_flip"].node == NodeIdentity("real_node", "/")
-    hashed = seen[EndpointKind.PUBLISHER, "/from_ros"].type_hash
-    assert hashed == ("" if distribution == "humble" else type_hash(String))
+    hashes = seen[EndpointKind.PUBLISHER, "/from_ros"].type_hash
+    assert hashes == ("" if distribution == "humble" else type_hash(String))
 
 
 @pytest.mark.parametrize("other", ["", "humble", "jazzy"])
 def test_ros_node_sees_gids_of_its_own_size(processes, programs, distribution, other, monkeypatch):
-    """Whatever ROS_DISTRO says: what is heard counts."""
+    """The size follows the messages of the other node, whatever ROS_DISTRO says."""
     monkeypatch.setenv("ROS_DISTRO", other)
     process = processes("ours")
     publisher = process.node.create_publisher(String, "/to_ros", 10)
@@ -97,7 +97,7 @@ def test_client_is_answered_by_ros_service(processes, programs, distribution):
     client = process.node.create_client(SetBool, "/ros_flip")
     future = client.call_async(SetBool.Request(data=False))
     peer = programs("ros_peer", distribution, "real_node", "localhost")
-    process.spin_until(lambda: peer.ask("answer") or future.done())
+    process.spin_until(lambda: peer.ask("answer_requests") or future.done())
     process.spin_until(future.done)
     assert future.result() == SetBool.Response(success=True, message="by ROS")
     assert client.service_is_ready()
@@ -110,9 +110,11 @@ def test_endpoints_announce_type_hashes_and_client_ids(processes, programs):
     process.node.create_service(SetBool, "/asked", lambda _request, response: response)
     process.node.create_client(SetBool, "/asking")
     peer = programs("ros_peer", "jazzy", "real_node", "localhost")
-    wanted = {"rt/named", "rq/askedRequest", "rr/askedReply", "rq/askingRequest", "rr/askingReply"}
-    seen = peer.ask_until(lambda seen: wanted <= {endpoint[0] for endpoint in seen.values()}, "seen")
-    facts = {topic: (kind, data) for topic, kind, data, _ in seen.values()}
+    expected = {"rt/named", "rq/askedRequest", "rr/askedReply", "rq/askingRequest", "rr/askingReply"}
+    endpoints = peer.ask_until(
+        lambda endpoints: expected <= {endpoint[0] for endpoint in endpoints.values()}, "remote_endpoints"
+    )
+    facts = {topic: (kind, data) for topic, kind, data, _ in endpoints.values()}
     assert facts["rt/named"] == ("std_msgs::msg::dds_::String_", f"typehash={type_hash(String)};")
     for key, topics in (
         ("serviceid", ("rq/askedRequest", "rr/askedReply")),

@@ -1,4 +1,4 @@
-"""RTPS as bytes, and that everything arrives once however much is lost."""
+"""RTPS packets as bytes, and reliable delivery: every sample arrives once despite losses."""
 
 from __future__ import annotations
 
@@ -88,43 +88,43 @@ def test_endpoint_data_round_trips():
     assert discovery_data.read_participant(spdp) == discovery_data.ParticipantData(OURS, values.VENDOR, 10.0, AT, AT)
 
 
-class _Line:
-    """A writer of ours and a reader of theirs, with packets between them that may get lost."""
+class _LossyLink:
+    """A writer of ours and a reader of theirs; the packets between them may get lost."""
 
     def __init__(self, loss, seed=1):
         self.writer, self.reader = Writer(WRITER), Reader(READER)
         self.loss, self.random = loss, random.Random(seed)
-        self.got = []
+        self.received = []
         self.carry(self.reader.match(WRITER, AT) + self.writer.match(READER, AT))
 
     def carry(self, packets):
-        waiting = list(packets)
-        while waiting:
-            packet, _ = waiting.pop(0)
+        queue = list(packets)
+        while queue:
+            packet, _ = queue.pop(0)
             if self.random.random() < self.loss:
                 continue
-            for text in parse(packet, THEIRS if packet[8:20] == OURS else OURS):
-                waiting += self._said(text)
+            for submessage in parse(packet, THEIRS if packet[8:20] == OURS else OURS):
+                queue += self._receive(submessage)
 
-    def _said(self, said):
-        if isinstance(said, AckNack):
-            return self.writer.on_acknack(said)
-        if isinstance(said, NackFrag):
-            return self.writer.on_nack_frag(said)
-        if isinstance(said, Heartbeat):
-            return self.reader.on_heartbeat(said)
-        if isinstance(said, Gap):
-            self.reader.on_gap(said)
+    def _receive(self, submessage):
+        if isinstance(submessage, AckNack):
+            return self.writer.on_acknack(submessage)
+        if isinstance(submessage, NackFrag):
+            return self.writer.on_nack_frag(submessage)
+        if isinstance(submessage, Heartbeat):
+            return self.reader.on_heartbeat(submessage)
+        if isinstance(submessage, Gap):
+            self.reader.on_gap(submessage)
             return []
-        whole = self.reader.on_data(said)
-        self.got += [] if whole is None else [(whole.number, whole.payload)]
+        sample = self.reader.on_data(submessage)
+        self.received += [] if sample is None else [(sample.number, sample.payload)]
         return []
 
     def settle(self):
-        now = 1e9
+        time = 1e9
         for _ in range(400):
-            now += 10
-            self.carry(self.writer.remind(now))
+            time += 10
+            self.carry(self.writer.remind(time))
             if self.writer.next_reminder() is None:
                 return
         raise AssertionError("never acknowledged")
@@ -132,27 +132,27 @@ class _Line:
 
 @pytest.mark.parametrize("loss", [0.0, 0.3, 0.6])
 def test_samples_arrive_once_despite_loss(loss):
-    line = _Line(loss)
+    line = _LossyLink(loss)
     for number in range(50):
         line.carry(line.writer.write(b"\0\1\0\0" + number.to_bytes(4, "little")))
     line.settle()
-    assert sorted(line.got) == [(n + 1, b"\0\1\0\0" + n.to_bytes(4, "little")) for n in range(50)]
+    assert sorted(line.received) == [(n + 1, b"\0\1\0\0" + n.to_bytes(4, "little")) for n in range(50)]
 
 
 @pytest.mark.parametrize("loss", [0.0, 0.3])
 def test_fragments_are_reassembled(loss):
-    line = _Line(loss)
+    line = _LossyLink(loss)
     payload = random.Random(2).randbytes(FRAGMENT * 7 + 12)
     line.carry(line.writer.write(payload, inline=values.related_identity(READER, 9)))
     line.settle()
-    assert line.got == [(1, payload)]
+    assert line.received == [(1, payload)]
 
 
 def test_sample_for_other_reader_is_not_waited_for():
-    line = _Line(0.0)
+    line = _LossyLink(0.0)
     line.carry(line.writer.write(b"\0\1\0\0", to=b"somebody els"))
     line.carry(line.writer.write(b"\0\1\0\0mine", to=THEIRS))
-    assert line.got == [(2, b"\0\1\0\0mine")]
+    assert line.received == [(2, b"\0\1\0\0mine")]
     assert line.writer.next_reminder() is None
 
 

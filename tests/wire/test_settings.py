@@ -10,7 +10,7 @@ from linkwright.wire.dds.settings import Range, own_addresses, read_settings
 
 
 def elements(settings):
-    """What the preferred configuration says: path -> texts and attributes."""
+    """Return the preferred configuration: path -> texts and attributes."""
     settings_by_path = {}
 
     def walk(element, path):
@@ -57,7 +57,7 @@ def test_ros_variables_set_discovery_range(variables, expected):
 
 
 def permanent_peer(address: str) -> dict[str, str]:
-    """An address that is asked though nobody answers for long."""
+    """Return the settings of an address that is asked without a time limit."""
     return {"address": address, "PruneDelay": "inf"}
 
 
@@ -65,7 +65,7 @@ THIS_MACHINE = permanent_peer("127.0.0.1")
 
 
 def test_subnet_settings_match_rmw_cyclonedds_and_keep_own_machine():
-    """A node of Fast DDS that keeps to this machine listens for nobody else's announcements."""
+    """A node of Fast DDS that is limited to this machine ignores announcements of other machines."""
     settings = elements(
         read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_STATIC_PEERS": "192.0.2.7;host"})
     )
@@ -81,7 +81,7 @@ def test_subnet_settings_match_rmw_cyclonedds_and_keep_own_machine():
 
 
 def test_localhost_range_equals_own_machine():
-    """rmw_cyclonedds of Humble takes the loopback interface alone then, and Jazzy the one that Cyclone chooses."""
+    """Humble's rmw_cyclonedds then uses only the loopback interface, Jazzy's the one that Cyclone chooses."""
     machine = read_settings({}).configurations
     assert read_settings({"ROS_LOCALHOST_ONLY": "1"}).configurations == machine
     assert read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}).configurations == machine

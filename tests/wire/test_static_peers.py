@@ -1,4 +1,4 @@
-"""Machines that are asked without multicast, as ROS_STATIC_PEERS has them: they may come late, and again."""
+"""Machines that are reached without multicast, as with ROS_STATIC_PEERS: they may start late, and return."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from importlib.util import find_spec
 import pytest
 
 from tests.wire.programs import Program
-from tests.wire.zenoh.hosts import CLOUD, DESK, DESKS_CLOUD_ADDRESS, Hosts, why_not
+from tests.wire.zenoh.hosts import CLOUD, DESK, DESKS_CLOUD_ADDRESS, Hosts, unsupported_reason
 
 FORGOTTEN_AFTER = 2
 """Seconds after which Cyclone asks an address no more that does not answer; 30 by itself."""
 
 
 def configuration(interface: str) -> str:
-    """Cyclone's, without multicast."""
+    """Return a configuration of Cyclone without multicast."""
     return (
         "<CycloneDDS><Domain><General><AllowMulticast>false</AllowMulticast>"
         f"<Interfaces><NetworkInterface name='{interface}'/></Interfaces></General>"
@@ -33,7 +33,7 @@ pytestmark = [
 
 @pytest.fixture
 def hosts() -> Iterator[Hosts]:
-    reason = why_not()
+    reason = unsupported_reason()
     if reason:
         pytest.skip(reason)
     hosts = Hosts()

@@ -1,4 +1,4 @@
-"""The types of topics: told to others by name, made once a domain, and kept until it is closed."""
+"""The types of topics: announced by name, created once per domain, and kept until the domain is closed."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ TOGETHER = """
 
 
 def output_of(program: str) -> str:
-    """Of a process that ends well though freed memory is overwritten: what still looks at it goes wrong at once."""
+    """Run a program that must end well although freed memory is overwritten, and return its output."""
     result = subprocess.run(
         [sys.executable, "-X", "faulthandler", "-c", textwrap.dedent(program)],
         capture_output=True,
@@ -104,7 +104,7 @@ def output_of(program: str) -> str:
 
 @pytest.fixture
 def shared(processes, domain):
-    """The domain that two graphs of this process share."""
+    """Return the domain that two graphs of this process share."""
     processes("a"), processes("b")
     return opened._opened[domain]
 
@@ -113,22 +113,22 @@ def test_graphs_share_types_of_their_domain(shared, processes):
     for name in ("c", "d"):
         processes(name).node.create_publisher(String, "chatter", 10)
     assert shared.users == 4
-    described = shared.descriptions.message(String)
-    processes("e").spin_until(lambda: described in shared.types._type_addresses)
-    address = shared.types._type_addresses[described]
+    description = shared.descriptions.message(String)
+    processes("e").spin_until(lambda: description in shared.types._type_addresses)
+    address = shared.types._type_addresses[description]
     last = processes("f")
     last.node.create_subscription(String, "chatter", print, 10)
     last.spin_until(lambda: last.node.count_subscribers("/chatter") and last.node.count_publishers("/chatter") == 2)
-    assert shared.types._type_addresses[described] == address
+    assert shared.types._type_addresses[description] == address
 
 
 def test_type_outlives_its_last_topic(shared, processes):
-    described = shared.descriptions.message(Point)
+    description = shared.descriptions.message(Point)
     a = processes("short")
     a.node.create_publisher(Point, "points", 10)
-    a.spin_until(lambda: described in shared.types._type_addresses)
+    a.spin_until(lambda: description in shared.types._type_addresses)
     a.close()
-    assert described in shared.types._type_addresses
+    assert description in shared.types._type_addresses
 
 
 def test_closed_domain_frees_types(processes, domain):
@@ -164,7 +164,7 @@ def test_topic_rejected_by_cyclone_raises_error(processes):
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
 def test_repeated_graphs_do_not_leak_memory(domain):
-    assert float(output_of(CHURN)) < 3.0, "0.5 MB a graph, were its types made anew"
+    assert float(output_of(CHURN)) < 3.0, "0.5 MB a graph, if its types were created again"
 
 
 @pytest.mark.slow
@@ -175,6 +175,6 @@ def test_graphs_can_join_simultaneously(domain):
 @pytest.mark.parametrize("name", ["A_", "Ab_", "Abc_", "ParticipantEntitiesInfo_", "Müller_"])
 def test_empty_type_data_matches_cyclonedds(name):
     type_name = f"some_interfaces::msg::dds_::{name}"
-    described = make_idl_struct(name, type_name.replace("::", "."), {}, dataclassify=False)
-    described.__idl__.fill_type_data()
-    assert empty_type_data(type_name) == described.__idl__._xt_bytedata
+    description = make_idl_struct(name, type_name.replace("::", "."), {}, dataclassify=False)
+    description.__idl__.fill_type_data()
+    assert empty_type_data(type_name) == description.__idl__._xt_bytedata

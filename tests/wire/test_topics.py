@@ -243,12 +243,12 @@ def test_image_publisher_reuses_memory(processes):
     image = image_class(data=bytes(1_000_000))
 
     def new_pages():
-        before = resource.getrusage(resource.RUSAGE_THREAD).ru_minflt
+        memory_before = resource.getrusage(resource.RUSAGE_THREAD).ru_minflt
         for _ in range(10):
             for _ in range(8):
                 publisher.publish(image)
             assert publisher.wait_for_all_acked()
-        return resource.getrusage(resource.RUSAGE_THREAD).ru_minflt - before
+        return resource.getrusage(resource.RUSAGE_THREAD).ru_minflt - memory_before
 
     new_pages()
     assert new_pages() < 80 * 25  # an image has 245
@@ -282,7 +282,7 @@ def test_lost_liveliness_of_remote_publisher_is_reported(processes):
     b.spin_until(lambda: seen and seen[-1].not_alive_count == 1)
 
     def is_alive_again() -> bool:
-        publisher.publish(String())  # again and again: who is looked at too late has been silent for too long
+        publisher.publish(String())  # a publisher that is discovered late may already count as silent
         return seen[-1].alive_count == 1 and seen[-1].not_alive_count == 0
 
     b.spin_until(is_alive_again)
@@ -305,16 +305,16 @@ def test_best_available_qos_considers_remote_endpoints(processes):
 
 
 def test_shipped_message_types_can_be_described():
-    """To Cyclone, which makes a description of each when it is used first."""
+    """Cyclone creates a description of each type when it is first used."""
     pytest.importorskip("cyclonedds", reason="there is no DDS here")
     from linkwright.messages import shipped_packages
     from linkwright.wire.dds.type_descriptions import WireTypes
 
     types = WireTypes()
-    shipped = shipped_packages()
+    names = shipped_packages()
     for name in interface_names("msg"):
         package, _, short = name.split("/")
-        if package not in shipped:
+        if package not in names:
             continue
-        described = types.message(get_message(name))
-        assert described.__idl_typename__ == f"{package}.msg.dds_.{short}_"
+        descriptions = types.message(get_message(name))
+        assert descriptions.__idl_typename__ == f"{package}.msg.dds_.{short}_"

@@ -1,4 +1,4 @@
-"""Which transport a process has."""
+"""The choice of a process's transport."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ASKED = {"RMW_IMPLEMENTATION": ZENOH}
 
 @pytest.fixture
 def installed(monkeypatch):
-    """Has only some packages be installed."""
+    """Return a function that makes only these packages appear installed."""
 
     def only(*names: str) -> None:
         def find_spec(name: str) -> object:

@@ -1,4 +1,4 @@
-"""Settings of ROS 2 that no transport follows."""
+"""Settings of ROS 2 that no transport supports."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""A node that tells and hears transforms without tf2, with the real rclpy and tf2's messages; see `tools/ros_types.py`.
+"""A node that publishes and receives transforms with the real rclpy but without tf2_ros; see `tools/ros_types.py`.
 
-``$LINKWRIGHT_ROS_PYTHON -m tests.wire.tf_peer NODE_NAME``. The profiles are those of tf2_ros.
+``$LINKWRIGHT_ROS_PYTHON -m tests.wire.tf_peer NODE_NAME``. The QoS profiles are those of tf2_ros.
 """
 
 from __future__ import annotations
@@ -14,30 +14,38 @@ from tf2_msgs.msg import TFMessage
 
 from tests.wire.node_program import serve_node
 
-TELLS, TELLS_LASTING = QoSProfile(depth=100), QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-HEARS, HEARS_LASTING = QoSProfile(depth=100), QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+PUBLISHER_QOS, STATIC_PUBLISHER_QOS = (
+    QoSProfile(depth=100),
+    QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+)
+SUBSCRIPTION_QOS, STATIC_SUBSCRIPTION_QOS = (
+    QoSProfile(depth=100),
+    QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+)
 
 
 class TfPeer(Node):
     def __init__(self, name: str) -> None:
         super().__init__(name)
-        self._tells = {
-            "/tf": self.create_publisher(TFMessage, "/tf", TELLS),
-            "/tf_static": self.create_publisher(TFMessage, "/tf_static", TELLS_LASTING),
+        self._publishers = {
+            "/tf": self.create_publisher(TFMessage, "/tf", PUBLISHER_QOS),
+            "/tf_static": self.create_publisher(TFMessage, "/tf_static", STATIC_PUBLISHER_QOS),
         }
-        self._heard: dict[str, dict[str, list[Any]]] = {"/tf": {}, "/tf_static": {}}
-        for topic, qos in (("/tf", HEARS), ("/tf_static", HEARS_LASTING)):
-            self.create_subscription(TFMessage, topic, lambda text, topic=topic: self._hear(topic, text), qos)
+        self._received: dict[str, dict[str, list[Any]]] = {"/tf": {}, "/tf_static": {}}
+        for topic, qos in (("/tf", SUBSCRIPTION_QOS), ("/tf_static", STATIC_SUBSCRIPTION_QOS)):
+            self.create_subscription(
+                TFMessage, topic, lambda message, topic=topic: self._on_message(topic, message), qos
+            )
 
-    def tell(self, topic: str, parent: str, child: str, x: float) -> None:
-        self._tells[topic].publish(TFMessage(transforms=[self._transform(parent, child, x)]))
+    def publish_transform(self, topic: str, parent: str, child: str, x: float) -> None:
+        self._publishers[topic].publish(TFMessage(transforms=[self._transform(parent, child, x)]))
 
-    def keep_telling(self, parent: str, child: str, x: float) -> None:
-        self.create_timer(0.02, lambda: self.tell("/tf", parent, child, x))
+    def keep_publishing(self, parent: str, child: str, x: float) -> None:
+        self.create_timer(0.02, lambda: self.publish_transform("/tf", parent, child, x))
 
-    def heard(self, topic: str) -> dict[str, list[Any]]:
-        """Child frame -> parent frame, x, and the name of the node that tells it where one does."""
-        return self._heard[topic]
+    def received(self, topic: str) -> dict[str, list[Any]]:
+        """Return parent frame and x by child frame."""
+        return self._received[topic]
 
     def hashes(self, topic: str) -> list[str]:
         return [str(endpoint.topic_type_hash) for endpoint in self.get_publishers_info_by_topic(topic)]
@@ -48,13 +56,13 @@ class TfPeer(Node):
         transform.transform.translation.x = x
         return transform
 
-    def _hear(self, topic: str, said: Any) -> None:
-        for transform in said.transforms:
-            self._heard[topic][transform.child_frame_id] = [
+    def _on_message(self, topic: str, message: Any) -> None:
+        for transform in message.transforms:
+            self._received[topic][transform.child_frame_id] = [
                 transform.header.frame_id,
                 transform.transform.translation.x,
             ]
 
 
 if __name__ == "__main__":
-    serve_node(TfPeer, "tell keep_telling heard hashes")
+    serve_node(TfPeer, "publish_transform keep_publishing received hashes")

@@ -15,8 +15,8 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.xacro import expand
 from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import RefusalError, checked_keys
-from linkwright.xacro.expressions.functions import call
-from linkwright.xacro.expressions.symbols import MATHEMATICS, tokenize
+from linkwright.xacro.expressions.builtin_names import MATHEMATICS, tokenize
+from linkwright.xacro.expressions.calls import call
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.limits import Budget, Limits
 from tests.work import ends

@@ -1,4 +1,4 @@
-"""Linkwright refuses what ros/xacro refuses, apart from intended differences."""
+"""Linkwright rejects the documents that ros/xacro rejects, except for intended differences."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 @dataclass
 class Answer:
-    """What a command printed, and its exit status."""
+    """The output and the exit status of a command."""
 
     status: int
     out: str
@@ -23,7 +23,7 @@ class Answer:
 
 @pytest.fixture
 def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
-    """Writes a file of a robot's, put between the tags of the root, into the folder that is the current one."""
+    """Return a function that writes a robot's file into the current folder; it adds the tags of the root."""
     monkeypatch.chdir(tmp_path)
 
     def file(name: str, inside: str) -> Path:
@@ -38,7 +38,7 @@ def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
 
 @pytest.fixture
 def run(capsys: pytest.CaptureFixture[str]) -> Callable[..., Answer]:
-    """Runs ``linkwright xacro``."""
+    """Return a function that runs ``linkwright xacro``."""
 
     def command(*words: str) -> Answer:
         capsys.readouterr()

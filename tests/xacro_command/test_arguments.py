@@ -74,7 +74,9 @@ def test_arguments_in_unused_branches_and_macros_are_listed(write):
         '<xacro:macro name="m"><xacro:arg name="in_macro" default="1"/><l n="$(arg nowhere)"/></xacro:macro>',
     )
     found = listed(path)
-    assert list(found) == ["arm", "side", "in_macro"], "what only an uncalled macro asks for is not needed"
+    assert list(found) == ["arm", "side", "in_macro"], (
+        "an argument used only in a macro that is never called is not required"
+    )
     assert "nowhere" in listed(path, {"nowhere": "1"})
 
 

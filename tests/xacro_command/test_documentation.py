@@ -1,4 +1,4 @@
-"""What the page about xacro shows is what the program prints."""
+"""The examples of the page about xacro, compared with the program's output."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PAGES = [DOCS / "xacro.md", DOCS / "zh" / "xacro.md"]
 
 
 def printed(block: Block, run) -> tuple[str, str]:
-    """What a block gives on standard output and standard error."""
+    """Return a block's standard output and standard error."""
     if block.language == "python":
         out = io.StringIO()
         with redirect_stdout(out):

@@ -95,6 +95,6 @@ def test_incomplete_attributes_are_found(text, expected):
 
 @pytest.mark.parametrize("piece", ["<", "<!", "<![", '<a b="', "<!--", "<a '", "<a b=", '"', "<!DOCTYPE ["])
 def test_tokenizing_hostile_text_takes_linear_time(piece: str):
-    """A quadratic pattern would take minutes, and the test would run into its time limit."""
+    """A quadratic pattern would take minutes, and the test would reach its time limit."""
     attributes = [token.attributes() for token in tokens("<a " + piece * 200_000)]
     assert attributes

@@ -141,7 +141,7 @@ CASES = [
         says="write '&amp;'",
     ),
     wrong("body", "curved quotes", Edit(URDF, '"base_link"', '"base_link”'), says="in place of '”'"),
-    wrong("body", "full-width digits", Edit(URDF, '"0.20"', '"０.２０"'), says="English keyboard: '0.20'"),
+    wrong("body", "full-width digits", Edit(URDF, '"0.20"', '"０.２０"'), says="ASCII characters: '0.20'"),
     wrong("body", "a body above its frame", Edit(URDF, "<visual>", '<visual><origin xyz="0 0 0.08"/>'), says="center"),
     right("left-wheel", "a frame that is turned with its axis", *TURNED),
     wrong("left-wheel", "a frame that is turned alone", TURNED[0], says="the rpy of a joint's <origin> turns it"),

@@ -47,7 +47,7 @@ function start(app: HTMLElement, recordedElement: HTMLElement): void {
   const scene = h("main", { class: "scene-box" }, container, overlay);
   app.append(scene);
   const stage = createStage(container, session, new RecordedFiles(recording.files), theme);
-  if (stage) column.connectScene(stage.freeRoom);
+  if (stage) column.connectScene(stage.uncoveredArea);
   const actions = {
     lookFrom: (side: Parameters<typeof lookFrom>[0]): void => {
       if (stage) lookFrom(side, session, stage);

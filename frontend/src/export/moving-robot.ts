@@ -48,10 +48,10 @@ export class MovingRobot {
       const parent = table.parents[row] ?? -1;
       const pose = poses[row] ?? null;
       const parentPose = poses[parent] ?? null;
-      const driven = drivenJoints.get(name);
-      const joint = driven && driven.parentFrame === table.names[parent] ? driven.joint : null;
+      const drivenJoint = drivenJoints.get(name);
+      const joint = drivenJoint && drivenJoint.parentFrame === table.names[parent] ? drivenJoint.joint : null;
       const fixedPose = pose && parentPose ? parentPose.clone().invert().multiply(pose) : (pose?.clone() ?? new Matrix4());
-      return { parent, fixedPose, joint, leader: driven?.leader ?? "" };
+      return { parent, fixedPose, joint, leader: drivenJoint?.leader ?? "" };
     });
     this.order = sortParentsFirst(this.frames);
     // The fixed frame must not move, wherever it is in the tree. It is the frame whose recorded pose is the identity.

@@ -9,8 +9,8 @@ export interface ComparedRobot {
   marks: Record<string, Mark>;
 }
 
-/** A 1-based position in a source text. */
-export interface ComparedPlace {
+/** A location in a source file: `text` is shown to users, `file` and the 1-based `line` are for the Source panel. */
+export interface ComparedLocation {
   text: string;
   file: string;
   line: number;
@@ -28,8 +28,8 @@ export interface ComparedItem {
   element: string;
   element_kind: "link" | "joint";
   in_old: boolean;
-  old_place: ComparedPlace | null;
-  new_place: ComparedPlace | null;
+  old_place: ComparedLocation | null;
+  new_place: ComparedLocation | null;
 }
 
 /** The differences between two descriptions. */

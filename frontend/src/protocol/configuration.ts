@@ -116,7 +116,7 @@ export interface Configuration {
   unsaved: boolean;
   undo: EditName | null;
   redo: EditName | null;
-  own: boolean;
+  is_own: boolean;
   recent: string[];
   type: "configuration";
 }
@@ -134,14 +134,14 @@ export interface TopicChoice {
   classes: string[];
 }
 
-/** The display classes that can be added, and the topics. Response to `AskDisplayChoices`. */
+/** The display classes that can be added, and the topics. Response to `RequestDisplayChoices`. */
 export interface DisplayChoices {
   classes: DisplayClass[];
   topics: TopicChoice[];
   type: "display_choices";
 }
 
-/** The folders and configuration files in a server folder, by name. Response to `AskFolder`. */
+/** The folders and configuration files in a server folder, by name. Response to `RequestFolder`. */
 export interface Folder {
   path: string;
   parent: string | null;
@@ -225,14 +225,14 @@ export interface Redo {
 }
 
 /** A request for the classes that can be added and the topics that they can show. */
-export interface AskDisplayChoices {
-  type: "ask_display_choices";
+export interface RequestDisplayChoices {
+  type: "request_display_choices";
 }
 
 /** A request for the contents of a folder of the server. */
-export interface AskFolder {
+export interface RequestFolder {
   path: string | null;
-  type: "ask_folder";
+  type: "request_folder";
 }
 
 /** A request to open RViz's default configuration. */
@@ -269,8 +269,8 @@ export interface SaveConfiguration {
 }
 
 /** A request for the text of the configuration, to store it on the browser's machine. */
-export interface AskConfigurationText {
-  type: "ask_configuration_text";
+export interface RequestConfigurationText {
+  type: "request_configuration_text";
 }
 
 export type PanelName =

@@ -16,9 +16,9 @@ export interface ArgumentForm {
 }
 
 /** The values that the user has entered for arguments of the form. */
-export interface GiveArguments {
+export interface SetArguments {
   values: Record<string, string>;
-  type: "give_arguments";
+  type: "set_arguments";
 }
 
 /** A macro call or, if `macro` is empty, an include of a file. The position is 1-based. */
@@ -93,7 +93,7 @@ export interface JointDetails {
   written: Written;
 }
 
-/** The description of the robot of a RobotModel display. Response to `AskDescription`. */
+/** The description of the robot of a RobotModel display. Response to `RequestDescription`. */
 export interface Description {
   display: string;
   revision: number;
@@ -131,7 +131,7 @@ export interface InertiaFinding {
   hint: string;
 }
 
-/** All findings about a robot's masses and inertias. Response to `AskInertia`. */
+/** All findings about a robot's masses and inertias. Response to `RequestInertia`. */
 export interface InertiaFindings {
   display: string;
   revision: number;
@@ -140,22 +140,22 @@ export interface InertiaFindings {
 }
 
 /** A request for the details of a RobotModel display's links and joints. */
-export interface AskDescription {
+export interface RequestDescription {
   display: string;
-  type: "ask_description";
+  type: "request_description";
 }
 
 /** A request for a text of a description. An empty `file` means the expanded text. */
-export interface AskDescriptionText {
+export interface RequestDescriptionText {
   display: string;
   file: string;
-  type: "ask_description_text";
+  type: "request_description_text";
 }
 
 /** A request for the findings about masses and inertias. */
-export interface AskInertia {
+export interface RequestInertia {
   display: string;
-  type: "ask_inertia";
+  type: "request_inertia";
 }
 
 /** An additional note of a diagnostic, with its position. */

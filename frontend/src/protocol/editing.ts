@@ -21,7 +21,7 @@ export interface EditablePart {
 export interface EditableParts {
   display: string;
   link: string;
-  why_not: string;
+  refusal_reason: string;
   parts: EditablePart[];
   type: "editable_parts";
 }
@@ -57,10 +57,10 @@ export interface EditHistory {
 }
 
 /** A request for the editable parts of a link that the user has selected. */
-export interface AskEditableParts {
+export interface RequestEditableParts {
   display: string;
   link: string;
-  type: "ask_editable_parts";
+  type: "request_editable_parts";
 }
 
 /** A request to preview an edit that moves or rotates a part. */

@@ -3,21 +3,21 @@
 import type { View } from "./views-and-tools";
 
 /** A request to export the scene as a file. `view` is the current view of the page. */
-export interface AskExport {
+export interface RequestExport {
   format: "html" | "glb";
   view: View;
-  type: "ask_export";
+  type: "request_export";
 }
 
-/** The address of the exported file, for one download. Response to `AskExport`. */
+/** The address of the exported file, for one download. Response to `RequestExport`. */
 export interface ExportReady {
   url: string;
   name: string;
-  outside: string[];
+  outside_files: string[];
   type: "export_ready";
 }
 
-/** The reason why an export failed. Response to `AskExport`. */
+/** The reason why an export failed. Response to `RequestExport`. */
 export interface ExportFailed {
   message: string;
   type: "export_failed";

@@ -3,9 +3,6 @@
 import type { ComparedDescriptions } from "./comparison";
 import type {
   AddDisplay,
-  AskConfigurationText,
-  AskDisplayChoices,
-  AskFolder,
   Configuration,
   ConfigurationRefused,
   ConfigurationSaved,
@@ -25,6 +22,9 @@ import type {
   Redo,
   RemoveDisplays,
   RenameDisplay,
+  RequestConfigurationText,
+  RequestDisplayChoices,
+  RequestFolder,
   RevertConfiguration,
   SaveConfiguration,
   SetProperty,
@@ -34,29 +34,29 @@ import type {
 } from "./configuration";
 import type {
   ArgumentForm,
-  AskDescription,
-  AskDescriptionText,
-  AskInertia,
   Description,
   DescriptionChanged,
   DescriptionText,
   Diagnostics,
-  GiveArguments,
   InertiaFindings,
+  RequestDescription,
+  RequestDescriptionText,
+  RequestInertia,
+  SetArguments,
 } from "./description";
 import type { ImageBoxes, SolidBoxes } from "./detections";
 import type {
   ApplyEdit,
-  AskEditableParts,
   EditHistory,
   EditPreview,
   EditWritten,
   EditableParts,
   PreviewEdit,
   RedoEdit,
+  RequestEditableParts,
   UndoEdit,
 } from "./editing";
-import type { AskExport, ExportFailed, ExportReady } from "./export";
+import type { ExportFailed, ExportReady, RequestExport } from "./export";
 import type {
   EffortRings,
   GridSurface,
@@ -70,7 +70,6 @@ import type {
 import type { ImageFrame, ImageSize, OccupancyMap } from "./images";
 import type {
   AnswerStep,
-  AskCatchUp,
   CatchUp,
   CatchUpFiles,
   CheckStep,
@@ -78,6 +77,7 @@ import type {
   CourseProblem,
   CourseStep,
   OpenStep,
+  RequestCatchUp,
   StepChecks,
   TakeHint,
   TakeSolution,
@@ -86,7 +86,6 @@ import type { InteractiveMarkerMoved, InteractiveMarkerShape, MarkerFeedback, Ma
 import type { DisplayForgotten, FrameTable, Hello, ProgramIsLate, Received } from "./message";
 import type {
   AimTeleop,
-  AskFields,
   Drive,
   DumpParameters,
   LogLines,
@@ -95,6 +94,7 @@ import type {
   ParameterDump,
   ParameterNodes,
   ParameterResult,
+  RequestFields,
   SeriesStates,
   SetParameter,
   TeleopState,
@@ -109,22 +109,21 @@ import type {
   WatchTopics,
 } from "./monitor";
 import type { CommandNavigation, GoalOutcome, NavigationState, WatchNavigation } from "./navigation";
-import type { AskPoint, CellGrid, CloudPoints, PointFields } from "./points";
+import type { CellGrid, CloudPoints, PointFields, RequestPoint } from "./points";
 import type {
-  AskProvenance,
   CenterJoints,
   JointPositions,
   Joints,
   LinkProvenance,
   MeshStatus,
   RandomizeJoints,
+  RequestProvenance,
   RobotScene,
   SetJoint,
   SetJoints,
 } from "./robot";
 import type {
   AddEntity,
-  AskModels,
   ChangeEntities,
   ControlSimulation,
   CopyEntities,
@@ -137,6 +136,7 @@ import type {
   ModelingState,
   PushLink,
   RedoWorld,
+  RequestModels,
   SaveWorld,
   SetModeling,
   SimulationNotice,
@@ -146,15 +146,15 @@ import type {
   UngroupEntity,
 } from "./simulation";
 import type {
-  AskLanguageServer,
-  AskSourceFile,
-  AskSourceFolder,
+  CloseSourceFile,
   CreateSourceFile,
   EditorOpened,
-  LanguageServerAnswer,
   LanguageServerEnded,
-  LeaveSourceFile,
+  LanguageServerInput,
+  LanguageServerOutput,
   OpenEditor,
+  RequestSourceFile,
+  RequestSourceFolder,
   ShowUnsavedText,
   SourceFile,
   SourceFileWritten,
@@ -166,7 +166,7 @@ import type {
 import type {
   AcknowledgeTerminal,
   CloseTerminal,
-  LeaveTerminal,
+  HideTerminal,
   OpenTerminal,
   ProgramPages,
   ResizeTerminal,
@@ -218,12 +218,12 @@ import type {
 } from "./views-and-tools";
 import type { ConversationText, SayCommand, Talk, VoiceNode, VoiceState, WatchVoice } from "./voice";
 import type {
-  AskWordsFile,
   BeginTake,
   EndTake,
   ImportWords,
   RemoveWord,
   RenameWord,
+  RequestWordsFile,
   TakeJudged,
   VoiceWords,
   VoiceWordsFile,
@@ -293,8 +293,8 @@ export type ServerMessage =
   | InertiaFindings
   | JointPositions
   | Joints
-  | LanguageServerAnswer
   | LanguageServerEnded
+  | LanguageServerOutput
   | LinkProvenance
   | LogLines
   | ModelAdded
@@ -355,29 +355,13 @@ export type PageMessage =
   | AimTeleop
   | AnswerStep
   | ApplyEdit
-  | AskCatchUp
-  | AskConfigurationText
-  | AskDescription
-  | AskDescriptionText
-  | AskDisplayChoices
-  | AskEditableParts
-  | AskExport
-  | AskFields
-  | AskFolder
-  | AskInertia
-  | AskLanguageServer
-  | AskModels
-  | AskPoint
-  | AskProvenance
-  | AskSourceFile
-  | AskSourceFolder
-  | AskWordsFile
   | BeginTake
   | CatchUp
   | CenterJoints
   | ChangeEntities
   | ChangeSavedView
   | CheckStep
+  | CloseSourceFile
   | CloseTerminal
   | CommandNavigation
   | ControlSimulation
@@ -391,14 +375,13 @@ export type PageMessage =
   | DuplicateDisplays
   | ElementSelected
   | EndTake
-  | GiveArguments
   | GoLive
   | GroupDisplays
   | GroupEntities
+  | HideTerminal
   | ImageSize
   | ImportWords
-  | LeaveSourceFile
-  | LeaveTerminal
+  | LanguageServerInput
   | LoadConfiguration
   | MarkerFeedback
   | MeshStatus
@@ -425,6 +408,22 @@ export type PageMessage =
   | RemoveWord
   | RenameDisplay
   | RenameWord
+  | RequestCatchUp
+  | RequestConfigurationText
+  | RequestDescription
+  | RequestDescriptionText
+  | RequestDisplayChoices
+  | RequestEditableParts
+  | RequestExport
+  | RequestFields
+  | RequestFolder
+  | RequestInertia
+  | RequestModels
+  | RequestPoint
+  | RequestProvenance
+  | RequestSourceFile
+  | RequestSourceFolder
+  | RequestWordsFile
   | ResetTime
   | ResizeTerminal
   | RestartTerminal
@@ -436,6 +435,7 @@ export type PageMessage =
   | SaveWorld
   | SayCommand
   | SeekTime
+  | SetArguments
   | SetJoint
   | SetJoints
   | SetModeling

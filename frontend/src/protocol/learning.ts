@@ -67,7 +67,7 @@ export interface CourseProblem {
   type: "course_problem";
 }
 
-/** The files that `CatchUp` would write, as absolute paths. Response to `AskCatchUp`. */
+/** The files that `CatchUp` would write, as absolute paths. Response to `RequestCatchUp`. */
 export interface CatchUpFiles {
   address: string;
   new: string[];
@@ -103,8 +103,8 @@ export interface TakeSolution {
 }
 
 /** A request for the files that `CatchUp` would write. */
-export interface AskCatchUp {
-  type: "ask_catch_up";
+export interface RequestCatchUp {
+  type: "request_catch_up";
 }
 
 /** A request to bring the workspace into the course's state before the shown step. */

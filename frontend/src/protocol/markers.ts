@@ -43,7 +43,7 @@ export interface MarkerShape {
 /** The new and changed markers of Marker and MarkerArray, and the IDs of removed markers. */
 export interface MarkersChanged {
   everything: boolean;
-  gone: string[];
+  removed_ids: string[];
   markers: MarkerShape[];
   kind: "markers_changed";
 }

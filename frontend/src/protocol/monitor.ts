@@ -47,9 +47,9 @@ export interface TopicMessage {
 
 /** The topics that the page measures, shows with messages, and lists from now on. */
 export interface WatchTopics {
-  listed: boolean;
-  measured: string[];
-  opened: string[];
+  wants_list: boolean;
+  measured_topics: string[];
+  opened_topics: string[];
   type: "watch_topics";
 }
 
@@ -74,7 +74,7 @@ export interface SeriesState {
   error: string | null;
 }
 
-/** The fields of a topic that can be plotted. Response to `AskFields`. */
+/** The fields of a topic that can be plotted. Response to `RequestFields`. */
 export interface TopicFields {
   topic: string;
   kind: string;
@@ -90,9 +90,9 @@ export interface SeriesStates {
 }
 
 /** A request for the fields of a topic. */
-export interface AskFields {
+export interface RequestFields {
   topic: string | null;
-  type: "ask_fields";
+  type: "request_fields";
 }
 
 /** All series that the page plots from now on, and the duration that it shows, in seconds. */
@@ -182,7 +182,7 @@ export interface ParameterDump {
 
 /** Whether the page receives the list of nodes from now on, and whose parameters it shows. */
 export interface WatchParameters {
-  listed: boolean;
+  wants_list: boolean;
   node: string | null;
   type: "watch_parameters";
 }

@@ -25,7 +25,7 @@ export interface NavigationState {
   goal: GoalState;
   eta: number | null;
   distance: number | null;
-  taken: number | null;
+  elapsed: number | null;
   recoveries: number | null;
   busy: boolean;
   problem: string;

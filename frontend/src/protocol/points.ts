@@ -19,11 +19,11 @@ export interface CellGrid {
 }
 
 /** A request for the fields of a point that the user has selected. */
-export interface AskPoint {
+export interface RequestPoint {
   display: string;
   key: string;
   index: number;
-  type: "ask_point";
+  type: "request_point";
 }
 
 /** The channels of a point by name, in the order of the message. */

@@ -142,13 +142,13 @@ export interface MeshStatus {
 }
 
 /** A request for the source positions of a link selected in a RobotModel display. */
-export interface AskProvenance {
+export interface RequestProvenance {
   display: string;
   link: string;
-  type: "ask_provenance";
+  type: "request_provenance";
 }
 
-/** The source positions of a link and its macro calls, as lines. Response to `AskProvenance`. */
+/** The source positions of a link and its macro calls, as lines. Response to `RequestProvenance`. */
 export interface LinkProvenance {
   display: string;
   link: string;

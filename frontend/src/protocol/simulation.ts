@@ -124,8 +124,8 @@ export interface SaveWorld {
 }
 
 /** A request for the models on the search path. */
-export interface AskModels {
-  type: "ask_models";
+export interface RequestModels {
+  type: "request_models";
 }
 
 /** The state of the simulation. `present` is false if there is none. */

@@ -12,20 +12,20 @@ export interface OpenEditor {
 export interface EditorOpened {
   folder: string;
   uri: string;
-  why_not: string;
+  refusal_reason: string;
   type: "editor_opened";
 }
 
 /** A request for a file, and for its changes from now on. */
-export interface AskSourceFile {
+export interface RequestSourceFile {
   path: string;
-  type: "ask_source_file";
+  type: "request_source_file";
 }
 
 /** A notice that the page no longer needs the changes to a file. */
-export interface LeaveSourceFile {
+export interface CloseSourceFile {
   path: string;
-  type: "leave_source_file";
+  type: "close_source_file";
 }
 
 /** A file on the disk. */
@@ -34,7 +34,7 @@ export interface SourceFile {
   uri: string;
   version: number;
   text: string | null;
-  why_not: string;
+  refusal_reason: string;
   is_new: boolean;
   type: "source_file";
 }
@@ -89,12 +89,12 @@ export interface SourceFileWritten {
 }
 
 /** A request for the names in a folder of the workspace. */
-export interface AskSourceFolder {
+export interface RequestSourceFolder {
   path: string;
-  type: "ask_source_folder";
+  type: "request_source_folder";
 }
 
-/** The names of the subfolders and text files in a folder. Response to `AskSourceFolder`. */
+/** The names of the subfolders and text files in a folder. Response to `RequestSourceFolder`. */
 export interface SourceFolder {
   path: string;
   folders: string[];
@@ -103,16 +103,16 @@ export interface SourceFolder {
 }
 
 /** A message of the Language Server Protocol to the page's language server, as JSON. */
-export interface AskLanguageServer {
+export interface LanguageServerInput {
   content: string;
-  type: "ask_language_server";
+  type: "language_server_input";
 }
 
 /** A message of the Language Server Protocol from the page's language server, as JSON. */
-export interface LanguageServerAnswer {
+export interface LanguageServerOutput {
   number: number;
   content: string;
-  type: "language_server_answer";
+  type: "language_server_output";
 }
 
 /** A notice that the page's language server ended unexpectedly. */

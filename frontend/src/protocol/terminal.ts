@@ -11,7 +11,7 @@ export interface TerminalItem {
 export interface Terminals {
   folder: string;
   terminals: TerminalItem[];
-  why_not: string;
+  refusal_reason: string;
   type: "terminals";
 }
 
@@ -65,9 +65,9 @@ export interface ShowTerminal {
 }
 
 /** A notice that the page no longer shows a terminal, for example because its tab is hidden. */
-export interface LeaveTerminal {
+export interface HideTerminal {
   terminal: number;
-  type: "leave_terminal";
+  type: "hide_terminal";
 }
 
 /** Input for the program in a terminal. In binary input, each character is a byte. */

@@ -23,7 +23,7 @@ export interface HistoryExtent {
   start: number;
   end: number;
   size: number;
-  most: number;
+  max_size: number;
   type: "history_extent";
 }
 

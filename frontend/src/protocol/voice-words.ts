@@ -44,8 +44,8 @@ export interface ImportWords {
 }
 
 /** A request for the text of the file that contains the words. */
-export interface AskWordsFile {
-  type: "ask_words_file";
+export interface RequestWordsFile {
+  type: "request_words_file";
 }
 
 /** The enrolled words. */

@@ -4,9 +4,9 @@ export const SOUND_KIND = 5;
 
 export const SOUND_RATE = 16000;
 
-export const MOST_SAMPLES = 1600;
+export const MAX_SAMPLES = 1600;
 
-export const MOST_LOST_SAMPLES = 80000;
+export const MAX_LOST_SAMPLES = 80000;
 
 /** Whether there is a node that carries out spoken commands. */
 export interface VoiceNode {

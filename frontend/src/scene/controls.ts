@@ -16,7 +16,7 @@ const BUTTONS: readonly PointerButton[] = ["left", "middle", "right"];
 export class Controls {
   private readonly pointers = new Map<number, { x: number; y: number }>();
   private lastPosition = { x: 0, y: 0 };
-  private travelled = 0;
+  private travelledPx = 0;
   private isOver = false;
 
   constructor(
@@ -50,7 +50,7 @@ export class Controls {
     canvas.focus({ preventScroll: true });
     canvas.setPointerCapture(event.pointerId);
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    this.travelled = this.pointers.size > 1 ? CLICK_SLOP : 0;
+    this.travelledPx = this.pointers.size > 1 ? CLICK_SLOP : 0;
     this.isOver = true;
     this.lastPosition = { x: event.offsetX, y: event.offsetY };
     this.emit(this.eventOf("down", event));
@@ -60,7 +60,7 @@ export class Controls {
     const pointer = this.pointers.get(event.pointerId);
     const spread = this.measureFingerDistance();
     if (pointer) {
-      this.travelled += Math.hypot(event.clientX - pointer.x, event.clientY - pointer.y);
+      this.travelledPx += Math.hypot(event.clientX - pointer.x, event.clientY - pointer.y);
       pointer.x = event.clientX;
       pointer.y = event.clientY;
     }
@@ -83,7 +83,7 @@ export class Controls {
 
   private onPointerEnd(event: PointerEvent, isComplete: boolean): void {
     if (!this.pointers.delete(event.pointerId)) return;
-    const isClick = isComplete && this.travelled < CLICK_SLOP;
+    const isClick = isComplete && this.travelledPx < CLICK_SLOP;
     this.emit({ ...this.eventOf("up", event), click: isClick });
   }
 

@@ -28,7 +28,7 @@ export class DepthMap {
     const target = new WebGLRenderTarget(width, height, {
       depthTexture: new DepthTexture(width, height, UnsignedIntType),
     });
-    const packed = new WebGLRenderTarget(width, height);
+    const packedTarget = new WebGLRenderTarget(width, height);
     const quad = new ScreenQuad(
       new ShaderMaterial({
         vertexShader: SCREEN_VERTEX,
@@ -40,14 +40,14 @@ export class DepthMap {
     );
     renderer.setRenderTarget(target);
     renderer.render(scene, camera);
-    renderer.setRenderTarget(packed);
+    renderer.setRenderTarget(packedTarget);
     quad.render(renderer);
     this.pixels = new Uint8Array(width * height * 4);
-    renderer.readRenderTargetPixels(packed, 0, 0, width, height, this.pixels);
+    renderer.readRenderTargetPixels(packedTarget, 0, 0, width, height, this.pixels);
     renderer.setRenderTarget(null);
     quad.dispose();
     target.dispose();
-    packed.dispose();
+    packedTarget.dispose();
   }
 
   /** Whether a point, in normalized device coordinates (-1 to 1, y up), is not hidden. */

@@ -1,7 +1,7 @@
 import { Raycaster, Vector3, type Box3, type Matrix4 } from "three";
 import type { ViewState } from "../state/view";
 import type { ViewSize } from "../state/views/camera";
-import type { Span, Vector } from "../state/views/vector";
+import type { Bounds, Vector } from "../state/views/vector";
 import { orbitFrom } from "../state/views/orbit";
 import { computeViewAround, computeOverview } from "../state/views/surroundings";
 import type { ViewValues } from "../state/views/view-controller";
@@ -35,9 +35,9 @@ export function setInitialView(world: InitialViewWorld, view: ViewState, size: V
     return;
   }
   const boundsByKind = world.computeBoundsByKind();
-  const [robots, everything] = [spanOf(boundsByKind.robots), spanOf(boundsByKind.world)];
+  const [robots, worldBounds] = [boundsOf(boundsByKind.robots), boundsOf(boundsByKind.world)];
   if (robots) view.proposeValues(computeViewAround(view.values, robots, size, (eye, position) => canSee(world, eye, position)), SHOWS_ROBOTS, true);
-  else view.proposeValues(everything ? computeOverview(view.values, everything, size) : {}, SHOWS_WORLD, world.hasRobots);
+  else view.proposeValues(worldBounds ? computeOverview(view.values, worldBounds, size) : {}, SHOWS_WORLD, world.hasRobots);
 }
 
 /** Returns the values of an Orbit view that looks like a camera of the world's file, without its roll. */
@@ -63,6 +63,6 @@ function rayFrom(eye: Vector3, direction: Vector3, maxDistance = Infinity): Rayc
 }
 
 /** Returns the corners of a box; null for an empty box. */
-export function spanOf(box: Box3): Span | null {
+export function boundsOf(box: Box3): Bounds | null {
   return box.isEmpty() ? null : { min: box.min.toArray(), max: box.max.toArray() };
 }

@@ -6,8 +6,8 @@ import { framePose } from "./pose";
 import type { Stage } from "./stage";
 import type { ToolEvent } from "./tools/tool";
 
-/** The range on both sides of the last angle in which the angle is searched, rad, and the number of steps. */
-const REACH = Math.PI / 2;
+/** The range of the search on each side of the previous angle, rad, and its number of steps. */
+const SEARCH_RANGE = Math.PI / 2;
 const STEPS = 48;
 const REFINEMENTS = 24;
 /** The tools whose left button may also drag links. */
@@ -88,12 +88,12 @@ export class JointDrag {
     return true;
   }
 
-  private pull(hold: JointGrab, event: ToolEvent): void {
+  private pull(grab: JointGrab, event: ToolEvent): void {
     const { ray } = this.stage.picker.rayAt(event.x, event.y);
-    const { joint, axis, origin, grabPoint } = hold;
-    hold.movement =
-      joint.kind === "prismatic" ? slideTowards(ray, axis, grabPoint) : turnTowards(ray, axis, origin, grabPoint, hold.movement);
-    const target = this.session.joints.leaderOf(joint.name, hold.start + hold.movement);
+    const { joint, axis, origin, grabPoint } = grab;
+    grab.movement =
+      joint.kind === "prismatic" ? slideDistance(ray, axis, grabPoint) : turnAngle(ray, axis, origin, grabPoint, grab.movement);
+    const target = this.session.joints.leaderOf(joint.name, grab.start + grab.movement);
     if (!target) return;
     const { control, position } = target;
     this.session.joints.move({ [control.name]: Math.min(Math.max(position, control.lower), control.upper) });
@@ -125,12 +125,12 @@ export class JointDrag {
 }
 
 /** Returns the distance that a point must slide along an axis to come closest to a ray, m; 0 if they are parallel. */
-export function slideTowards(ray: Ray, axis: Vector3, grabPoint: Vector3): number {
-  const between = grabPoint.clone().sub(ray.origin);
+export function slideDistance(ray: Ray, axis: Vector3, grabPoint: Vector3): number {
+  const offset = grabPoint.clone().sub(ray.origin);
   const cosine = axis.dot(ray.direction);
   const sineSquared = 1 - cosine * cosine;
   if (sineSquared < 1e-6) return 0;
-  return (cosine * between.dot(ray.direction) - between.dot(axis)) / sineSquared;
+  return (cosine * offset.dot(ray.direction) - offset.dot(axis)) / sineSquared;
 }
 
 /**
@@ -139,7 +139,7 @@ export function slideTowards(ray: Ray, axis: Vector3, grabPoint: Vector3): numbe
  * The search starts at the previous angle, so that the point can turn more than once, and stays on its side of the
  * circle when the circle is seen edge-on, where both sides are equally close.
  */
-export function turnTowards(ray: Ray, axis: Vector3, origin: Vector3, grabPoint: Vector3, startAngle: number): number {
+export function turnAngle(ray: Ray, axis: Vector3, origin: Vector3, grabPoint: Vector3, startAngle: number): number {
   const arm = grabPoint.clone().sub(origin);
   const point = new Vector3();
   const distanceAt = (angle: number): number =>
@@ -147,11 +147,11 @@ export function turnTowards(ray: Ray, axis: Vector3, origin: Vector3, grabPoint:
   let bestAngle = startAngle;
   let minDistance = distanceAt(startAngle);
   for (let i = -STEPS; i <= STEPS; i++) {
-    const angle = startAngle + (REACH * i) / STEPS;
+    const angle = startAngle + (SEARCH_RANGE * i) / STEPS;
     const angleDistance = distanceAt(angle);
     if (angleDistance < minDistance) [bestAngle, minDistance] = [angle, angleDistance];
   }
-  for (let i = 0, step = REACH / STEPS; i < REFINEMENTS; i++, step /= 2) {
+  for (let i = 0, step = SEARCH_RANGE / STEPS; i < REFINEMENTS; i++, step /= 2) {
     for (const angle of [bestAngle - step, bestAngle + step]) {
       const angleDistance = distanceAt(angle);
       if (angleDistance < minDistance) [bestAngle, minDistance] = [angle, angleDistance];

@@ -138,29 +138,29 @@ export class MaterialPool {
   }
 }
 
-/** Returns a material that reflects lights and, as far as it is metallic, a gray room. */
+/** Returns a material that reflects lights and, as far as it is metallic, its environment: a gray room. */
 function createReflectiveMaterial(style: MeshStandardMaterialParameters, surface: Surface): MeshStandardMaterial {
-  const envMap = surface.metalness > 0 ? createRoomMap() : null;
+  const envMap = surface.metalness > 0 ? getEnvironmentMap() : null;
   const emissive = new Color(...surface.emissive);
   const material = new MeshStandardMaterial({ ...style, ...surface, emissive, envMap, envMapIntensity: surface.metalness });
   material.envMapRotation.x = Math.PI / 2; // the image has y up
   return material;
 }
 
-let cachedRoom: DataTexture | null = null;
+let environmentMap: DataTexture | null = null;
 
 /**
  * Returns the environment map that metal reflects in addition to lights; it would be black without one. The map is
  * bright above and dark below.
  */
-function createRoomMap(): DataTexture {
-  if (cachedRoom) return cachedRoom;
+function getEnvironmentMap(): DataTexture {
+  if (environmentMap) return environmentMap;
   const grays = [90, 90, 110, 150, 190, 215, 230, 240];
-  cachedRoom = new DataTexture(new Uint8Array(grays.flatMap((gray) => [gray, gray, gray, 255])), 1, grays.length);
-  cachedRoom.mapping = EquirectangularReflectionMapping;
-  cachedRoom.magFilter = cachedRoom.minFilter = LinearFilter;
-  cachedRoom.needsUpdate = true;
-  return cachedRoom;
+  environmentMap = new DataTexture(new Uint8Array(grays.flatMap((gray) => [gray, gray, gray, 255])), 1, grays.length);
+  environmentMap.mapping = EquirectangularReflectionMapping;
+  environmentMap.magFilter = environmentMap.minFilter = LinearFilter;
+  environmentMap.needsUpdate = true;
+  return environmentMap;
 }
 
 /** Loads the texture of a URDF material. */

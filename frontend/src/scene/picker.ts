@@ -1,9 +1,9 @@
 import { Box3, Raycaster, Vector2 } from "three";
 import type { Session } from "../state/session";
 import type { SelectedItem, SelectionMode } from "../state/selection";
-import { add, scale, type Span, type Vector } from "../state/views/vector";
+import { add, scale, type Bounds, type Vector } from "../state/views/vector";
 import { DepthMap } from "./depth-map";
-import { spanOf } from "./initial-view";
+import { boundsOf } from "./initial-view";
 import type { Drawing } from "./displays/drawing";
 import { PICKABLE } from "./layers";
 import type { DescriptionRow, Hit } from "./picking";
@@ -100,19 +100,19 @@ export class Picker {
 
   /** Returns the center of the selection, or of all selectable objects if nothing is selected. */
   centerOfSelection(): Vector | null {
-    const span = this.computeSelectionBounds() ?? this.computeAllBounds();
-    return span && scale(add(span.min, span.max), 0.5);
+    const bounds = this.computeSelectionBounds() ?? this.computeAllBounds();
+    return bounds && scale(add(bounds.min, bounds.max), 0.5);
   }
 
   /** Returns the bounding box of all selectable objects in the fixed frame. */
-  computeAllBounds(): Span | null {
+  computeAllBounds(): Bounds | null {
     const box = new Box3();
     for (const [, drawing] of this.listDrawings()) if (drawing.pick) box.expandByObject(drawing.root);
-    return spanOf(box);
+    return boundsOf(box);
   }
 
   /** Returns the bounding box of the selection in the fixed frame; null if nothing is selected. */
-  computeSelectionBounds(): Span | null {
+  computeSelectionBounds(): Bounds | null {
     const box = new Box3();
     for (const [display, drawing] of this.listDrawings()) {
       for (const item of this.session.selection.items) {
@@ -123,7 +123,7 @@ export class Picker {
         if (position) box.expandByPoint(position);
       }
     }
-    return spanOf(box);
+    return boundsOf(box);
   }
 
   private toDevice(x: number, y: number): Vector2 {

@@ -22,11 +22,11 @@ export class ScreenBox implements SelectionBox {
   }
 
   hasPoint(x: number, y: number, z: number): boolean {
-    const projected = this.corner.set(x, y, z, 1).applyMatrix4(this.toScreen);
-    if (projected.w <= 0 || Math.abs(projected.z) > projected.w) return false;
-    const [u, v] = [projected.x / projected.w, projected.y / projected.w];
+    const projectedCorner = this.corner.set(x, y, z, 1).applyMatrix4(this.toScreen);
+    if (projectedCorner.w <= 0 || Math.abs(projectedCorner.z) > projectedCorner.w) return false;
+    const [u, v] = [projectedCorner.x / projectedCorner.w, projectedCorner.y / projectedCorner.w];
     const isInside = u >= this.low.x && u <= this.high.x && v >= this.low.y && v <= this.high.y;
-    return isInside && this.isSeen(u, v, projected.z / projected.w);
+    return isInside && this.isSeen(u, v, projectedCorner.z / projectedCorner.w);
   }
 
   hasObject(object: Object3D): boolean {

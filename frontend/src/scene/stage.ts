@@ -2,7 +2,7 @@ import { Box3, Group, type Camera, type Object3D } from "three";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
 import type { Theme, ThemeState } from "../state/theme";
-import type { Span } from "../state/views/vector";
+import type { Bounds } from "../state/views/vector";
 import type { PanelHost } from "./displays/display-panel";
 import type { Drawing, DrawnScene } from "./displays/drawing";
 import { Pacing } from "./displays/pacing";
@@ -13,8 +13,8 @@ import { WorldDrawing } from "./displays/world";
 import { Backdrop } from "./backdrop";
 import { Flash } from "./flash";
 import { FocalShape } from "./focal-shape";
-import { setInitialView, spanOf } from "./initial-view";
-import { FreeRoom } from "./free-room";
+import { setInitialView, boundsOf } from "./initial-view";
+import { UncoveredArea } from "./uncovered-area";
 import { FINEST, FrameLoop, type Detail } from "./frame-loop";
 import { frameMaps } from "./map-look";
 import { InspectLayer } from "./inspect/inspect-layer";
@@ -61,7 +61,7 @@ export class Stage {
   /** The time when all meshes were drawn but no link had a pose. */
   private placelessSince: number | null = null;
   /** The part of the canvas that nothing covers. */
-  readonly freeRoom: FreeRoom;
+  readonly uncoveredArea: UncoveredArea;
 
   constructor(
     container: HTMLElement,
@@ -73,7 +73,7 @@ export class Stage {
   ) {
     this.meshes = new MeshLibrary(session.meshProgress, files, standIns);
     this.viewport = new Viewport(container, () => this.loop.redraw(NOT_ANTIALIASED));
-    this.freeRoom = new FreeRoom(this.viewport, () => this.computeRobotBounds(), () => this.viewport.aim(session.view), () => this.loop.invalidate());
+    this.uncoveredArea = new UncoveredArea(this.viewport, () => this.computeRobotBounds(), () => this.viewport.aim(session.view), () => this.loop.invalidate());
     this.picker = new Picker(this.viewport, session, () => this.iterateEnabledDrawings());
     this.outline = new Outline(this.viewport);
     const invalidate = (): void => this.loop.invalidate();
@@ -92,7 +92,7 @@ export class Stage {
     return this.hasRobotSettled || (startMs !== null && performance.now() - startMs > POSE_TIMEOUT_MS);
   }
 
-  /** Whether the last frame shows the current state, so that none is due. */
+  /** Whether the last frame shows the current state, so that no further frame is due. */
   get isSettled(): boolean {
     return this.loop.isSettled && ![...this.drawings.values()].some(({ pacing }) => pacing.isWaiting);
   }
@@ -108,7 +108,7 @@ export class Stage {
   }
 
   /** What is drawn of invisible properties, for tests. */
-  get inspected(): object {
+  get invisibleProperties(): object {
     return this.inspectLayer.inspect();
   }
 
@@ -141,13 +141,13 @@ export class Stage {
   /** Fits the whole selection, or everything if nothing is selected, into view from the current direction. */
   fit(): void {
     const box = this.picker.computeSelectionBounds() ?? this.computeAllBounds();
-    if (box) this.session.view.fit(box, this.freeRoom.center());
+    if (box) this.session.view.fit(box, this.uncoveredArea.center());
   }
 
   /** Fits all robots into view from the current direction. */
   fitRobots(): void {
-    const box = this.computeRobotSpan();
-    if (box) this.session.view.fit(box, this.freeRoom.center());
+    const box = this.computeSampledRobotBounds();
+    if (box) this.session.view.fit(box, this.uncoveredArea.center());
   }
 
   /** Notifies the drawings of the state of the Interact tool. */
@@ -255,7 +255,7 @@ export class Stage {
   private draw(detail: Detail): void {
     const { view } = this.session;
     this.viewport.share = detail.share;
-    frameMaps(this.iterateEnabledDrawings(), view, this.freeRoom);
+    frameMaps(this.iterateEnabledDrawings(), view, this.uncoveredArea);
     this.viewport.aim(view);
     this.focalShape.updatePose(view);
     const { lighting } = this;
@@ -309,8 +309,8 @@ export class Stage {
       const visibleKey = robots.flatMap((robot) => robot.visibleKey || []).join(";");
       const needsFit = view.awaitsFit(visibleKey);
       if (visibleKey === "" || !(needsFit || view.awaitsSize)) return;
-      const box = this.computeRobotSpan();
-      if (box && needsFit) view.fitFirst(box, this.freeRoom.center(), visibleKey);
+      const box = this.computeSampledRobotBounds();
+      if (box && needsFit) view.fitFirst(box, this.uncoveredArea.center(), visibleKey);
       if (box && isSettled) view.reportSize(box, Math.min(...robots.map((robot) => robot.computeGround())));
     }
     this.viewport.aim(view);
@@ -330,22 +330,22 @@ export class Stage {
     return [...this.iterateEnabledDrawings()].flatMap(([, drawing]) => (drawing instanceof WorldDrawing ? [drawing] : []));
   }
 
-  private computeRobotBounds(): Span | null {
-    return spanOf(this.listRobots().reduce((sum, robot) => sum.union(robot.computeBounds()), new Box3()));
+  private computeRobotBounds(): Bounds | null {
+    return boundsOf(this.listRobots().reduce((sum, robot) => sum.union(robot.computeBounds()), new Box3()));
   }
 
   /** Returns the bounding box of all robots, with sample points of their surfaces. */
-  private computeRobotSpan(): Span | null {
+  private computeSampledRobotBounds(): Bounds | null {
     const box = this.computeRobotBounds();
     const points = this.listRobots().flatMap((robot) => robot.visibleMeshes.flatMap((mesh) => samplePoints(mesh)));
     return box && points.length > 0 ? { ...box, points } : box;
   }
 
   /** Returns the bounding box of robots and the world's models; of all selectable objects if there are none. */
-  private computeAllBounds(): Span | null {
+  private computeAllBounds(): Bounds | null {
     const worldBounds = this.listWorlds().reduce((sum, world) => sum.union(world.computeBoundsByKind().world), new Box3());
     const allBounds = this.listRobots().reduce((sum, robot) => sum.union(robot.computeBounds()), worldBounds);
-    return spanOf(allBounds) ?? this.picker.computeAllBounds();
+    return boundsOf(allBounds) ?? this.picker.computeAllBounds();
   }
 
   /** Draws the displays that show the scene in their own panels. */

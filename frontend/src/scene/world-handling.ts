@@ -85,19 +85,19 @@ export class WorldHandling {
     return true;
   }
 
-  private move(hold: ModelGrab, event: ToolEvent): void {
-    const target = this.stage.picker.rayAt(event.x, event.y).ray.intersectPlane(hold.plane, new Vector3());
+  private move(grab: ModelGrab, event: ToolEvent): void {
+    const target = this.stage.picker.rayAt(event.x, event.y).ray.intersectPlane(grab.plane, new Vector3());
     if (!target) return;
-    if (hold.isPull) {
-      hold.target.copy(target);
+    if (grab.isPull) {
+      grab.target.copy(target);
       return;
     }
-    target.z = hold.start.z; // keep the exact height, from which the intersection deviates
-    hold.offset = target.sub(hold.start);
+    target.z = grab.start.z; // keep the exact height, from which the intersection deviates
+    grab.offset = target.sub(grab.start);
     const now = performance.now();
-    if (now - hold.lastMs < PERIOD_MS) return;
-    hold.lastMs = now;
-    this.send(hold);
+    if (now - grab.lastMs < PERIOD_MS) return;
+    grab.lastMs = now;
+    this.send(grab);
   }
 
   /** Pulls the grabbed point towards the mouse from their current positions. */
@@ -112,9 +112,9 @@ export class WorldHandling {
     this.send(grab);
   }
 
-  private release(hold: ModelGrab): void {
-    if (!hold.isPull) this.send(hold);
-    clearInterval(hold.timer);
+  private release(grab: ModelGrab): void {
+    if (!grab.isPull) this.send(grab);
+    clearInterval(grab.timer);
     this.line.setSegments(new Float32Array(0));
     this.stage.loop.invalidate();
     this.currentGrab = null;

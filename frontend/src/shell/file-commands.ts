@@ -27,16 +27,16 @@ export class FileCommands {
     state.texts.on(({ name, text }) => saveText(name, text, CONTENT_TYPE));
     window.addEventListener("beforeunload", (event) => {
       // The server keeps the shared configuration; a page's own configuration is lost with the page.
-      if (state.current.own && state.current.unsaved) event.preventDefault();
+      if (state.current.is_own && state.current.unsaved) event.preventDefault();
     });
   }
 
   begin(): void {
-    this.ask((discardsChanges) => this.state.createFile(discardsChanges));
+    this.sendRequest((discardsChanges) => this.state.createFile(discardsChanges));
   }
 
   open(path: string): void {
-    this.ask((discardsChanges) => this.state.open(path, discardsChanges));
+    this.sendRequest((discardsChanges) => this.state.open(path, discardsChanges));
   }
 
   /** Lets the user choose a file on the server. */
@@ -53,7 +53,7 @@ export class FileCommands {
       const file = input.files?.[0];
       if (!file) return;
       if (file.size > MAX_BYTES) showNotice(strings.shell.refused, strings.shell.tooLarge(file.name));
-      else void file.text().then((text) => this.ask((discardsChanges) => this.state.load(file.name, text, discardsChanges)));
+      else void file.text().then((text) => this.sendRequest((discardsChanges) => this.state.load(file.name, text, discardsChanges)));
     });
     input.click();
   }
@@ -99,7 +99,7 @@ export class FileCommands {
     dialog.open();
   }
 
-  private ask(request: (discardsChanges: boolean) => void): void {
+  private sendRequest(request: (discardsChanges: boolean) => void): void {
     this.pendingRequest = request;
     request(false);
   }

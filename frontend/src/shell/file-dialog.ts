@@ -29,7 +29,7 @@ export class FileDialog {
     this.nameField.setAttribute("aria-label", texts.fileName);
     this.nameField.spellcheck = false;
     if (kind === "save") this.nameField.value = state.fileName ?? `${texts.untitled}${EXTENSION}`;
-    this.upButton = button(texts.folderUp, () => this.ask(this.folder?.parent ?? null), "tool framed", icon("up"));
+    this.upButton = button(texts.folderUp, () => this.requestFolder(this.folder?.parent ?? null), "tool framed", icon("up"));
     this.dialog = new Dialog(
       kind === "open" ? texts.openTitle : texts.saveTitle,
       [
@@ -57,7 +57,7 @@ export class FileDialog {
     this.dialog.open(this.nameField);
     this.nameField.setSelectionRange(0, Math.max(0, this.nameField.value.length - EXTENSION.length));
     this.update();
-    this.ask(null);
+    this.requestFolder(null);
   }
 
   close(): void {
@@ -71,7 +71,7 @@ export class FileDialog {
     return true;
   }
 
-  private ask(path: string | null): void {
+  private requestFolder(path: string | null): void {
     this.problem.textContent = "";
     this.state.requestFolder(path);
   }
@@ -96,7 +96,7 @@ export class FileDialog {
   private createEntry(name: string, isFolder: boolean): HTMLLIElement {
     const entry = h("li", { role: "option", tabIndex: -1 }, icon(isFolder ? "folder" : "file"), name);
     const choose = (): void => {
-      if (isFolder) this.ask(joinPath(this.folder?.path ?? "", name));
+      if (isFolder) this.requestFolder(joinPath(this.folder?.path ?? "", name));
       else {
         this.nameField.value = name;
         this.update();

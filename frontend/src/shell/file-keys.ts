@@ -38,13 +38,13 @@ export function bindFileKeys(configuration: ConfigurationState, files: FileComma
   const save = (target: Element | null): void => {
     const isInEditor = target?.matches(".source-editor *") === true;
     const isInPanel = panels.some((panel) => panel.contains(target));
-    const saved = chooseSaved({
+    const saveTarget = chooseSaved({
       focus: isInEditor ? "editor" : isInPanel ? "configuration" : "elsewhere",
       isEditing: sources.isEditing,
       hasUnsavedSources: sources.hasUnsaved,
       isConfigurationUnsaved: configuration.current.unsaved,
     });
-    if (saved === "sources") sources.saveAll();
+    if (saveTarget === "sources") sources.saveAll();
     else files.save();
   };
   const bindings = [

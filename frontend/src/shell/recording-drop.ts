@@ -13,31 +13,31 @@ import { readDroppedFiles, findRecording, type DroppedRecording } from "./record
  * recording.
  */
 export class RecordingDrop {
-  private readonly veil = h("div", { class: "drop-veil" }, h("p", {}, strings.recording.dropHere));
+  private readonly dropOverlay = h("div", { class: "drop-veil" }, h("p", {}, strings.recording.dropHere));
   private isBusy = false;
 
   constructor(
     session: Session,
     private readonly tokens: Tokens,
   ) {
-    this.veil.hidden = true;
-    document.body.append(this.veil);
+    this.dropOverlay.hidden = true;
+    document.body.append(this.dropOverlay);
     document.addEventListener("dragover", (event) => {
       if (!hasFiles(event)) return;
       event.preventDefault();
-      this.veil.hidden = false;
+      this.dropOverlay.hidden = false;
     });
     document.addEventListener("dragleave", (event) => {
-      if (event.relatedTarget === null) this.veil.hidden = true;
+      if (event.relatedTarget === null) this.dropOverlay.hidden = true;
     });
     document.addEventListener("drop", (event) => {
-      this.veil.hidden = true;
+      this.dropOverlay.hidden = true;
       if (!hasFiles(event) || !event.dataTransfer) return;
       event.preventDefault();
       void readDroppedFiles(event.dataTransfer).then((recording) => this.accept(recording));
     });
     session.recording.viewRequested.on(({ name, url }) => void this.open(name, 0, (upload) => upload.show(url)));
-    session.connection.on("timeline", ({ live: isLive }) => this.leaveClosed(isLive));
+    session.connection.on("timeline", ({ live: isLive }) => this.returnToLive(isLive));
   }
 
   /** Lets the user choose a recording on the browser's machine: its file, or all files of its folder. */
@@ -103,7 +103,7 @@ export class RecordingDrop {
   }
 
   /** Returns to the live page, because the server closes recordings that no page has viewed for a while. */
-  private leaveClosed(isLive: boolean): void {
+  private returnToLive(isLive: boolean): void {
     if (!isLive || readRecordingName(location.href) === null) return;
     history.replaceState(history.state, "", setRecordingName(location.href, null));
     showNotice(strings.recording.gone, strings.recording.goneHint);

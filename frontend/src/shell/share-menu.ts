@@ -28,7 +28,7 @@ export class ShareMenu {
     this.element = h("span", { class: "recorder", role: "status" }, this.stopButton);
     this.video?.changed.on(() => this.showTime());
     this.showTime();
-    session.connection.on("export_ready", ({ url, name, outside }) => {
+    session.connection.on("export_ready", ({ url, name, outside_files: outside }) => {
       saveFrom(name, new URL(url, document.baseURI).href);
       if (outside.length > 0) showNotice(strings.sharing.exportOutside, strings.sharing.exportOutsideHint, outside);
     });
@@ -53,8 +53,8 @@ export class ShareMenu {
         hasLineAbove: true,
         run: () => (isRecording ? video?.stop() : video?.start()),
       },
-      { label: texts.exportHtml, icon: "download", hasLineAbove: true, isDisabled: this.hasNoRobot, run: () => this.ask("html") },
-      { label: texts.exportGlb, icon: "download", isDisabled: this.hasNoRobot, run: () => this.ask("glb") },
+      { label: texts.exportHtml, icon: "download", hasLineAbove: true, isDisabled: this.hasNoRobot, run: () => this.requestExport("html") },
+      { label: texts.exportGlb, icon: "download", isDisabled: this.hasNoRobot, run: () => this.requestExport("glb") },
       { label: texts.copyLink, hint: texts.copyLinkHint, icon: "link", hasLineAbove: true, run: () => void this.copyLink() },
     ];
   }
@@ -72,9 +72,9 @@ export class ShareMenu {
     saveBlob(this.createFileName(video.type.startsWith("video/mp4") ? "mp4" : "webm"), video);
   }
 
-  private ask(format: "html" | "glb"): void {
+  private requestExport(format: "html" | "glb"): void {
     const { cls, name, values } = this.session.view.current;
-    this.session.connection.send({ type: "ask_export", format, view: { cls, name, values: { ...values } } });
+    this.session.connection.send({ type: "request_export", format, view: { cls, name, values: { ...values } } });
   }
 
   private async copyLink(): Promise<void> {

@@ -132,14 +132,14 @@ export class TitleBar {
     const texts = strings.shell;
     const { configuration } = this.session;
     const choose = (isOwn: boolean) => (): void => {
-      if (isOwn !== configuration.current.own) location.assign(addressFor(location.href, isOwn));
+      if (isOwn !== configuration.current.is_own) location.assign(addressFor(location.href, isOwn));
     };
     const sharedButton = button(texts.sharedDisplays, choose(false), "", icon("shared"), texts.shared);
     const ownButton = button(texts.ownHint, choose(true), "", icon("own"), texts.own);
     const show = (): void => {
       for (const [element, isPressed] of [
-        [sharedButton, !configuration.current.own],
-        [ownButton, configuration.current.own],
+        [sharedButton, !configuration.current.is_own],
+        [ownButton, configuration.current.is_own],
       ] as const) {
         element.classList.toggle("on", isPressed);
         element.setAttribute("aria-pressed", String(isPressed));

@@ -26,7 +26,7 @@ export class ConfigurationState {
     unsaved: false,
     undo: null,
     redo: null,
-    own: false,
+    is_own: false,
     recent: [],
   };
 
@@ -85,16 +85,16 @@ export class ConfigurationState {
 
   /** Requests the displays that can be added, and those for each topic. */
   requestChoices(): void {
-    this.connection.send({ type: "ask_display_choices" });
+    this.connection.send({ type: "request_display_choices" });
   }
 
   requestFolder(path: string | null): void {
-    this.connection.send({ type: "ask_folder", path });
+    this.connection.send({ type: "request_folder", path });
   }
 
   /** Requests the text of the file as it would be saved now. */
   requestText(): void {
-    this.connection.send({ type: "ask_configuration_text" });
+    this.connection.send({ type: "request_configuration_text" });
   }
 
   createFile(discardsChanges = false): void {

@@ -6,7 +6,7 @@ import { Signal } from "../signal";
 export class CourseState {
   /** The outline, the step, the results or the problem has changed. */
   readonly changed = new Signal();
-  /** The program shows a course now, or shows none any more. */
+  /** The program has begun or stopped showing a course. */
   readonly availabilityChanged = new Signal();
   /** Emitted with the absolute path of a file that the learner wants to edit. */
   readonly fileRequested = new Signal<string>();
@@ -114,9 +114,9 @@ export class CourseState {
   }
 
   /** Requests the files of the course's state before the shown step. */
-  askCatchUp(): void {
+  requestCatchUp(): void {
     this.hasAskedCatchUp = true;
-    this.connection.send({ type: "ask_catch_up" });
+    this.connection.send({ type: "request_catch_up" });
   }
 
   /** Brings the workspace into the course's state before the shown step. */

@@ -66,7 +66,7 @@ export class DescriptionState {
     this.modelHolders += 1;
     if (this.modelHolders === 1) {
       for (const [display, revision] of this.revisions) {
-        if (this.models.get(display)?.description.revision !== revision) this.request("ask_description", display);
+        if (this.models.get(display)?.description.revision !== revision) this.request("request_description", display);
       }
     }
     return runOnce(() => (this.modelHolders -= 1));
@@ -77,7 +77,7 @@ export class DescriptionState {
     this.findingHolders += 1;
     if (this.findingHolders === 1) {
       for (const [display, revision] of this.revisions) {
-        if (this.findings.get(display)?.revision !== revision) this.request("ask_inertia", display);
+        if (this.findings.get(display)?.revision !== revision) this.request("request_inertia", display);
       }
     }
     return runOnce(() => (this.findingHolders -= 1));
@@ -97,7 +97,7 @@ export class DescriptionState {
     const key = createTextKey(display, file);
     if (!this.texts.has(key)) {
       this.texts.set(key, undefined);
-      this.connection.send({ type: "ask_description_text", display, file });
+      this.connection.send({ type: "request_description_text", display, file });
     }
     return this.texts.get(key);
   }
@@ -107,13 +107,13 @@ export class DescriptionState {
     this.revisions.set(display, revision);
     if (isNew) {
       this.forgetTexts();
-      if (this.modelHolders > 0) this.request("ask_description", display);
-      if (this.findingHolders > 0) this.request("ask_inertia", display);
+      if (this.modelHolders > 0) this.request("request_description", display);
+      if (this.findingHolders > 0) this.request("request_inertia", display);
     }
     if (links.length + joints.length > 0) this.edited.emit({ display, links, joints });
   }
 
-  private request(type: "ask_description" | "ask_inertia", display: string): void {
+  private request(type: "request_description" | "request_inertia", display: string): void {
     this.connection.send({ type, display });
   }
 

@@ -58,8 +58,8 @@ export class SelectionState {
 
   /** Deselects objects that their display no longer shows. */
   keepIf(exists: (item: SelectedItem) => boolean): void {
-    const left = this.current.filter(exists);
-    if (left.length < this.current.length) this.setItems(left);
+    const remainingItems = this.current.filter(exists);
+    if (remainingItems.length < this.current.length) this.setItems(remainingItems);
   }
 
   onRobotChanged(robot: RobotScene): void {

@@ -61,7 +61,7 @@ export class Session {
   readonly editing: EditingState;
   readonly robotChanged = new Signal<RobotScene>();
   readonly diagnosticsChanged = new Signal();
-  /** Emitted with the answer to `ask_provenance`. */
+  /** Emitted with the answer to `request_provenance`. */
   readonly provenanceAnswered = new Signal<LinkProvenance>();
   readonly greeted = new Signal<Hello>();
   /** Emitted when a menu in the scene is to be opened. */

@@ -41,9 +41,9 @@ export class Sweep {
  */
 export function roundTrip({ lower, upper }: Pick<JointControl, "lower" | "upper">, start: number, part: number): number {
   const range = upper - lower;
-  const travelled = part * 2 * range;
+  const distance = part * 2 * range;
   const upwardLength = upper - start;
-  if (travelled <= upwardLength) return start + travelled;
-  if (travelled <= upwardLength + range) return upper - (travelled - upwardLength);
-  return lower + (travelled - upwardLength - range);
+  if (distance <= upwardLength) return start + distance;
+  if (distance <= upwardLength + range) return upper - (distance - upwardLength);
+  return lower + (distance - upwardLength - range);
 }

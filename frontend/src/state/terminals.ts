@@ -15,7 +15,7 @@ const INPUT_LENGTH = 32 * 1024;
 export class TerminalsState {
   /** The terminals, or the reason of a refusal, have changed. */
   readonly changed = new Signal();
-  /** The program has terminals now, or has none any more. */
+  /** The program has got its first terminal, or lost its last one. */
   readonly availabilityChanged = new Signal();
   /** The connection is new, so that earlier requests get no answers; emitted with whether the program is the same run. */
   readonly connected = new Signal<boolean>();
@@ -43,7 +43,7 @@ export class TerminalsState {
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", ({ run }) => this.onHello(run));
-    connection.on("terminals", ({ folder, terminals, why_not: unavailableReason }) => {
+    connection.on("terminals", ({ folder, terminals, refusal_reason: unavailableReason }) => {
       if (this.isUnknown && folder !== "") connection.send({ type: "watch_program_pages" });
       [this.folder, this.items, this.unavailableReason] = [folder, this.isUnknown ? this.excludeLost(terminals) : terminals, unavailableReason];
       this.isUnknown = false;
@@ -84,8 +84,8 @@ export class TerminalsState {
     this.connection.send({ type: "show_terminal", terminal, ...size });
   }
 
-  leave(terminal: number): void {
-    this.connection.send({ type: "leave_terminal", terminal });
+  hide(terminal: number): void {
+    this.connection.send({ type: "hide_terminal", terminal });
   }
 
   /** Sends input: a text, or bytes as the characters of a string. */

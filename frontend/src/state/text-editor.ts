@@ -16,10 +16,10 @@ export class TextEditorLink {
       this.lastElement = { display, kind, name };
       focus.select(this.lastElement);
     });
-    focus.changed.on(() => this.tell());
+    focus.changed.on(() => this.notify());
   }
 
-  private tell(): void {
+  private notify(): void {
     const { current } = this.focus;
     if (!this.isAttached || current === null || isSameElement(current, this.lastElement)) return;
     this.lastElement = current;

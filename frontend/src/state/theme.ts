@@ -17,8 +17,8 @@ export class ThemeState {
     private readonly storage: TextStorage,
     private readonly system: MediaQueryList,
   ) {
-    const remembered = storage.getItem(KEY);
-    this.currentChoice = THEME_CHOICES.find((choice) => choice === remembered) ?? "system";
+    const storedChoice = storage.getItem(KEY);
+    this.currentChoice = THEME_CHOICES.find((choice) => choice === storedChoice) ?? "system";
     system.addEventListener("change", () => this.apply());
     this.apply();
   }

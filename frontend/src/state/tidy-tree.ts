@@ -69,22 +69,22 @@ function placeChildren(
     contour.right.unshift(node.width / 2);
     return contour;
   }
-  const combined: Contour = { left: [], right: [] };
+  const combinedContour: Contour = { left: [], right: [] };
   const xs = node.children.map((child) => {
     const contour = contours.get(child) ?? contourOfNode;
     let x = 0;
     contour.left.forEach((left, level) => {
-      const right = combined.right[level];
+      const right = combinedContour.right[level];
       if (right !== undefined) x = Math.max(x, right + gap - left);
     });
-    contour.left.forEach((left, level) => (combined.left[level] ??= left + x));
-    contour.right.forEach((right, level) => (combined.right[level] = right + x));
+    contour.left.forEach((left, level) => (combinedContour.left[level] ??= left + x));
+    contour.right.forEach((right, level) => (combinedContour.right[level] = right + x));
     return x;
   });
   const center = ((xs[0] ?? 0) + (xs.at(-1) ?? 0)) / 2;
   node.children.forEach((child, i) => offsets.set(child, (xs[i] ?? 0) - center));
-  for (const left of combined.left) contourOfNode.left.push(left - center);
-  for (const right of combined.right) contourOfNode.right.push(right - center);
+  for (const left of combinedContour.left) contourOfNode.left.push(left - center);
+  for (const right of combinedContour.right) contourOfNode.right.push(right - center);
   return contourOfNode;
 }
 

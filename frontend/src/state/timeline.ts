@@ -5,7 +5,7 @@ import { Signal } from "../signal";
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10] as const;
 
 /** A time span, s since the epoch. */
-export interface Span {
+export interface TimeSpan {
   start: number;
   end: number;
 }
@@ -21,7 +21,7 @@ export class TimelineState {
   private target: number | null = null;
   private isSeeking = false;
   private requestedPosition = 0;
-  private markedSpan: Span | null = null;
+  private markedSpan: TimeSpan | null = null;
   /** The topic by whose messages to step; empty for all topics shown. */
   stepTopic = "";
 
@@ -84,14 +84,14 @@ export class TimelineState {
   }
 
   /** The part of the history that the user marked, as far as the history still contains it. */
-  get mark(): Span | null {
+  get mark(): TimeSpan | null {
     const { recording, markedSpan } = this;
     if (!recording?.live || !markedSpan || markedSpan.end <= recording.start) return null;
     return { start: Math.max(markedSpan.start, recording.start), end: Math.min(markedSpan.end, recording.end) };
   }
 
   /** Marks the part between two times in either order; null removes the mark. */
-  setMark(mark: Span | null): void {
+  setMark(mark: TimeSpan | null): void {
     this.markedSpan = mark && { start: Math.min(mark.start, mark.end), end: Math.max(mark.start, mark.end) };
     this.changed.emit();
   }

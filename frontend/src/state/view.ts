@@ -5,8 +5,8 @@ import type { FrameStore } from "./frames";
 import type { PageMemory } from "./page-memory";
 import { transformToFixed, transformToTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
-import { contains, transformSpan } from "./views/fit";
-import { distanceBetween, type Span, type Vector } from "./views/vector";
+import { contains, transformBounds } from "./views/fit";
+import { distanceBetween, type Bounds, type Vector } from "./views/vector";
 import type { Drag, ViewController, ViewValues } from "./views/view-controller";
 
 export const FIXED_FRAME = "<Fixed Frame>";
@@ -27,10 +27,10 @@ export class ViewState {
   classes: readonly ViewClass[] = [];
   savedViews: readonly SavedView[] = [];
   private view: View = { cls: ORBIT, name: CURRENT_NAME, values: controllerOf(ORBIT).zero() };
-  private configured: View | null = null;
+  private configuredView: View | null = null;
   private showsWholeRobot = false;
   /** The content for which the camera was last placed automatically; null once the user has placed it. */
-  private fittedTarget: { readonly target: string; readonly box: Span | null } | null = null;
+  private fittedTarget: { readonly target: string; readonly box: Bounds | null } | null = null;
   /**
    * The map that the camera was fitted to, if a file placed the camera and the user has not moved it; "" for none yet,
    * null once the user has moved it.
@@ -136,12 +136,12 @@ export class ViewState {
   }
 
   /** Fits a box in the fixed frame into view from the current direction, in a canvas of this size. */
-  fit(box: Span, size: ViewSize): void {
+  fit(box: Bounds, size: ViewSize): void {
     this.update(this.fitValues(box, size));
   }
 
   /** Fits a box into view if the user has not placed the camera, and again when the box has grown. */
-  fitFirst(box: Span, size: ViewSize, target: string): void {
+  fitFirst(box: Bounds, size: ViewSize, target: string): void {
     const previousBox = this.fittedTarget?.box;
     if (!previousBox || !contains(previousBox, box)) this.update(this.fitValues(box, size));
     this.fittedTarget = { target, box: previousBox && contains(previousBox, box) ? previousBox : box };
@@ -156,7 +156,7 @@ export class ViewState {
   }
 
   /** Fits a map into view, without changing the view of the file. */
-  frameMap(box: Span, size: ViewSize, map: string): void {
+  frameMap(box: Bounds, size: ViewSize, map: string): void {
     this.framedMap = map;
     this.view = { ...this.view, values: { ...this.values, ...this.clampToBounds(TOP_DOWN, this.fitValues(box, size)) } };
     this.changed.emit();
@@ -166,7 +166,7 @@ export class ViewState {
    * Reports the size of the robots and the height of the ground below them, once all are loaded, if the user has not
    * moved the camera or the program was restarted.
    */
-  reportSize({ min, max }: Span, ground: number): void {
+  reportSize({ min, max }: Bounds, ground: number): void {
     if (!this.needsSize && (this.fittedTarget === null || this.reportedRevision === this.revision)) return;
     this.needsSize = false;
     this.reportedRevision = this.revision;
@@ -232,10 +232,10 @@ export class ViewState {
 
   /** Restores the view of the configuration file, or fits the robots into view if there is none. */
   reset(): void {
-    if (!this.configured) this.zero();
+    if (!this.configuredView) this.zero();
     else {
       this.awaitFirstLook(this.showsWholeRobot);
-      this.show(copyOf(this.configured));
+      this.show(copyOf(this.configuredView));
     }
   }
 
@@ -273,7 +273,7 @@ export class ViewState {
   /** Applies the view of a configuration once: a reconnect does not move the user's camera, but another file does. */
   private configure(view: View, revision: number, showsWholeRobot: boolean): void {
     const isCurrent = this.revision === revision;
-    this.configured = view;
+    this.configuredView = view;
     this.revision = revision;
     this.showsWholeRobot = showsWholeRobot;
     if (isCurrent) return;
@@ -287,8 +287,8 @@ export class ViewState {
     this.framedMap = "";
   }
 
-  private fitValues(box: Span, size: ViewSize): ViewValues {
-    return this.controller.fit(this.view.values, transformSpan(box, this.target), size);
+  private fitValues(box: Bounds, size: ViewSize): ViewValues {
+    return this.controller.fit(this.view.values, transformBounds(box, this.target), size);
   }
 
   private change(view: View): void {

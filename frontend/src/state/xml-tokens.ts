@@ -49,12 +49,12 @@ class Scanner {
   private expectsName = false;
 
   constructor(
-    private rest: string,
+    private remainingText: string,
     public state: LineState,
   ) {}
 
   run(): void {
-    while (this.rest !== "") {
+    while (this.remainingText !== "") {
       const end = ENDS[this.state];
       if (end !== undefined) this.readUntil(end);
       else if (this.state === '"' || this.state === "'") this.readValue(this.state);
@@ -64,22 +64,22 @@ class Scanner {
   }
 
   private readUntil(end: string): void {
-    const index = this.rest.indexOf(end);
+    const index = this.remainingText.indexOf(end);
     const kind = this.state === "cdata" ? "text" : "comment";
-    this.push(kind, index < 0 ? this.rest.length : index + end.length);
+    this.push(kind, index < 0 ? this.remainingText.length : index + end.length);
     if (index >= 0) this.state = "text";
   }
 
   private readValue(quote: string): void {
-    const index = this.rest.indexOf(quote);
-    this.pushMixed("value", index < 0 ? this.rest.length : index);
+    const index = this.remainingText.indexOf(quote);
+    this.pushMixed("value", index < 0 ? this.remainingText.length : index);
     if (index < 0) return;
     this.push("value", 1);
     this.state = "tag";
   }
 
   private readTagPart(): void {
-    const part = TAG_PART.exec(this.rest)?.[0] ?? this.rest;
+    const part = TAG_PART.exec(this.remainingText)?.[0] ?? this.remainingText;
     if (part === '"' || part === "'") {
       this.push("value", 1);
       this.state = part;
@@ -93,15 +93,15 @@ class Scanner {
   }
 
   private readText(): void {
-    const index = this.rest.indexOf("<");
-    this.pushMixed("text", index < 0 ? this.rest.length : index);
+    const index = this.remainingText.indexOf("<");
+    this.pushMixed("text", index < 0 ? this.remainingText.length : index);
     if (index < 0) return;
-    const opening = OPENINGS.find(([text]) => this.rest.startsWith(text));
+    const opening = OPENINGS.find(([text]) => this.remainingText.startsWith(text));
     if (opening) {
       this.state = opening[1];
       return;
     }
-    this.push("punctuation", /^<[/!]/.test(this.rest) ? 2 : 1);
+    this.push("punctuation", /^<[/!]/.test(this.remainingText) ? 2 : 1);
     this.state = "tag";
     this.expectsName = true;
   }
@@ -109,7 +109,7 @@ class Scanner {
   /** Consumes text that may contain expressions. */
   private pushMixed(kind: TokenKind, length: number): void {
     let prefixLength = 0;
-    for (const match of this.rest.slice(0, length).matchAll(EXPRESSION)) {
+    for (const match of this.remainingText.slice(0, length).matchAll(EXPRESSION)) {
       this.push(kind, match.index - prefixLength);
       this.push("expression", match[0].length);
       prefixLength = match.index + match[0].length;
@@ -118,7 +118,7 @@ class Scanner {
   }
 
   private push(kind: TokenKind, length: number): void {
-    if (length > 0) this.tokens.push({ kind, text: this.rest.slice(0, length) });
-    this.rest = this.rest.slice(length);
+    if (length > 0) this.tokens.push({ kind, text: this.remainingText.slice(0, length) });
+    this.remainingText = this.remainingText.slice(length);
   }
 }

@@ -21,9 +21,9 @@ export function computeLegibleView(image: Size, window: Size, textSize: number, 
   const fittingScale = Math.min((window[0] - 2 * margin) / image[0], (window[1] - 2 * margin) / image[1]);
   const scale = Math.min(1, Math.max(MIN_TEXT_PX / textSize, fittingScale));
   const choosePosition = (axis: 0 | 1): number => {
-    const [size, room] = [image[axis] * scale, window[axis]];
-    if (size <= room - 2 * margin) return (room - size) / 2;
-    return Math.min(margin, Math.max(room - margin - size, room / 2 - point[axis] * scale));
+    const [size, available] = [image[axis] * scale, window[axis]];
+    if (size <= available - 2 * margin) return (available - size) / 2;
+    return Math.min(margin, Math.max(available - margin - size, available / 2 - point[axis] * scale));
   };
   return { x: choosePosition(0), y: choosePosition(1), scale };
 }

@@ -54,12 +54,12 @@ export class VirtualRows {
     if (!isStale && first === this.first && end === this.first + this.rows.length) return;
     const reusableRows = isStale ? [] : this.rows;
     const previousFirst = this.first;
-    this.rows = Array.from({ length: Math.max(0, end - first) }, (_, i) => reusableRows[first + i - previousFirst] ?? this.make(first + i));
+    this.rows = Array.from({ length: Math.max(0, end - first) }, (_, i) => reusableRows[first + i - previousFirst] ?? this.createRow(first + i));
     this.first = first;
     this.body.replaceChildren(...this.rows);
   }
 
-  private make(index: number): HTMLElement {
+  private createRow(index: number): HTMLElement {
     const row = this.render(index);
     row.style.top = `${index * this.rowHeight}px`;
     return row;

@@ -229,11 +229,13 @@ class _Track:
         Returns:
             The number of freed bytes.
         """
-        kept = self.entries[self.first_index :]
-        now_ns = kept[-1][0] + NANOSECONDS_PER_SECOND
+        kept_entries = self.entries[self.first_index :]
+        now_ns = kept_entries[-1][0] + NANOSECONDS_PER_SECOND
         gaps = [
             ((next_entry[0] - previous_entry[0]) / (now_ns - entry[0]), index)
-            for index, (previous_entry, entry, next_entry) in enumerate(zip(kept, kept[1:], kept[2:], strict=False), 1)
+            for index, (previous_entry, entry, next_entry) in enumerate(
+                zip(kept_entries, kept_entries[1:], kept_entries[2:], strict=False), 1
+            )
         ]
         dropped: set[int] = set()
         freed = 0
@@ -242,9 +244,9 @@ class _Track:
                 break
             if place - 1 not in dropped and place + 1 not in dropped:
                 dropped.add(place)
-                freed += _stored_size(kept[place][2])
-        self._repeated_numbers.difference_update(kept[place][1] for place in dropped)
-        self.entries = [entry for place, entry in enumerate(kept) if place not in dropped]
+                freed += _stored_size(kept_entries[place][2])
+        self._repeated_numbers.difference_update(kept_entries[place][1] for place in dropped)
+        self.entries = [entry for place, entry in enumerate(kept_entries) if place not in dropped]
         self.first_index = 0
         self.size -= freed
         return freed

@@ -356,9 +356,9 @@ def _ignore_profiles_of_files(storage: Any) -> None:
     """
     listed_connections = {(connection.topic, connection.msgtype): connection for connection in storage.connections}
     for file in storage.storages:
-        for index, each in enumerate(file.connections):
-            listed_connection = listed_connections.get((each.topic, each.msgtype), each)
-            file.connections[index] = each._replace(ext=listed_connection.ext, digest=listed_connection.digest)
+        for index, connection in enumerate(file.connections):
+            listed_connection = listed_connections.get((connection.topic, connection.msgtype), connection)
+            file.connections[index] = connection._replace(ext=listed_connection.ext, digest=listed_connection.digest)
 
 
 def _storage_targets(path: Path, display_name: str) -> list[Path]:

@@ -1,4 +1,4 @@
-"""Rewrite recordings with other files, topics or compression, as ``ros2 bag convert`` does.
+"""Rewrite recordings into other files, with other topics or another compression, as ``ros2 bag convert`` does.
 
 The keys of the options file, in YAML, are those of rosbag2's ``StorageOptions`` and ``RecordOptions``. Keys that
 only affect rosbag2's performance are ignored.
@@ -37,7 +37,7 @@ def rewrite(sources: Sequence[str | Path], options_file: str | Path) -> list[Pat
     outputs = [_Output(entry, str(options_file)) for entry in _entries(options_file)]
     with ExitStack() as stack:
         bags = [stack.enter_context(BagReader(source)) for source in sources]
-        writers = [stack.enter_context(output.opened(bags)) for output in outputs]
+        writers = [stack.enter_context(output.open_writer(bags)) for output in outputs]
         streams = [bag.messages() for bag in bags]
         for topic, stamp_ns, data in heapq.merge(*streams, key=lambda message: message[1]):
             for output, writer in zip(outputs, writers, strict=True):
@@ -68,9 +68,9 @@ class _Output:
         start_ns, end_ns = self._number("start_time_ns", -1), self._number("end_time_ns", -1)
         self.begin_ns = max(start_ns, 0)
         self.end_ns = end_ns if end_ns >= 0 else 2**63 - 1
-        everything = bool(entry.get("all"))
+        record_all = bool(entry.get("all"))
         self._selection = TopicSelection(
-            everything=everything or bool(entry.get("all_topics")),
+            everything=record_all or bool(entry.get("all_topics")),
             names=entry.get("topics", []),
             types=entry.get("topic_types", []),
             pattern=str(entry.get("regex", "")),
@@ -78,12 +78,12 @@ class _Output:
             without_types=entry.get("exclude_topic_types", []),
             without_pattern=str(entry.get("exclude_regex", entry.get("exclude", ""))),
             hidden=bool(entry.get("include_hidden_topics")),
-            every_service=everything or bool(entry.get("all_services")),
+            every_service=record_all or bool(entry.get("all_services")),
             services=entry.get("services", []),
             without_services=entry.get("exclude_services", []),
         )
 
-    def opened(self, bags: Sequence[BagReader]) -> BagWriter:
+    def open_writer(self, bags: Sequence[BagReader]) -> BagWriter:
         """Create the recording with its topics, and return its writer.
 
         A topic with different types in the source recordings is left out, as in rosbag2.

@@ -47,8 +47,8 @@ class TopicSelection:
     _unwanted: re.Pattern[str] | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_compiled_pattern", _compiled(self.pattern))
-        object.__setattr__(self, "_unwanted", _compiled(self.without_pattern))
+        object.__setattr__(self, "_compiled_pattern", _compile(self.pattern))
+        object.__setattr__(self, "_unwanted", _compile(self.without_pattern))
 
     @property
     def is_empty(self) -> bool:
@@ -98,7 +98,7 @@ class TopicSelection:
         return self._unwanted is not None and self._unwanted.search(name) is not None
 
 
-def _compiled(pattern: str) -> re.Pattern[str] | None:
+def _compile(pattern: str) -> re.Pattern[str] | None:
     if not pattern:
         return None
     try:

@@ -11,10 +11,10 @@ import asyncio
 import secrets
 from collections.abc import Callable
 
+from linkwright.bridge.bridged_network import BridgedNetwork
 from linkwright.bridge.direction import Direction
 from linkwright.bridge.filters import NameFilter
 from linkwright.bridge.networks import Network
-from linkwright.bridge.side import Side
 from linkwright.graph.log.logger import LogLevel, LogRecord, LogSink
 
 _COLLECTION_S = 0.02
@@ -71,7 +71,7 @@ async def run_bridge(
         await first.graph.close()
 
 
-async def _carry(first: Side, second: Side, directions: tuple[Direction, Direction]) -> None:
+async def _carry(first: BridgedNetwork, second: BridgedNetwork, directions: tuple[Direction, Direction]) -> None:
     loop = asyncio.get_running_loop()
     change_event = asyncio.Event()
 

@@ -6,9 +6,9 @@ import time
 from collections import deque
 from typing import NamedTuple
 
+from linkwright.bridge.bridged_network import BridgedNetwork, endpoint_provision
 from linkwright.bridge.filters import NameFilter
 from linkwright.bridge.mirrors import MATCH_TIMEOUT_S, MirroredPublisher, MirroredService, Tap
-from linkwright.bridge.side import Side, endpoint_provision
 from linkwright.bridge.streams import Stream, awaited_streams, can_receive, endpoint_hash, publisher_stream
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo, Presence
 from linkwright.graph.log.logger import Logger
@@ -60,7 +60,7 @@ class Direction:
         logger: logs a warning, once for each topic or service that cannot be carried.
     """
 
-    def __init__(self, source: Side, target: Side, names: NameFilter, logger: Logger) -> None:
+    def __init__(self, source: BridgedNetwork, target: BridgedNetwork, names: NameFilter, logger: Logger) -> None:
         self._source = source
         self._target = target
         self._names = names
@@ -205,12 +205,14 @@ class Direction:
             if info.node is None or not self._names.passes(info.name):
                 continue
             hidden.discard(info.node.full_name)
-            if endpoint_provision(info) in target_snapshot.carried:
+            if endpoint_provision(info) in target_snapshot.mirrored_endpoints:
                 continue
             if info.kind is EndpointKind.PUBLISHER and self._can_carry(info):
                 self._selected_publishers[info.gid] = info
             elif (
-                info.kind is EndpointKind.SERVICE and info.name not in target_snapshot.served and self._can_carry(info)
+                info.kind is EndpointKind.SERVICE
+                and info.name not in target_snapshot.services_with_server
+                and self._can_carry(info)
             ):
                 self._selected_services[info.node.full_name, info.name, info.type_name] = info
             elif info.kind in (EndpointKind.SUBSCRIPTION, EndpointKind.CLIENT):
@@ -219,14 +221,14 @@ class Direction:
                 continue
             self._selected_nodes[info.node.full_name] = info.node
         for node in source_snapshot.nodes:
-            if node.full_name not in hidden and node.full_name not in target_snapshot.carried_nodes:
+            if node.full_name not in hidden and node.full_name not in target_snapshot.mirrored_nodes:
                 self._selected_nodes[node.full_name] = node
         self._awaited_streams = {
             stream
             for info in target_snapshot.endpoints
             if info.kind is EndpointKind.SUBSCRIPTION
             and self._names.passes(info.name)
-            and endpoint_provision(info) not in source_snapshot.carried
+            and endpoint_provision(info) not in source_snapshot.mirrored_endpoints
             for stream in awaited_streams(info, keyed=self._source.needs_hashes)
         }
 

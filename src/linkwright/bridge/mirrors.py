@@ -165,7 +165,7 @@ class MirroredService:
         self._service: Service[Any, Any] | None = None
 
     def process_pending(self) -> bool:
-        """Offer the service once it can be called, and return whether it is offered."""
+        """Offer the service if its server is ready, and return whether it is offered."""
         if self._service is None and self._client.service_is_ready():
             service: Service[Any, Any] = Service(
                 self._node,

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from linkwright.bridge.side import ENCLAVE, Side
+from linkwright.bridge.bridged_network import ENCLAVE, BridgedNetwork
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, phrase
 from linkwright.graph import Graph
 from linkwright.graph.log.logger import Logger, LogSink
@@ -28,7 +28,7 @@ class _NetworkKind:
         label: the name in messages.
         unavailable_reason: returns the reason why this kind is not available, or an empty string if it is.
         open_transport: creates the transport for a domain and a bridge.
-        needs_hashes: see `Side`.
+        needs_hashes: see `BridgedNetwork`.
     """
 
     label: str
@@ -69,8 +69,8 @@ class Network:
         """The name of the network in messages."""
         return f"{_KINDS[self.kind].label} (domain {self.domain_id})"
 
-    async def join(self, bridge_id: str, log: LogSink) -> Side:
-        """Join the network, and return the bridge's side in it.
+    async def join(self, bridge_id: str, log: LogSink) -> BridgedNetwork:
+        """Join the network, and return it with the bridge's nodes in it.
 
         Raises:
             LinkwrightError: CLI454, the package of the transport is not installed; DDS101 to DDS112, the network cannot
@@ -84,13 +84,13 @@ class Network:
         graph = Graph(on_log=log, on_shared_names=_ignore_names)
         transport = kind.open_transport(self.domain_id, bridge_id, graph.get_logger(self.kind))
         graph.attach(transport)
-        side = Side(self.label, graph, transport, bridge_id, needs_hashes=kind.needs_hashes)
+        network = BridgedNetwork(self.label, graph, transport, bridge_id, needs_hashes=kind.needs_hashes)
         try:
-            await side.join(_JOINED_WITHIN)
+            await network.join(_JOINED_WITHIN)
         except BaseException:
             await graph.close()
             raise
-        return side
+        return network
 
 
 def read_network(text: str) -> Network:

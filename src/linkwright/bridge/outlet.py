@@ -12,7 +12,7 @@ from functools import partial
 from queue import Queue
 
 from linkwright.graph.faults import InvalidHandleError
-from linkwright.wire.guarded_calls import guarded
+from linkwright.wire.guarded_calls import call_guarded
 
 
 class Outlet:
@@ -52,7 +52,7 @@ class Outlet:
 
     def _run(self) -> None:
         while (data := self._queue.get()) is not None:
-            guarded(partial(self._publish_one, data), self._failed)
+            call_guarded(partial(self._publish_one, data), self._failed)
             self._queue.task_done()
 
     def _publish_one(self, data: bytes) -> None:

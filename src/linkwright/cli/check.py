@@ -220,10 +220,10 @@ def _check_changed(
     Raises:
         LinkwrightError: CLI341 to CLI346, git cannot find or read the commit.
     """
-    from linkwright.lint.changed_since import ChangedSince
+    from linkwright.lint.changed_since import WorkingTreeChanges
     from linkwright.lint.known_findings import new_findings
 
-    changed = ChangedSince(paths, arguments.changed, with_packages=arguments.package)
+    changed = WorkingTreeChanges(paths, arguments.changed, with_packages=arguments.package)
     targets = changed.targets()
     if not targets.files and not targets.packages:
         return []

@@ -41,7 +41,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the containers and their components, as ros2 does."""
+    """Print the containers and their components, in the format of ros2."""
 
     async def job(session: Session) -> int:
         if arguments.container_node_name is not None:

@@ -91,10 +91,10 @@ def run(arguments: argparse.Namespace) -> int:
         return 1
     wheels = [name.strip() for name in (arguments.wheels or "").split(",") if name.strip()]
 
-    def inferred(robot: Robot) -> Inference:
+    def infer_drive(robot: Robot) -> Inference:
         return infer(robot, MeshLibrary(finder, path.parent), kind=arguments.drive, wheels=wheels)
 
-    inference = inferred(robot)
+    inference = infer_drive(robot)
     if arguments.show:
         sys.stdout.write(_inference_list(inference))
         return 0
@@ -111,7 +111,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     print_message(localized(_summary(robot, inference)))
     world = replace(
-        SimulatedWorld.of(arguments.world, description, inference, inferred),
+        SimulatedWorld.of(arguments.world, description, inference, infer_drive),
         arguments=tuple(values.items()),
         seconds=arguments.seconds,
         headless=arguments.headless,

@@ -93,8 +93,8 @@ def _export(arguments: argparse.Namespace, pair: Pair | None) -> int:
     data = export_snapshot(snapshot, arguments.out.rpartition(".")[2].lower())
     write_output(Path(arguments.out), data)
     print(f"Created file {arguments.out} ({_size_text(len(data))})")
-    if snapshot.outside:
-        print_diagnostics([_outside_files_warning(snapshot.outside)], sys.stderr)
+    if snapshot.outside_files:
+        print_diagnostics([_outside_files_warning(snapshot.outside_files)], sys.stderr)
     return 1 if snapshot.problems else 0
 
 

@@ -87,7 +87,7 @@ async def _greet(session: Session, arguments: argparse.Namespace) -> int:
 
 
 class _Listener(asyncio.DatagramProtocol):
-    """The receiver that counts the greetings received by multicast."""
+    """Counts the greetings received by multicast."""
 
     def __init__(self, counts: Greetings) -> None:
         self._counts = counts

@@ -157,13 +157,13 @@ def _with_absolute_uris(model: Model, folder: Path, finder: PackageFinder) -> Mo
 
     folder_finder, package_finder = ResourceFinder(PackageFinder(start=[Path.cwd()])), ResourceFinder(finder)
 
-    def resolved(uri: str, uri_folder: Path) -> str:
+    def resolve(uri: str, uri_folder: Path) -> str:
         if not uri or not isinstance(folder_finder.file(uri, Path.cwd()), Missing):
             return uri
         path = package_finder.file(uri, uri_folder)
         return uri if isinstance(path, Missing) else path.absolute().as_uri()
 
-    changed_model: Model = with_changed_uris(model, folder, resolved)
+    changed_model: Model = with_changed_uris(model, folder, resolve)
     return changed_model
 
 

@@ -52,7 +52,5 @@ def lookalike_hint(text: str) -> Phrase | None:
         if plain == " ":
             return phrase("write a plain space in place of U+{code:04X}", code=ord(character))
         if plain is not None:
-            return phrase(
-                "write '{plain}' with an English keyboard in place of '{character}'", plain=plain, character=character
-            )
+            return phrase("replace '{character}' with the ASCII character '{plain}'", plain=plain, character=character)
     return None

@@ -148,16 +148,16 @@ def _excerpt(diagnostic: Diagnostic, paint: _Painter) -> list[str]:
     line = source.line(span.line)
     if not line.strip():
         return []
-    before = line[: span.column - 1]
+    prefix = line[: span.column - 1]
     if span.end_line == span.line:
         marked = line[span.column - 1 : max(span.end_column - 1, span.column)]
     else:
         marked = line[span.column - 1 :]
     if len(line) > _MAX_LINE:  # for example, an entire robot in one line
-        start = max(0, len(before) - _CONTEXT)
-        end = len(before) + _CONTEXT
+        start = max(0, len(prefix) - _CONTEXT)
+        end = len(prefix) + _CONTEXT
         line = f"{'...' if start else ''}{line[start:end]}{'...' if end < len(line) else ''}"
-        before = f"{'...' if start else ''}{before[start:]}"
+        prefix = f"{'...' if start else ''}{prefix[start:]}"
         marked = marked[:_CONTEXT]
     number = str(span.line)
     gutter = " " * len(number)
@@ -167,7 +167,7 @@ def _excerpt(diagnostic: Diagnostic, paint: _Painter) -> list[str]:
     return [
         f"{gutter} {bar}",
         f"{paint(number, '34')} {bar} {visible_line}",
-        f"{gutter} {bar} {' ' * shown_width(before)}{carets}",
+        f"{gutter} {bar} {' ' * shown_width(prefix)}{carets}",
     ]
 
 

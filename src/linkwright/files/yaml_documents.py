@@ -103,8 +103,8 @@ class YamlDocument:
 
 def yaml_hint(source: SourceText, line: int) -> Phrase | None:
     """Return a hint about the line at which a YAML parser failed, or the line before it, or None."""
-    before = next((number for number in range(line - 1, 0, -1) if source.line(number).strip()), line)
-    for number in (line, before):
+    previous_line = next((number for number in range(line - 1, 0, -1) if source.line(number).strip()), line)
+    for number in (line, previous_line):
         text = source.line(number).partition("#")[0]
         if "\t" in text:
             return phrase("line {line}: indent with spaces: YAML does not allow tabs", line=number)
@@ -112,6 +112,6 @@ def yaml_hint(source: SourceText, line: int) -> Phrase | None:
             return phrase("line {line}: write ': ' in place of the full-width colon", line=number)
         if _COLON_WITHOUT_SPACE.match(text):
             return phrase("line {line}: write a space after the colon", line=number)
-    if before == line:
+    if previous_line == line:
         return None
-    return phrase("compare the indentation of line {line} with that of line {before}", line=line, before=before)
+    return phrase("compare the indentation of line {line} with that of line {before}", line=line, before=previous_line)

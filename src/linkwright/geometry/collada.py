@@ -19,13 +19,13 @@ def read_collada(data: bytes) -> ColladaFile[PlainMesh, Array] | None:
 
 
 class Arrays:
-    """The implementation of `Numbers` with numpy: meshes, and matrices of shape (4, 4)."""
+    """The implementation of `MeshBuilder` with numpy: meshes, and matrices of shape (4, 4)."""
 
     def identity(self) -> Array:
         """Return the identity matrix."""
         return np.eye(4)
 
-    def moved(self, matrix: Array, tag: str, text: str | None) -> Array:
+    def apply_transform(self, matrix: Array, tag: str, text: str | None) -> Array:
         """Return the product of a matrix and the matrix of a transform element."""
         transform = _transform(tag, parse_numbers(text, np.float32).astype(np.float64))
         # Unlike a product of matrices, this adds in the same order on every machine.
@@ -33,13 +33,13 @@ class Arrays:
         product: Array = columns[0] + columns[1] + columns[2] + columns[3]
         return product
 
-    def faces(self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits) -> Faces:
+    def faces(self, tag: str, texts: list[str], corner_counts: str, width: int, column: int, limits: Limits) -> Faces:
         """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element."""
         rows = [parse_numbers(text, np.int64).reshape(-1, width) for text in texts]
         if tag == "triangles":
             counts: NDArray[np.int64] = np.full(len(rows[0]) // 3, 3, np.int64)
         elif tag == "polylist":
-            counts = parse_numbers(counted, np.int64)
+            counts = parse_numbers(corner_counts, np.int64)
         else:
             counts = np.array([len(row) for row in rows])
         indices = np.concatenate(rows)

@@ -60,12 +60,12 @@ def read_colored_meshes(data: bytes) -> list[ColoredMesh] | None:
 
 
 class _ArraysByMaterial:
-    """The implementation of `Numbers` that keeps the triangles of each element apart."""
+    """The implementation of `MeshBuilder` that keeps the triangles of each element apart."""
 
     def __init__(self) -> None:
         self._arrays = Arrays()
         self.identity = self._arrays.identity
-        self.moved = self._arrays.moved
+        self.apply_transform = self._arrays.apply_transform
         self.faces = self._arrays.faces
 
     def mesh(self, text: str, faces: list[Faces]) -> list[PlainMesh]:

@@ -41,7 +41,7 @@ def read_triangles(data: bytes, max_triangles: int) -> _Mesh | None:
 
 
 class Lists:
-    """The implementation of `Numbers` in plain Python.
+    """The implementation of `MeshBuilder` in plain Python.
 
     Meshes are lists of vertices and triangles, and matrices are lists of rows.
     """
@@ -50,13 +50,13 @@ class Lists:
         """Return the identity matrix."""
         return [[float(row == column) for column in range(4)] for row in range(4)]
 
-    def moved(self, matrix: _Rows, tag: str, text: str | None) -> _Rows:
+    def apply_transform(self, matrix: _Rows, tag: str, text: str | None) -> _Rows:
         """Return the product of a matrix and the matrix of a transform element."""
         columns = list(zip(*_transform(tag, _numbers(text or ""), self.identity()), strict=True))
         return [[sum(a * b for a, b in zip(row, column, strict=True)) for column in columns] for row in matrix]
 
     def faces(
-        self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits
+        self, tag: str, texts: list[str], corner_counts: str, width: int, column: int, limits: Limits
     ) -> list[_Triangle]:
         """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element."""
         rows = [_integers(text) for text in texts]
@@ -65,7 +65,7 @@ class Lists:
         if tag == "triangles":
             counts = [3] * (counts[0] // 3)
         elif tag == "polylist":
-            counts = _integers(counted)
+            counts = _integers(corner_counts)
         if any(len(row) % width for row in rows) or sum(counts) * width != len(indices) or min(counts, default=3) < 3:
             raise UnsupportedContent
         for offset, limit in limits:

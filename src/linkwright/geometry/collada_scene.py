@@ -29,7 +29,7 @@ Limits = list[tuple[int, int]]
 """Columns of indices, each with the exclusive upper bound of its indices."""
 FacesT = TypeVar("FacesT")
 MeshT = TypeVar("MeshT")
-MadeT_co = TypeVar("MadeT_co", covariant=True)
+MeshT_co = TypeVar("MeshT_co", covariant=True)
 MatrixT = TypeVar("MatrixT")
 
 
@@ -37,7 +37,7 @@ class UnsupportedContent(Exception):  # noqa: N818 - not an error: another reade
     """Raised when a file has content that a simple reader does not support."""
 
 
-class Numbers(Protocol[MadeT_co, MatrixT, FacesT]):
+class MeshBuilder(Protocol[MeshT_co, MatrixT, FacesT]):
     """The interface that creates meshes and matrices from the text of elements.
 
     Each method raises `UnsupportedContent` or ValueError for text that it does not support.
@@ -46,13 +46,13 @@ class Numbers(Protocol[MadeT_co, MatrixT, FacesT]):
     def identity(self) -> MatrixT:
         """Return the identity matrix."""
 
-    def moved(self, matrix: MatrixT, tag: str, text: str | None) -> MatrixT:
+    def apply_transform(self, matrix: MatrixT, tag: str, text: str | None) -> MatrixT:
         """Return the product of a matrix and the matrix of a transform element.
 
         The axis of a rotation is not normalized, as in pycollada.
         """
 
-    def faces(self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits) -> FacesT:
+    def faces(self, tag: str, texts: list[str], corner_counts: str, width: int, column: int, limits: Limits) -> FacesT:
         """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element.
 
         Polygons are split into fans.
@@ -60,13 +60,13 @@ class Numbers(Protocol[MadeT_co, MatrixT, FacesT]):
         Args:
             tag: the tag of the element.
             texts: the texts with indices.
-            counted: the text with the number of corners of each polygon, for ``<polylist>``.
+            corner_counts: the text with the number of corners of each polygon, for ``<polylist>``.
             width: the number of indices for each corner.
             column: the column of the indices of vertices.
             limits: the columns of indices to check, and the limit of each.
         """
 
-    def mesh(self, text: str, faces: list[FacesT]) -> MadeT_co:
+    def mesh(self, text: str, faces: list[FacesT]) -> MeshT_co:
         """Return a mesh from the text of its vertices and the triangles of its elements."""
 
 
@@ -98,7 +98,7 @@ class ColladaFile(Generic[MeshT, MatrixT]):
         self.root = root
 
 
-def read_scene(data: bytes, numbers: Numbers[MeshT, MatrixT, Any]) -> ColladaFile[MeshT, MatrixT] | None:
+def read_scene(data: bytes, builder: MeshBuilder[MeshT, MatrixT, Any]) -> ColladaFile[MeshT, MatrixT] | None:
     """Return the meshes in the scene of a file.
 
     Numbers are rounded to 32 bits, as in pycollada. Returns None for a file with unusual content or mistakes; only
@@ -107,18 +107,18 @@ def read_scene(data: bytes, numbers: Numbers[MeshT, MatrixT, Any]) -> ColladaFil
     if _DECLARATION.search(data):
         return None
     try:
-        return _File(ET.fromstring(data), numbers).read()  # noqa: S314 - the text contains no entities
+        return _File(ET.fromstring(data), builder).read()  # noqa: S314 - the text contains no entities
     except (UnsupportedContent, ET.ParseError, ValueError, LookupError, RecursionError):
         return None
 
 
 class _File(Generic[MeshT, MatrixT]):
-    def __init__(self, root: _Node, numbers: Numbers[MeshT, MatrixT, Any]) -> None:
+    def __init__(self, root: _Node, builder: MeshBuilder[MeshT, MatrixT, Any]) -> None:
         name, brace, _ = root.tag.rpartition("}")
         if not brace:
             raise UnsupportedContent
         self._root = root
-        self._numbers = numbers
+        self._builder = builder
         self._space = name + brace
         self._geometries = self._by_id("library_geometries", "geometry")
         self._nodes = self._by_id("library_nodes", "node")
@@ -126,10 +126,10 @@ class _File(Generic[MeshT, MatrixT]):
         self._instance_count = 0
 
     def read(self) -> ColladaFile[MeshT, MatrixT]:
-        instance = self._only(self._only(self._root, "scene"), "instance_visual_scene")
+        instance = self._only_child(self._only_child(self._root, "scene"), "instance_visual_scene")
         scene = self._by_id("library_visual_scenes", "visual_scene")[_reference(instance)]
-        root = self._numbers.identity()
-        placed_meshes = [item for node in self._all_elements(scene, "node") for item in self._placed_meshes(node, root)]
+        root = self._builder.identity()
+        placed_meshes = [item for node in self._children(scene, "node") for item in self._placed_meshes(node, root)]
         if not placed_meshes:
             raise UnsupportedContent
         instances = [instance for _, _, instance in placed_meshes]
@@ -137,19 +137,19 @@ class _File(Generic[MeshT, MatrixT]):
 
     # --- tree -------------------------------------------------------------------------------------------------
 
-    def _all_elements(self, node: _Node, tag: str) -> list[_Node]:
+    def _children(self, node: _Node, tag: str) -> list[_Node]:
         return node.findall(self._space + tag)
 
-    def _only(self, node: _Node, tag: str) -> _Node:
-        children = self._all_elements(node, tag)
+    def _only_child(self, node: _Node, tag: str) -> _Node:
+        children = self._children(node, tag)
         if len(children) != 1:
             raise UnsupportedContent
         return children[0]
 
     def _by_id(self, library: str, tag: str) -> dict[str, _Node]:
         nodes: dict[str, _Node] = {}
-        for element in self._all_elements(self._root, library):
-            for node in self._all_elements(element, tag):
+        for element in self._children(self._root, library):
+            for node in self._children(element, tag):
                 name = node.get("id", "")
                 if not name or name in nodes:
                     raise UnsupportedContent
@@ -162,8 +162,8 @@ class _File(Generic[MeshT, MatrixT]):
         return node.tag[len(self._space) :]
 
     def _unit(self) -> float:
-        for asset in self._all_elements(self._root, "asset")[:1]:
-            for unit in self._all_elements(asset, "unit")[:1]:
+        for asset in self._children(self._root, "asset")[:1]:
+            for unit in self._children(asset, "unit")[:1]:
                 meters = float(unit.get("meter", "1"))
                 return 1.0 if math.isclose(meters, 1.0, rel_tol=1e-5) else meters
         return 1.0
@@ -178,7 +178,7 @@ class _File(Generic[MeshT, MatrixT]):
         matrix = parent_matrix
         for child in node:
             if (tag := self._tag(child)) in _TRANSFORMS:
-                matrix = self._numbers.moved(matrix, tag, child.text)
+                matrix = self._builder.apply_transform(matrix, tag, child.text)
         for child in node:
             tag = self._tag(child)
             if tag == "node":
@@ -196,30 +196,29 @@ class _File(Generic[MeshT, MatrixT]):
 
     def _mesh(self, name: str) -> tuple[MeshT, bool]:
         if name not in self._meshes:
-            self._meshes[name] = self._read_mesh(self._only(self._geometries[name], "mesh"))
+            self._meshes[name] = self._read_mesh(self._only_child(self._geometries[name], "mesh"))
         return self._meshes[name]
 
     def _read_mesh(self, mesh: _Node) -> tuple[MeshT, bool]:
         """Return the mesh of a ``<mesh>`` element, and whether it has triangles."""
-        sources = {f"#{element.get('id', '')}": self._source(element) for element in self._all_elements(mesh, "source")}
-        vertices = self._only(mesh, "vertices")
+        sources = {f"#{element.get('id', '')}": self._source(element) for element in self._children(mesh, "source")}
+        vertices = self._only_child(mesh, "vertices")
         inputs = {
-            element.get("semantic"): sources[element.get("source", "")]
-            for element in self._all_elements(vertices, "input")
+            element.get("semantic"): sources[element.get("source", "")] for element in self._children(vertices, "input")
         }
-        corners = inputs["POSITION"]
-        if corners.width != 3:
+        positions = inputs["POSITION"]
+        if positions.width != 3:
             raise UnsupportedContent
-        name = f"#{vertices.get('id', '')}"
-        rows = {name: corners.rows, **{source: source_data.rows for source, source_data in sources.items()}}
+        vertices_id = f"#{vertices.get('id', '')}"
+        rows = {vertices_id: positions.rows, **{source: source_data.rows for source, source_data in sources.items()}}
         primitives = [part for part in mesh if self._tag(part) not in NO_FACES]
-        faces = [self._faces(part, self._tag(part), rows, name) for part in primitives]
-        return self._numbers.mesh(corners.text, faces), any(len(face) for face in faces)
+        faces = [self._faces(part, self._tag(part), rows, vertices_id) for part in primitives]
+        return self._builder.mesh(positions.text, faces), any(len(face) for face in faces)
 
     def _source(self, source: _Node) -> _Source:
-        float_array = self._only(source, "float_array")
-        accessor = self._only(self._only(source, "technique_common"), "accessor")
-        width = len(self._all_elements(accessor, "param"))
+        float_array = self._only_child(source, "float_array")
+        accessor = self._only_child(self._only_child(source, "technique_common"), "accessor")
+        width = len(self._children(accessor, "param"))
         text = float_array.text or ""
         count = len(text.split())
         stride, offset = int(accessor.get("stride", "1")), int(accessor.get("offset", "0"))
@@ -227,21 +226,21 @@ class _File(Generic[MeshT, MatrixT]):
             raise UnsupportedContent
         return _Source(count // width, width, text)
 
-    def _faces(self, primitive: _Node, tag: str, rows: dict[str, int], corners: str) -> Any:
+    def _faces(self, primitive: _Node, tag: str, rows: dict[str, int], vertices_id: str) -> Any:
         """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element."""
         inputs = [
             (element.get("semantic"), element.get("source", ""), int(element.get("offset", "")))
-            for element in self._all_elements(primitive, "input")
+            for element in self._children(primitive, "input")
         ]
         width = max(offset for _, _, offset in inputs) + 1
-        texts = [element.text or "" for element in self._all_elements(primitive, "p")]
-        is_polygons = tag == "polygons" and texts and not self._all_elements(primitive, "ph")
+        texts = [element.text or "" for element in self._children(primitive, "p")]
+        is_polygons = tag == "polygons" and texts and not self._children(primitive, "ph")
         if not is_polygons and (tag not in ("triangles", "polylist") or len(texts) != 1):
             raise UnsupportedContent
-        counted = (self._only(primitive, "vcount").text or "") if tag == "polylist" else ""
-        (column,) = [offset for semantic, source, offset in inputs if semantic == "VERTEX" and source == corners]
+        corner_counts = (self._only_child(primitive, "vcount").text or "") if tag == "polylist" else ""
+        (column,) = [offset for semantic, source, offset in inputs if semantic == "VERTEX" and source == vertices_id]
         limits = [(offset, rows[source]) for _, source, offset in inputs]
-        return self._numbers.faces(tag, texts, counted, width, column, limits)
+        return self._builder.faces(tag, texts, corner_counts, width, column, limits)
 
 
 def _reference(node: _Node) -> str:

@@ -29,9 +29,9 @@ def sine_and_cosine(angle: float) -> tuple[float, float]:
     if not -_LARGE_ANGLE < angle < _LARGE_ANGLE:
         angle = fmod(angle, 4.0 * _QUARTER_TURN)  # exact in every library
     quarters = round(angle / _QUARTER_TURN)
-    rest = angle - quarters * _QUARTER_TURN - quarters * _QUARTER_TURN_REST
-    square = rest * rest
-    sine = _rounded(rest + rest * square * _series(_SINE_TERMS, square))
+    remainder = angle - quarters * _QUARTER_TURN - quarters * _QUARTER_TURN_REST
+    square = remainder * remainder
+    sine = _rounded(remainder + remainder * square * _series(_SINE_TERMS, square))
     cosine = _rounded(1.0 + square * _series(_COSINE_TERMS, square))
     return ((sine, cosine), (cosine, -sine), (-sine, -cosine), (-cosine, sine))[quarters % 4]
 

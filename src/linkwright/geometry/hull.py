@@ -46,27 +46,27 @@ class _Hull:
     Attributes:
         edges: the face of each directed edge, by start and end. The edge in the opposite direction belongs to a
             neighbor.
-        outside: the points outside each face; each point is assigned to only one face.
+        outside_points: the points outside each face; each point is assigned to only one face.
     """
 
-    def __init__(self, points: Array, start: tuple[int, int, int, int], near: float) -> None:
+    def __init__(self, points: Array, start: tuple[int, int, int, int], tolerance: float) -> None:
         self.points = points
-        self.near = near
+        self.tolerance = tolerance
         self.faces: dict[int, Triangle] = {}
         self.planes: dict[int, tuple[Array, float]] = {}
         self.edges: dict[tuple[int, int], int] = {}
-        self.outside: dict[int, Indices] = {}
+        self.outside_points: dict[int, Indices] = {}
         self._next_id = 0
         a, b, c, d = start
         self._add([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.arange(len(points), dtype=np.int64))
 
     def grow(self) -> Faces:
         """Add points until none is outside the hull, and return the faces."""
-        while self.outside:
-            face, candidates = self.outside.popitem()
-            normal, level = self.planes[face]
-            apex = int(candidates[np.argmax(self.points[candidates] @ normal - level)])
-            self.outside[face] = candidates
+        while self.outside_points:
+            face, candidates = self.outside_points.popitem()
+            normal, offset = self.planes[face]
+            apex = int(candidates[np.argmax(self.points[candidates] @ normal - offset)])
+            self.outside_points[face] = candidates
             self._add_point(face, apex)
         return np.array(list(self.faces.values()), dtype=np.int64)
 
@@ -90,8 +90,8 @@ class _Hull:
                 if neighbor in visible:
                     continue
                 if neighbor not in hidden:
-                    normal, level = self.planes[neighbor]
-                    if float(point @ normal) - level > self.near:
+                    normal, offset = self.planes[neighbor]
+                    if float(point @ normal) - offset > self.tolerance:
                         visible.add(neighbor)
                         pending.append(neighbor)
                         continue
@@ -104,7 +104,7 @@ class _Hull:
             if self.edges.get(edge) == face:
                 del self.edges[edge]
         del self.planes[face]
-        return self.outside.pop(face, _NONE)
+        return self.outside_points.pop(face, _NO_INDICES)
 
     def _add(self, triangles: list[Triangle], unassigned: Indices) -> None:
         """Add faces, and assign the points that have no face to them.
@@ -115,24 +115,24 @@ class _Hull:
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
         normals = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
-        levels = np.einsum("ij,ij->i", normals, corners[:, 0])
+        plane_offsets = np.einsum("ij,ij->i", normals, corners[:, 0])
         face_ids = range(self._next_id, self._next_id + len(triangles))
         self._next_id += len(triangles)
-        for face_id, triangle, normal, level in zip(face_ids, triangles, normals, levels, strict=True):
+        for face_id, triangle, normal, offset in zip(face_ids, triangles, normals, plane_offsets, strict=True):
             self.faces[face_id] = triangle
-            self.planes[face_id] = (normal, float(level))
+            self.planes[face_id] = (normal, float(offset))
             for edge in _edges(triangle):
                 self.edges[edge] = face_id
         if len(unassigned):
-            heights = self.points[unassigned] @ normals.T - levels
+            heights = self.points[unassigned] @ normals.T - plane_offsets
             best = heights.argmax(axis=1)
-            is_outside = heights[np.arange(len(unassigned)), best] > self.near
+            is_outside = heights[np.arange(len(unassigned)), best] > self.tolerance
             unassigned, best = unassigned[is_outside], best[is_outside]
             for index in np.unique(best):
-                self.outside[face_ids[int(index)]] = unassigned[best == index]
+                self.outside_points[face_ids[int(index)]] = unassigned[best == index]
 
 
-_NONE: Indices = np.empty(0, dtype=np.int64)
+_NO_INDICES: Indices = np.empty(0, dtype=np.int64)
 
 
 def _edges(triangle: Triangle) -> Iterable[tuple[int, int]]:
@@ -140,7 +140,7 @@ def _edges(triangle: Triangle) -> Iterable[tuple[int, int]]:
     return (a, b), (b, c), (c, a)
 
 
-def _tetrahedron(points: Array, near: float) -> tuple[int, int, int, int] | None:
+def _tetrahedron(points: Array, tolerance: float) -> tuple[int, int, int, int] | None:
     """Return the indices of four points that are far apart, or None if all points are coplanar.
 
     The fourth point is below the plane of the others.
@@ -151,11 +151,11 @@ def _tetrahedron(points: Array, near: float) -> tuple[int, int, int, int] | None
     offsets = points - points[a]
     distances = np.linalg.norm(offsets - np.outer(offsets @ direction, direction), axis=1)
     c = int(distances.argmax())
-    if distances[c] <= near:
+    if distances[c] <= tolerance:
         return None
     normal = np.cross(points[b] - points[a], points[c] - points[a])
     heights = offsets @ (normal / np.linalg.norm(normal))
     d = int(np.abs(heights).argmax())
-    if abs(heights[d]) <= near:
+    if abs(heights[d]) <= tolerance:
         return None
     return (a, b, c, d) if heights[d] < 0 else (a, c, b, d)

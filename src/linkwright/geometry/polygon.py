@@ -60,11 +60,11 @@ def within_polygon(points: NDArray[np.float64], corners: NDArray[np.float64]) ->
     import numpy as np  # Readers of descriptions triangulate polygons without numpy.
 
     x, y = points[..., 0], points[..., 1]
-    inside = np.zeros(x.shape, np.bool_)
+    is_inside = np.zeros(x.shape, np.bool_)
     for (x0, y0), (x1, y1) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         if y0 != y1:
-            inside ^= ((y0 > y) != (y1 > y)) & (x < (x1 - x0) * (y - y0) / (y1 - y0) + x0)
-    return inside
+            is_inside ^= ((y0 > y) != (y1 > y)) & (x < (x1 - x0) * (y - y0) / (y1 - y0) + x0)
+    return is_inside
 
 
 def _twice_area(points: Sequence[Point], ring: Sequence[int]) -> float:

@@ -113,13 +113,13 @@ def rpy_from_quaternion(quaternion: Quaternion) -> Vector3:
     return roll, asin(sin_pitch), yaw
 
 
-def normalized(x: float, y: float, z: float, w: float, *, least: float = 0.0) -> Quaternion:
+def normalized(x: float, y: float, z: float, w: float, *, min_squared_norm: float = 0.0) -> Quaternion:
     """Scale a quaternion to length 1.
 
-    The result is the identity if the squared length is 0, or less than `least`.
+    The result is the identity if the squared length is 0, or less than `min_squared_norm`.
     """
     squared = x * x + y * y + z * z + w * w
-    if squared == 0.0 or squared < least:
+    if squared == 0.0 or squared < min_squared_norm:
         return 0.0, 0.0, 0.0, 1.0
     norm = sqrt(squared)
     return x / norm, y / norm, z / norm, w / norm
@@ -141,7 +141,7 @@ def axis_and_angle(quaternion: Quaternion) -> tuple[Vector3, float]:
 def rotation_from_z(axis: Vector3) -> Quaternion:
     """Return the smallest rotation from z to an axis of any length, as a quaternion.
 
-    To the direction opposite to z, the rotation is about x. For a zero axis, it is the identity.
+    If the axis points along -z, the rotation is about x. For a zero axis, it is the identity.
     """
     x, y, z = axis
     norm = sqrt(x * x + y * y + z * z)

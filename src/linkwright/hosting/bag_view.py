@@ -70,9 +70,9 @@ class BagView(ModelView):
     def _plan_description(self) -> bool:
         """Prepare the topics of the recording, and return whether the view can continue."""
         self.log.write_diagnostics(self._bag.findings)
-        from linkwright.viewer.recorded_robot import published
+        from linkwright.viewer.recorded_robot import publish_recording
 
-        self._output = published(self._bag, self._player, self._robot)
+        self._output = publish_recording(self._bag, self._player, self._robot)
         return True
 
     @cached_property

@@ -85,7 +85,7 @@ _MAX_LISTED_NAMES = 6
 
 
 class SharedNames:
-    """A monitor of node names that a launch shares with other programs in the network.
+    """Watches for node names that a launch shares with other programs in the network.
 
     Args:
         network: the network, which provides the domain for the warning.

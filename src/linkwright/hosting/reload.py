@@ -77,7 +77,7 @@ class LiveReload:
         self._callbacks[call].remove(apply)
 
     def forget(self, call: XacroCall) -> None:
-        """Stop watching the files of a description, and show no findings about it any more."""
+        """Stop watching the files of a description, and remove the findings about it."""
         self._callbacks.pop(call, None)
         self._findings.pop(call, None)
         self._show(self.findings())

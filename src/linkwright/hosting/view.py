@@ -253,12 +253,12 @@ class ModelView:
             self._show_form()
 
     def _show_form(self) -> None:
-        from linkwright.page.protocol.description import NOTHING_ASKED
+        from linkwright.page.protocol.description import NO_ARGUMENT_FORM
         from linkwright.panels.description import ArgumentsFeature
 
         if self._viewer is not None:
             feature = self._viewer.add_feature(ArgumentsFeature)
-            feature.show_form(self._form or NOTHING_ASKED, self._set_arguments)
+            feature.show_form(self._form or NO_ARGUMENT_FORM, self._set_arguments)
 
     def _set_arguments(self, values: dict[str, str]) -> None:
         self._replace_description(XacroCall(self._call.path, tuple(values.items())))

@@ -194,7 +194,7 @@ class Range:
 
 
 class RangeFinder:
-    """A finder of the black and white limits for the images of a stream.
+    """Determines the black and white limits for the images of a stream.
 
     Attributes:
         fixed: the range to use; None to determine it from the images.

@@ -40,7 +40,7 @@ def read_heights(path: Path) -> Heights:
         raise missing_extra("SIM114", error) from None
     try:
         with catch_warnings():
-            simplefilter("ignore")  # errors are reported below
+            simplefilter("ignore")  # such as DecompressionBombWarning; errors are reported below
             with Image.open(path) as image:
                 mode = image.mode
                 gray = image if mode in ("L", "I", "F", "I;16", "I;16B") else image.convert("L")

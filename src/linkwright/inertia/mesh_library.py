@@ -91,7 +91,7 @@ class MeshLibrary:
         Raises:
             LinkwrightError: the same errors as `locate` and `read`.
         """
-        return self.read(self._checked(mesh, element)).scaled(mesh.scale)
+        return self.read(self._find_file(mesh, element)).scaled(mesh.scale)
 
     def outline(self, mesh: Mesh, element: Element | None = None) -> Outline:
         """Return the properties of a scaled URDF mesh that checks use.
@@ -101,13 +101,13 @@ class MeshLibrary:
         Raises:
             LinkwrightError: the same errors as `locate` and `read`.
         """
-        path = self._checked(mesh, element)
+        path = self._find_file(mesh, element)
         key = os.path.realpath(path)
         if key not in self._outlines:
             self._outlines[key] = None if key in self._meshes else _read_small_cached(key, path.suffix.lower())
         return (self._outlines[key] or self.read(path)).scaled(mesh.scale)
 
-    def _checked(self, mesh: Mesh, element: Element | None) -> Path:
+    def _find_file(self, mesh: Mesh, element: Element | None) -> Path:
         """Return the path of a mesh's file.
 
         Raises:

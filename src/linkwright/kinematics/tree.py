@@ -276,12 +276,12 @@ def _doubling_jumps(parents: Indices, depths: Indices) -> list[tuple[int, Indice
     """
     jumps = []
     jump = parents
-    reach = 1
-    while reach < depths[-1]:
-        first = int(np.searchsorted(depths, reach, side="right"))
+    distance = 1
+    while distance < depths[-1]:
+        first = int(np.searchsorted(depths, distance, side="right"))
         jumps.append((first, jump[first:]))
         jump = jump[jump]
-        reach *= 2
+        distance *= 2
     return jumps
 
 

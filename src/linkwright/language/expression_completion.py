@@ -13,7 +13,7 @@ from linkwright.language.cursor import Cursor
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.format import Document
 from linkwright.language.written_yaml import yaml_value
-from linkwright.xacro.expressions.symbols import BARE, MATHEMATICS
+from linkwright.xacro.expressions.builtin_names import BARE, MATHEMATICS
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
 

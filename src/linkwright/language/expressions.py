@@ -87,11 +87,11 @@ def is_subexpression(source: str, start: int, end: int) -> bool:
     if inner is None or isinstance(inner, (ast.Starred, ast.NamedExpr)):
         return False
     outer = parse_expression(f"{source[:start]}({source[start:end]}){source[end:]}")
-    whole = parse_expression(source)
-    if outer is None or whole is None or ast.dump(outer) != ast.dump(whole):
+    tree = parse_expression(source)
+    if outer is None or tree is None or ast.dump(outer) != ast.dump(tree):
         return False
-    bound = {node.arg for node in ast.walk(whole) if isinstance(node, ast.arg)}
-    bound |= {node.id for node in ast.walk(whole) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    bound = {node.arg for node in ast.walk(tree) if isinstance(node, ast.arg)}
+    bound |= {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
     return bound.isdisjoint(node.id for node in ast.walk(inner) if isinstance(node, ast.Name))
 
 

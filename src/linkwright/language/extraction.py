@@ -18,7 +18,7 @@ from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
 from linkwright.language.workspace import Workspace
 from linkwright.language.written import MACRO, SourceElement, innermost_element, source_elements
 from linkwright.loading.deferred import lazy_pattern
-from linkwright.xacro.expressions.symbols import MATHEMATICS
+from linkwright.xacro.expressions.builtin_names import MATHEMATICS
 from linkwright.xmltree.patches import indentation, line_ending
 from linkwright.xmltree.tokens import Kind, TokenAttribute, tokens
 
@@ -241,10 +241,10 @@ def start_with_comments(text: str, start: int) -> int:
         start: the character offset of the element.
     """
     while True:
-        before = text[:start].rstrip(" \t")
-        above = before.rstrip()
-        begin = above.rfind("<!--")
-        is_attached = above.endswith("-->") and begin >= 0 and before[len(above) :].count("\n") == 1
+        prefix = text[:start].rstrip(" \t")
+        text_above = prefix.rstrip()
+        begin = text_above.rfind("<!--")
+        is_attached = text_above.endswith("-->") and begin >= 0 and prefix[len(text_above) :].count("\n") == 1
         if not is_attached or indentation(text, begin) is None:
             return start
         start = begin
@@ -270,7 +270,7 @@ def unique_name(project: Workspace, texts: Mapping[Path, str], file: Path, prefe
     if base[0].isdigit():
         base = f"_{base}"
     used_names = {*keyword.kwlist, *dir(builtins), *MATHEMATICS, *_NAMESPACES}
-    for other in project.index.related(file, texts):
+    for other in project.index.related_files(file, texts):
         used_names.update(re.findall(r"\w+", project.text(other, texts) or ""))
     name, count = base, 1
     while name in used_names:

@@ -15,7 +15,7 @@ from linkwright.language.links import file_references
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.renaming import occurrence_at
 from linkwright.language.valid_parts import valid_parts
-from linkwright.language.values import ValuedText
+from linkwright.language.values import EvaluatedText
 from linkwright.language.workspace import Workspace
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST
@@ -37,7 +37,7 @@ def facts_at(
     file: Path,
     text: str,
     offset: int,
-    values: Sequence[ValuedText],
+    values: Sequence[EvaluatedText],
 ) -> list[str]:
     """Return the facts about the link, joint, mesh or package at an offset, each as Markdown.
 
@@ -65,19 +65,19 @@ def facts_at(
 
 
 def _parts(
-    project: Workspace, texts: Mapping[Path, str], part: Occurrence, values: Sequence[ValuedText]
+    project: Workspace, texts: Mapping[Path, str], part: Occurrence, values: Sequence[EvaluatedText]
 ) -> Iterator[str]:
     """Yield the facts about the links or joints that a name denotes when it is evaluated."""
     if part.kind not in (NameKind.LINK, NameKind.JOINT):
         return
     names = [part.name]
     if "$" in part.name:
-        whole = next((value for value in values if (value.start, value.end) == (part.start, part.end)), None)
-        names = [] if whole is None else [name.strip("'\"") for name in whole.values()]
+        whole_value = next((value for value in values if (value.start, value.end) == (part.start, part.end)), None)
+        names = [] if whole_value is None else [name.strip("'\"") for name in whole_value.values()]
     robots = [*robots_of(project, texts, part.file)]
-    own = [robot for robot in robots if _is_made_by(robot, part, project.text(part.file, texts) or "")]
-    if own or part.is_definition:
-        robots = own  # Another file may define a link with this name for another robot.
+    source_robots = [robot for robot in robots if _is_made_by(robot, part, project.text(part.file, texts) or "")]
+    if source_robots or part.is_definition:
+        robots = source_robots  # Another file may define a link with this name for another robot.
     for name in names[:_MAX_PARTS]:
         facts = next((facts for robot in robots if (facts := part_facts(robot, part.kind, name))), None)
         if facts is not None:

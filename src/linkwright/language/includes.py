@@ -35,9 +35,9 @@ class IncludeIndex:
         files: dict[Path, None] = {}
         packages: dict[Path, None] = {}
         for folder in self._folders:
-            descriptions, below = walk(folder, DESCRIPTIONS)
+            descriptions, package_folders = walk(folder, DESCRIPTIONS)
             files.update(dict.fromkeys(real_path(file) for file in descriptions))
-            packages.update(dict.fromkeys(below))
+            packages.update(dict.fromkeys(package_folders))
         self.files, self.packages = tuple(files), tuple(packages)
         self._package_folders = folders_by_package(map(real_path, packages))
 
@@ -73,7 +73,7 @@ class IncludeIndex:
         includers = self._includers(texts)
         return [file for file in files if not self._includers_of(file, includers)]
 
-    def related(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
+    def related_files(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
         """Return a file and all files of the descriptions that include it.
 
         The files that it includes are among them.
@@ -93,7 +93,7 @@ class IncludeIndex:
             if current in related_files:
                 continue
             related_files[current] = None
-            for inclusion in self._included(current, texts):
+            for inclusion in self._inclusions_of(current, texts):
                 candidates = by_name.get(inclusion.name, ())
                 pending += [other for other in candidates if inclusion.may_lead(current, other, self._package_folders)]
                 if computed:
@@ -104,7 +104,7 @@ class IncludeIndex:
         """Return the includes of all files, by the names of the included files."""
         includers: dict[str, list[tuple[Path, Inclusion]]] = {}
         for file in dict.fromkeys((*self.files, *texts)):
-            for inclusion in self._included(file, texts):
+            for inclusion in self._inclusions_of(file, texts):
                 includers.setdefault(inclusion.name, []).append((file, inclusion))
         return includers
 
@@ -123,7 +123,7 @@ class IncludeIndex:
         including_files.pop(file, None)
         return [*including_files]
 
-    def _included(self, file: Path, texts: Mapping[Path, str]) -> tuple[Inclusion, ...]:
+    def _inclusions_of(self, file: Path, texts: Mapping[Path, str]) -> tuple[Inclusion, ...]:
         text = texts.get(file)
         if text is not None:
             return tuple(dict.fromkeys(inclusions_in(text)))

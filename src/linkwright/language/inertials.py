@@ -52,22 +52,22 @@ def fill_in_inertia(
         UnprovedError: no expansion contains the link, its inertia is unknown or cannot be written, or something else
             would change.
     """
-    robot, entry, expanded = _expanded_link(project, texts, file, link)
+    robot, entry, expanded_link = _expanded_link(project, texts, file, link)
     finder = project.finder(entry)
-    properties = estimate(expanded, MeshLibrary(finder, entry.parent)).properties
+    properties = estimate(expanded_link, MeshLibrary(finder, entry.parent)).properties
     if properties is None:
-        raise UnprovedError(phrase("no shape of the link '{name}' has a volume", name=expanded.name))
+        raise UnprovedError(phrase("no shape of the link '{name}' has a volume", name=expanded_link.name))
     try:
-        source, replacements = edits_of_link(robot, expanded.name, properties)
+        source, replacements = edits_of_link(robot, expanded_link.name, properties)
     except NotWritableError as error:
         raise UnprovedError(error.args[0]) from None
     if source.text != text:
         raise UnprovedError(phrase("'{file}' has changed since it was read", file=file.name))
     edits = tuple(Edit(file, replacement.start, replacement.end, replacement.text) for replacement in replacements)
     if not edits:
-        raise UnprovedError(phrase("the link '{name}' already has this inertia", name=expanded.name))
+        raise UnprovedError(phrase("the link '{name}' already has this inertia", name=expanded_link.name))
     for pair in ExpansionProof(project, texts, file).pairs(edits):
-        first, second = (_without_inertial(root, expanded.name) for root in (pair.before, pair.after))
+        first, second = (_without_inertial(root, expanded_link.name) for root in (pair.before, pair.after))
         if first != second:
             raise UnprovedError(phrase("the robot of '{file}' would change", file=pair.entry.name))
     return edits
@@ -77,11 +77,11 @@ def _expanded_link(
     project: Workspace, texts: Mapping[Path, str], file: Path, link: SourceElement
 ) -> tuple[Robot, Path, Link]:
     for entry, robot in expanded_robots(project, texts, file):
-        expanded = next(
+        expanded_link = next(
             (candidate for candidate in robot.links.values() if is_source_of(file, link.start, candidate.element)), None
         )
-        if expanded is not None:
-            return robot, entry, expanded
+        if expanded_link is not None:
+            return robot, entry, expanded_link
     raise UnprovedError(phrase("no description that can be expanded has this link"))
 
 

@@ -123,21 +123,21 @@ def _replacements(
                 ),
                 None,
             )
-            around = None if piece is None else _expression_around(piece, use)
-            if piece is None or around is None or text[: use.start].endswith("."):
+            expression = None if piece is None else _expression_around(piece, use)
+            if piece is None or expression is None or text[: use.start].endswith("."):
                 line = text.count("\n", 0, use.start) + 1
-                used = phrase(
+                message = phrase(
                     "'{name}' is used outside an expression in {file}:{line}",
                     name=use.name,
                     file=display_path(file),
                     line=line,
                 )
-                raise UnprovedError(used)
-            span = piece.start + around.start, piece.start + around.end
+                raise UnprovedError(message)
+            span = piece.start + expression.start, piece.start + expression.end
             if span not in replaced_ranges:
                 replaced_ranges.add(span)
                 names = [candidate for candidate in places if span[0] <= candidate.start < span[1]]
-                yield Edit(file, *span, _replacement(around, piece, names, value, is_raw=is_raw))
+                yield Edit(file, *span, _replacement(expression, piece, names, value, is_raw=is_raw))
 
 
 def _pieces(text: str) -> Iterator[_Piece]:
@@ -159,11 +159,11 @@ def _expression_around(piece: _Piece, use: Occurrence) -> SourceExpression | Non
 
 
 def _replacement(
-    around: SourceExpression, piece: _Piece, names: Sequence[Occurrence], value: str, *, is_raw: bool
+    expression: SourceExpression, piece: _Piece, names: Sequence[Occurrence], value: str, *, is_raw: bool
 ) -> str:
     """Return the text that replaces an expression with the property."""
     quotes = {"'": "&apos;", '"': "&quot;"}
-    source, low = around.source, piece.start + around.inner_range[0]
+    source, low = expression.source, piece.start + expression.inner_range[0]
     if source.strip() == names[0].name and (is_raw or _as_expression(value, piece.quote) is None):
         return value.replace(piece.quote, quotes[piece.quote]) if piece.quote else value
     new = _as_expression(value, piece.quote)

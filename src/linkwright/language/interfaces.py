@@ -98,7 +98,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 
 def _offer_types(document: Document, typed: str, start: int) -> Iterator[Completion]:
-    own = _own_package(document)
+    own_package = _own_package(document)
     package, slash, _ = typed.partition("/")
     likely = [*dict.fromkeys((*_used_types(document, start), *_COMMON_TYPES))]
     if slash:
@@ -109,13 +109,13 @@ def _offer_types(document: Document, typed: str, start: int) -> Iterator[Complet
         return
     for primitive in (*_COMMON_PRIMITIVES, *(name for name in PRIMITIVES if name not in _COMMON_PRIMITIVES)):
         yield Completion(primitive, ItemKind.VALUE, start, PRIMITIVES[primitive].idl_name)
-    for name in _names_in(document, own):
+    for name in _names_in(document, own_package):
         if name != document.file.stem or document.file.suffix != ".msg":
-            yield Completion(name, ItemKind.NAME, start, own)
+            yield Completion(name, ItemKind.NAME, start, own_package)
     for name in likely:
         yield Completion(name, ItemKind.NAME, start)
     for package in dict.fromkeys((*_COMMON_PACKAGES, *sorted({*catalog.packages(), *document.finder.packages()}))):
-        for name in _names_in(document, package) if package != own else ():
+        for name in _names_in(document, package) if package != own_package else ():
             if f"{package}/{name}" not in likely:
                 yield Completion(f"{package}/{name}", ItemKind.NAME, start)
 
@@ -140,9 +140,9 @@ def _used_types(document: Document, excluded_offset: int) -> list[str]:
 
 def _names_in(document: Document, package: str) -> list[str]:
     share = document.finder.find(package) if package else None
-    own = {} if share is None else interface_files(share, "msg")
+    own_messages = {} if share is None else interface_files(share, "msg")
     known_messages = [name.removeprefix("msg/") for name in catalog.texts(package) if name.startswith("msg/")]
-    return sorted({*own, *known_messages})
+    return sorted({*own_messages, *known_messages})
 
 
 # --- hover, definition and symbols ----------------------------------------------------------------------------

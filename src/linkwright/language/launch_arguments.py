@@ -170,10 +170,10 @@ def _loop_values(python: PythonText, call: Group, name: str) -> Iterator[tuple[T
     The loop iterates over a list of strings, or over a dictionary whose values are strings or pairs of strings.
     """
     item = call.parent
-    around = [] if item is None else item.group.items[item.group.items.index(item) :]
-    before = bisect_left(python.root.items, call.start, key=lambda other: other.start)
-    statements = (other.parts for other in reversed(python.root.items[max(0, before - _LOOKED_BACK) : before]))
-    for parts in ([part for other in around for part in other.parts], *statements):
+    following_items = [] if item is None else item.group.items[item.group.items.index(item) :]
+    item_index = bisect_left(python.root.items, call.start, key=lambda other: other.start)
+    statements = (other.parts for other in reversed(python.root.items[max(0, item_index - _LOOKED_BACK) : item_index]))
+    for parts in ([part for other in following_items for part in other.parts], *statements):
         words = [part.value if isinstance(part, Name) else "" for part in parts]
         if "for" not in words or "in" not in words[words.index("for") :]:
             continue

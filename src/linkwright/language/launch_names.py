@@ -53,13 +53,13 @@ class LaunchInclude:
 
     Attributes:
         target: the file, or None if it is unknown.
-        written: the path as written or, in Python, the last string of it.
+        path_text: the path as written or, in Python, the last string of it.
         passed: the names of the arguments that are passed to it.
         is_known: whether `passed` is complete.
     """
 
     target: Path | None
-    written: str
+    path_text: str
     passed: list[LaunchName] = field(default_factory=list)
     is_known: bool = True
 
@@ -147,8 +147,8 @@ def _in_yaml(document: Document) -> LaunchNames:
         if entry.key == "include" and entry.child("file") is not None:
             path_entry = entry.child("file")
             path = "" if path_entry is None else path_entry.scalar
-            passed = [*_passed_in_yaml(entry, file)]
-            names.includes.append(LaunchInclude(_target(launch.path_of(path)), path, passed))
+            passed_names = [*_passed_in_yaml(entry, file)]
+            names.includes.append(LaunchInclude(_target(launch.path_of(path)), path, passed_names))
         elif entry.key in ("arg", "let") and "include" not in entry.path[:-1]:
             names.names += _names_in_list(entry, file)
     return names
@@ -194,7 +194,7 @@ def _in_python(document: Document) -> LaunchNames:
             add(_first_text(call.argument("key", 0)))
     passed: set[int] = set()
     for call in python.calls_of("IncludeLaunchDescription"):
-        include = _included(launch, call, file)
+        include = _read_include(launch, call, file)
         passed.update(name.start for name in include.passed)
         names.includes.append(include)
     for text, item in python.strings:
@@ -219,11 +219,11 @@ def _is_subscript(item: Item) -> bool:
     if item.group.opening != "[" or parent is None:
         return False
     index = next((number for number, part in enumerate(parent.parts) if part is item.group), 0)
-    before = parent.parts[index - 1] if index else None
-    return isinstance(before, Name) and before.value.endswith(_CONTEXT)
+    previous_part = parent.parts[index - 1] if index else None
+    return isinstance(previous_part, Name) and previous_part.value.endswith(_CONTEXT)
 
 
-def _included(launch: PythonLaunchText, call: Group, file: Path) -> LaunchInclude:
+def _read_include(launch: PythonLaunchText, call: Group, file: Path) -> LaunchInclude:
     source = call.argument("launch_description_source", 0)
     words = [] if source is None else [*_texts_in(source)]
     include = LaunchInclude(_target(launch.included_file(call)), words[-1].value if words else "")

@@ -78,7 +78,7 @@ class _StringMeaning:
         base: the path that the string continues.
         choices: the likely values.
         programs: the programs of the nodes that have a topic or parameter.
-        given: the other names in the list of a topic or parameter.
+        excluded_names: the other names in the list of a topic or parameter.
     """
 
     kind: str
@@ -88,7 +88,7 @@ class _StringMeaning:
     base: Value | None = None
     choices: tuple[str, ...] = ()
     programs: tuple[NodeProgram, ...] = ()
-    given: frozenset[str] = frozenset()
+    excluded_names: frozenset[str] = frozenset()
 
 
 class PythonLaunchText:
@@ -140,8 +140,8 @@ class PythonLaunchText:
         if included is not None:
             return included
         if group.function == "DeclareLaunchArgument" and (index == 0 or keyword == "name"):
-            own = tuple(argument for argument in self.arguments if argument.start == text.start)
-            return _StringMeaning("argument", text, arguments=own)
+            own_arguments = tuple(argument for argument in self.arguments if argument.start == text.start)
+            return _StringMeaning("argument", text, arguments=own_arguments)
         return _StringMeaning("path", text, base=self.paths.before(text, item))
 
     def _meaning_in_node(self, text: Text, item: Item) -> _StringMeaning | None:
@@ -158,21 +158,23 @@ class PythonLaunchText:
             if item is not group.items[0]:  # This string is the new name.
                 old = first.value if isinstance(first, Text) else ""
                 return _StringMeaning("topic", text, choices=_new_names(old), programs=programs)
-            return _StringMeaning("topic", text, programs=programs, given=remapped_names)
+            return _StringMeaning("topic", text, programs=programs, excluded_names=remapped_names)
         if group.opening == "{" and _is_in_list_named(outer, _PARAMETERS):
             names = (sibling.parts[0] for sibling in group.items if sibling is not item and sibling.parts)
             remapped_names = frozenset(part.value for part in names if isinstance(part, Text))
-            return _StringMeaning("parameter", text, programs=self._programs(outer, "parameters"), given=remapped_names)
+            return _StringMeaning(
+                "parameter", text, programs=self._programs(outer, "parameters"), excluded_names=remapped_names
+            )
         return None
 
     def _programs(self, item: Item, keyword: str) -> tuple[NodeProgram, ...]:
         """Return the programs of the nodes that use a list of remappings or parameters."""
         bound = item
-        around: Item | None = item
-        while around is not None:
-            if around.keyword == keyword and around.group.callee:
-                return (self._program(around.group),)
-            bound, around = around, around.group.parent
+        current: Item | None = item
+        while current is not None:
+            if current.keyword == keyword and current.group.callee:
+                return (self._program(current.group),)
+            bound, current = current, current.group.parent
         names = {bound.keyword, *(part.value for part in bound.parts[:1] if isinstance(part, Name))}
         users = [call for call in self.python.calls_of(*_ACTIONS) if _names_in(call.argument(keyword)) & names]
         programs = map(self._program, users or self.python.calls_of(*_ACTIONS))
@@ -254,21 +256,21 @@ class PythonLaunchText:
     def path_through(self, meaning: _StringMeaning, end: int) -> str | None:
         """Return the path of a string up to the first slash at or after an offset."""
         base = "" if meaning.base is None else meaning.base.text
-        rest = meaning.text.value[end - meaning.text.start :].partition("/")[0]
-        path_text = meaning.text.value[: end - meaning.text.start] + rest
+        component = meaning.text.value[end - meaning.text.start :].partition("/")[0]
+        path_text = meaning.text.value[: end - meaning.text.start] + component
         return base.rstrip("/") + "/" + path_text.lstrip("/") if base.endswith("/") else base + path_text
 
 
 def _is_in_list_named(item: Item, name_pattern: re.Pattern[str]) -> bool:
     """Return whether an item is in a list for an argument or variable with a matching name."""
-    around: Item | None = item
+    current: Item | None = item
     for _ in range(_DEEPEST_LIST):
-        if around is None:
+        if current is None:
             return False
-        words = [around.keyword] + [part.value for part in around.parts[:1] if isinstance(part, Name)]
+        words = [current.keyword] + [part.value for part in current.parts[:1] if isinstance(part, Name)]
         if any(name_pattern.search(word) for word in words):
             return True
-        around = around.group.parent if not around.group.callee else None
+        current = current.group.parent if not current.group.callee else None
     return False
 
 
@@ -285,13 +287,13 @@ def _new_names(old: str) -> tuple[str, ...]:
 
 def _include_around(item: Item) -> Group | None:
     """Return the ``IncludeLaunchDescription`` whose launch arguments contain an item, or None."""
-    around: Item | None = item
+    current: Item | None = item
     for _ in range(5):
-        if around is None:
+        if current is None:
             return None
-        if around.keyword == "launch_arguments" and around.group.function == "IncludeLaunchDescription":
-            return around.group if around is not item else None
-        around = around.group.parent
+        if current.keyword == "launch_arguments" and current.group.function == "IncludeLaunchDescription":
+            return current.group if current is not item else None
+        current = current.group.parent
     return None
 
 
@@ -321,11 +323,11 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
                 yield Completion(name, ItemKind.NAME, start)
     elif meaning.kind == "parameter":
         for parameter in launch.parameters(meaning):
-            if parameter.name not in meaning.given and "*" not in parameter.name:
+            if parameter.name not in meaning.excluded_names and "*" not in parameter.name:
                 detail = f"{parameter.type} {parameter.written_default}".strip()
                 yield Completion(parameter.name, ItemKind.NAME, start, detail, parameter.description)
     elif meaning.kind == "topic" and not meaning.choices:
-        yield from offer_topics(document, meaning.programs, document.text[start:offset], start, meaning.given)
+        yield from offer_topics(document, meaning.programs, document.text[start:offset], start, meaning.excluded_names)
     else:
         yield from offer_values(meaning.choices, start)
         yield from _path_completions(launch, meaning, offset)
@@ -334,10 +336,10 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 def _path_completions(launch: PythonLaunchText, meaning: _StringMeaning, offset: int) -> Iterator[Completion]:
     typed = meaning.text.value[: offset - meaning.text.start]
     if typed.startswith(_URI):
-        name, slash, rest = typed[len(_URI) :].partition("/")
+        name, slash, subpath = typed[len(_URI) :].partition("/")
         share = launch.document.finder.find(name) if slash else None
         if share is not None:
-            yield from offer_files(share, rest, offset)
+            yield from offer_files(share, subpath, offset)
         elif not slash:
             yield from offer_packages(launch.document, meaning.text.start + len(_URI))
         return

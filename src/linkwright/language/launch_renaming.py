@@ -129,12 +129,12 @@ class _Search:
         if self._passed_name(include) is not None:
             return
         if include.target is None:
-            if include.written:
+            if include.path_text:
                 self._result.notes.append(
                     phrase(
                         "'{file}' includes '{included_file}', which cannot be found",
                         file=file.name,
-                        included_file=include.written,
+                        included_file=include.path_text,
                     )
                 )
         elif self._mentions_below(include.target, set()):
@@ -164,12 +164,14 @@ class _Search:
         seen_files.add(file)
         if self._mentions(file):
             return True
-        beside = (
+        targets = (
             include.target
             for include in self._names(file).includes
             if include.target is not None and self._passed_name(include) is None
         )
-        return any(self._mentions_below(target, {*seen_files}) for target in beside if target not in seen_files) or any(
+        return any(
+            self._mentions_below(target, {*seen_files}) for target in targets if target not in seen_files
+        ) or any(
             self._passed_name(include) is None
             and include.is_known
             and self._mentions_above(other, includers, seen_files)

@@ -48,9 +48,9 @@ def open_substitution(typed: str) -> Substitution | None:
     if not opened:
         return None
     inner = typed[opened[-1] :]
-    command, space, rest = inner.lstrip().partition(" ")
+    command, space, arguments = inner.lstrip().partition(" ")
     start = opened[-1] + len(inner) - len(inner.lstrip())
-    return Substitution(command, tuple(rest.split(" ")) if space else (), start)
+    return Substitution(command, tuple(arguments.split(" ")) if space else (), start)
 
 
 def substitution_around(text: str, offset: int) -> re.Match[str] | None:

@@ -335,19 +335,21 @@ class _ValueMeaning:
 
 
 def _meaning_at(launch: LaunchText, value: LaunchValue) -> _ValueMeaning | None:
-    around = substitution_around(value.text, value.offset - value.start)
-    meaning = None if around is None else _meaning_in_substitution(launch, around, value.offset - value.start)
+    substitution = substitution_around(value.text, value.offset - value.start)
+    meaning = (
+        None if substitution is None else _meaning_in_substitution(launch, substitution, value.offset - value.start)
+    )
     if meaning is not None:
         return replace(meaning, start=value.start + meaning.start, end=value.start + meaning.end)
     return _meaning_of_attribute(launch, value)
 
 
-def _meaning_in_substitution(launch: LaunchText, around: re.Match[str], offset: int) -> _ValueMeaning | None:
-    command, arguments = around[1], (around[2] or "").strip("'\" ")
-    if offset <= around.end(1):
-        return _ValueMeaning("substitution", command, *around.span(1)) if command in substitution_names() else None
+def _meaning_in_substitution(launch: LaunchText, match: re.Match[str], offset: int) -> _ValueMeaning | None:
+    command, arguments = match[1], (match[2] or "").strip("'\" ")
+    if offset <= match.end(1):
+        return _ValueMeaning("substitution", command, *match.span(1)) if command in substitution_names() else None
     name = arguments.partition(" ")[0]
-    start = around.start(2) + (around[2] or "").find(name) if around[2] else around.end(1)
+    start = match.start(2) + (match[2] or "").find(name) if match[2] else match.end(1)
     name_range = start, start + len(name)
     if command in _PACKAGES:
         return _ValueMeaning("package", name, *name_range)
@@ -364,15 +366,15 @@ def _arguments_named(arguments: Iterable[LaunchArgument], name: str) -> tuple[La
 
 def _meaning_of_attribute(launch: LaunchText, value: LaunchValue) -> _ValueMeaning | None:
     name, begin = value.name, value.start
-    whole = begin, begin + len(value.text)
+    whole_range = begin, begin + len(value.text)
     if value.tags[-1] == "remap" and name in ("from", "to"):
-        return _ValueMeaning("topic", value.attributes.get("from", ""), *whole, program=launch.program_of(value))
+        return _ValueMeaning("topic", value.attributes.get("from", ""), *whole_range, program=launch.program_of(value))
     kinds = {"pkg": "package", "exec": "program", "plugin": "component"}
     if name in kinds:
-        return _ValueMeaning(kinds[name], value.text, *whole, package=launch.package_of(value))
+        return _ValueMeaning(kinds[name], value.text, *whole_range, package=launch.package_of(value))
     if name == "name" and value.tags[-1] in _INTO_ARGUMENTS:
         arguments = launch.included_arguments(value) if value.is_included else launch.arguments
-        return _ValueMeaning("argument", value.text, *whole, arguments=_arguments_named(arguments, value.text))
+        return _ValueMeaning("argument", value.text, *whole_range, arguments=_arguments_named(arguments, value.text))
     for start, end in path_words(value.text):
         word = value.text[start:end]
         if begin + start <= value.offset <= begin + end and ("/" in word or name in _PATHS):

@@ -53,8 +53,10 @@ def _value_at(text: str, offset: int) -> LaunchValue | None:
 
 def _parent_of(text: str, token: Token) -> OutlineElement | None:
     """Return the element that contains a start tag, or None if there is none."""
-    around = [element for element in Outline.of(text).elements_around(token.start) if element.tag.start < token.start]
-    return next((element for element in reversed(around) if element.end > token.start), None)
+    ancestors = [
+        element for element in Outline.of(text).elements_around(token.start) if element.tag.start < token.start
+    ]
+    return next((element for element in reversed(ancestors) if element.end > token.start), None)
 
 
 def _complete(document: Document, offset: int) -> Iterator[Completion]:

@@ -45,10 +45,10 @@ def _attribute_values(entry: YamlEntry | None) -> Mapping[str, str]:
 
 def _element_around(entry: YamlEntry) -> YamlEntry | None:
     """Return the element around the element of an entry, or None for the outermost."""
-    above = entry.parent
-    while above is not None and (not above.key or above.key in (_CHILDREN, entry.key)):
-        above = above.parent
-    return above
+    ancestor = entry.parent
+    while ancestor is not None and (not ancestor.key or ancestor.key in (_CHILDREN, entry.key)):
+        ancestor = ancestor.parent
+    return ancestor
 
 
 def _value_of(cursor: YamlCursor) -> LaunchValue | None:
@@ -62,9 +62,9 @@ def _value_of(cursor: YamlCursor) -> LaunchValue | None:
         return None
     text = entry.scalar if entry.scalar.startswith(cursor.typed) and not cursor.is_in_list else cursor.typed
     owner = element.parent if element.is_item and element.parent is not None else element
-    others = owner.children if element.is_item else []
+    siblings = owner.children if element.is_item else []
     key = "from" if tags[-2] == "remap" else "name"
-    names = (name.scalar for item in others if item is not element and (name := item.child(key)) is not None)
+    names = (name.scalar for item in siblings if item is not element and (name := item.child(key)) is not None)
     parent = _attribute_values(_element_around(owner))
     return LaunchValue(
         tags[:-1], tags[-1], text, cursor.start, cursor.offset, _attribute_values(element), parent, frozenset(names)
@@ -90,18 +90,18 @@ def _is_new_item(cursor: YamlCursor) -> bool:
 
 
 def _keys(cursor: YamlCursor) -> Iterator[Completion]:
-    within = cursor.parent_entry
-    tags = _tags(within)
+    parent = cursor.parent_entry
+    tags = _tags(parent)
     if not tags:
         yield Completion(LAUNCH.tag, ItemKind.ELEMENT, cursor.start, "", describe_element(LAUNCH))
         return
     rule = rule_at(LAUNCH, tags)
     if rule is None:
         return
-    present = {child.key for child in within.children if child is not cursor.entry}
-    owner = within.parent if within.is_item and within.parent is not None else within
-    is_action_list = owner.key in _LISTS and (within.is_item or _is_new_item(cursor))
-    for attribute in () if is_action_list or not within.parent else rule.attributes:
+    present = {child.key for child in parent.children if child is not cursor.entry}
+    owner = parent.parent if parent.is_item and parent.parent is not None else parent
+    is_action_list = owner.key in _LISTS and (parent.is_item or _is_new_item(cursor))
+    for attribute in () if is_action_list or not parent.parent else rule.attributes:
         if attribute.name not in present:
             snippet = "" if cursor.entry is not None else f'{attribute.name}: "$1"$0'
             described = describe_attribute(attribute)

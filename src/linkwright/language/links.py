@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.language.values import ValuedText
+from linkwright.language.values import EvaluatedText
 from linkwright.packages import PackageFinder
 from linkwright.xmltree.tokens import Kind, tokens
 
@@ -34,7 +34,7 @@ class FileReference(NamedTuple):
 
 
 def file_references(
-    text: str, file: Path, finder: PackageFinder, values: Iterable[ValuedText] = ()
+    text: str, file: Path, finder: PackageFinder, values: Iterable[EvaluatedText] = ()
 ) -> Iterator[FileReference]:
     """Yield the references to existing files and folders in a text, in text order.
 

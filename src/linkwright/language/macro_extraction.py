@@ -39,11 +39,11 @@ def selected_elements(text: str, start: int, end: int) -> list[SourceElement]:
     )
     if start >= end:
         return []
-    inside = [candidate for candidate in source_elements(text) if start <= candidate.start < end]
-    if not inside or any(candidate.end < 0 or candidate.end > end for candidate in inside):
+    selected_elements = [candidate for candidate in source_elements(text) if start <= candidate.start < end]
+    if not selected_elements or any(candidate.end < 0 or candidate.end > end for candidate in selected_elements):
         return []
-    first = inside[0]
-    siblings = [candidate for candidate in inside if candidate.parent is first.parent]
+    first = selected_elements[0]
+    siblings = [candidate for candidate in selected_elements if candidate.parent is first.parent]
     if first.parent is None or not all(_is_movable(candidate) for candidate in siblings):
         return []
     position = start
@@ -129,15 +129,25 @@ def _parameter_lists(
 ) -> Iterator[list[str]]:
     """Yield the lists of parameters to try: all used names, only macro parameters, none."""
     properties: set[str] = set()
-    for other in project.index.related(file, texts):
+    for other in project.index.related_files(file, texts):
         all_names = occurrences_in(project.text(other, texts) or "", other)
         properties |= {
             candidate.name for candidate in all_names if candidate.kind is NameKind.PROPERTY and candidate.is_definition
         }
-    inside = [candidate for candidate in occurrences_in(text, file) if selected[0] <= candidate.start < selected[1]]
-    own = {candidate.name for candidate in inside if candidate.kind is NameKind.PROPERTY and candidate.is_definition}
-    blocks = {candidate.name for candidate in inside if _is_block_use(text, candidate)}
-    names = [candidate for candidate in inside if candidate.name not in own | blocks and not candidate.is_definition]
+    selected_names = [
+        candidate for candidate in occurrences_in(text, file) if selected[0] <= candidate.start < selected[1]
+    ]
+    own_properties = {
+        candidate.name
+        for candidate in selected_names
+        if candidate.kind is NameKind.PROPERTY and candidate.is_definition
+    }
+    blocks = {candidate.name for candidate in selected_names if _is_block_use(text, candidate)}
+    names = [
+        candidate
+        for candidate in selected_names
+        if candidate.name not in own_properties | blocks and not candidate.is_definition
+    ]
     used_names = [
         candidate.name
         for candidate in names
@@ -154,8 +164,8 @@ def _parameter_lists(
 
 
 def _is_block_use(text: str, name: Occurrence) -> bool:
-    before = text[: name.start].rpartition("<")[2]
-    return before.startswith("xacro:insert_block")
+    start_of_tag = text[: name.start].rpartition("<")[2]
+    return start_of_tag.startswith("xacro:insert_block")
 
 
 def _is_value(text: str, name: Occurrence) -> bool:

@@ -70,15 +70,15 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 def _single_children(text: str, offset: int) -> set[str]:
     """Return the tags of existing siblings at an offset that may occur only once."""
-    around = []
+    ancestors = []
     for element in Outline.of(text).elements_around(offset):
         end = element.end if element.closing is None else element.closing.start
         if element.tag.end <= offset <= end and not element.tag.is_empty_element:
-            around.append(element)
-    rule = rule_at(PACKAGE, [element.tag.name for element in around])
-    if rule is None or not around:
+            ancestors.append(element)
+    rule = rule_at(PACKAGE, [element.tag.name for element in ancestors])
+    if rule is None or not ancestors:
         return set()
-    names = {child.tag.name for child in around[-1].children if not child.tag.start < offset <= child.tag.end}
+    names = {child.tag.name for child in ancestors[-1].children if not child.tag.start < offset <= child.tag.end}
     return {name for name in names if name in rule.child_rules and not rule.child_rules[name].many}
 
 

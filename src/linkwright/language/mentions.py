@@ -102,8 +102,8 @@ def _in_yaml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
         node, keys, is_key = pending.pop()
         if isinstance(node, yaml.MappingNode):
             for key, value in reversed(node.value):
-                own = key.value if isinstance(key, yaml.ScalarNode) else ""
-                pending.append((value, (*keys, own), False))
+                own_key = key.value if isinstance(key, yaml.ScalarNode) else ""
+                pending.append((value, (*keys, own_key), False))
                 pending.append((key, keys, True))
         elif isinstance(node, yaml.SequenceNode):
             pending += [(item, keys, False) for item in reversed(node.value)]
@@ -206,9 +206,11 @@ def _in_launch_xml(text: str, file: Path, names: frozenset[str]) -> Iterator[Men
             value = attribute.value or ""
             for match in words.finditer(value):
                 is_whole = match[0] == value and attribute.name in ("value", "default")
-                before = value[: match.start()].split() if attribute.name == "args" else []
+                preceding_words = value[: match.start()].split() if attribute.name == "args" else []
                 kinds = kinds_of_key(key or "") if is_whole else ()
-                is_frame = before[-1:] and before[-1] in _FRAME_OPTIONS
-                if is_frame or (program == _TRANSFORM and len(before) >= _POSE and before[0][:1] != "-"):
+                is_frame = preceding_words[-1:] and preceding_words[-1] in _FRAME_OPTIONS
+                if is_frame or (
+                    program == _TRANSFORM and len(preceding_words) >= _POSE and preceding_words[0][:1] != "-"
+                ):
                     kinds = (NameKind.LINK,)
                 yield Mention(match[0], file, attribute.value_start + match.start(), kinds)

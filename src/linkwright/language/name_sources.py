@@ -90,16 +90,16 @@ def renamed_template(old: str, new: str, value: str) -> str | None:
         new: the new text, such as ``${prefix}tire``.
         value: the present value, such as ``left_wheel``.
     """
-    before, after = _parts(old), _parts(new)
-    expressions = [part.text for part in before if part.kind is not TokenKind.TEXT]
-    if [part.text for part in after if part.kind is not TokenKind.TEXT] != expressions:
+    old_parts, new_parts = _parts(old), _parts(new)
+    expressions = [part.text for part in old_parts if part.kind is not TokenKind.TEXT]
+    if [part.text for part in new_parts if part.kind is not TokenKind.TEXT] != expressions:
         return None
-    pattern = "".join(re.escape(part.text) if part.kind is TokenKind.TEXT else "(.*?)" for part in before)
+    pattern = "".join(re.escape(part.text) if part.kind is TokenKind.TEXT else "(.*?)" for part in old_parts)
     match = re.fullmatch(pattern, value, re.DOTALL)
     if match is None:
         return None
     values = iter(match.groups())
-    return "".join(part.text if part.kind is TokenKind.TEXT else next(values) for part in after)
+    return "".join(part.text if part.kind is TokenKind.TEXT else next(values) for part in new_parts)
 
 
 class NameSources:
@@ -232,14 +232,14 @@ class NameSources:
                         real_path(source.name),
                         value_range[0],
                         source.text[value_range[0] : value_range[1]],
-                        frame.around,
+                        frame.outer,
                     )
                     return
                 default = self._parameter_default(frame.macro, name, frame)
                 if default is not None:
                     yield default
                     return
-            frame = frame.around
+            frame = frame.outer
         yield from self._attributes("xacro:property", name, "value")
 
     def _parameter_default(self, macro: str, name: str, frame: Frame) -> SourceValue | None:

@@ -102,8 +102,8 @@ def _in_sources(document: Document, program: NodeProgram) -> Iterator[NodeTopic]
     share = document.finder.find(program.package) if program.package else None
     if share is None or not share.is_dir():
         return
-    own = programs_of(document.finder, program.package).get(program.executable)
-    file = None if own is None or own.target is None else own.target.file
+    installed_program = programs_of(document.finder, program.package).get(program.executable)
+    file = None if installed_program is None or installed_program.target is None else installed_program.target.file
     folder = real_path(source_of(str(share / "package.xml"))).parent
     for topic in declared_topics(document, file if file is not None and file.suffix == ".py" else folder):
         end = topic.start + len(topic.name)

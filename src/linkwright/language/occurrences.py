@@ -229,13 +229,13 @@ class _Scan:
             elif part.kind is TokenKind.EXPRESSION:
                 yield from self._expression(part.text, begin)
 
-    def _substitution(self, inside: str, start: int) -> Iterator[Occurrence]:
-        if "$" in inside:
-            yield from self.in_text(inside, start)
-        command = re.match(r"\s*(\w+)\s+", inside)
+    def _substitution(self, inner_text: str, start: int) -> Iterator[Occurrence]:
+        if "$" in inner_text:
+            yield from self.in_text(inner_text, start)
+        command = re.match(r"\s*(\w+)\s+", inner_text)
         if command is None:
             return
-        argument = inside[command.end() :]
+        argument = inner_text[command.end() :]
         if command[1] == "arg" and "$" not in argument:
             yield Occurrence(NameKind.ARGUMENT, argument.rstrip(), self._file, start + command.end())
         elif command[1] == "eval":

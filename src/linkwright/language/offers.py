@@ -61,9 +61,9 @@ def offer_files(base: Path, typed: str, offset: int, *, launch_files: bool = Fal
         offset: the offset of the cursor, which is the end of the typed part.
         launch_files: whether launch files come before everything else.
     """
-    below, _, name = typed.rpartition("/")
+    subfolder, _, name = typed.rpartition("/")
     try:
-        entries = [entry for entry in (base / below.lstrip("/")).iterdir() if not entry.name.startswith(".")]
+        entries = [entry for entry in (base / subfolder.lstrip("/")).iterdir() if not entry.name.startswith(".")]
         names = [(entry.is_file(), entry.name) for entry in entries]
     except (OSError, ValueError):
         return

@@ -47,7 +47,7 @@ class OtherFiles:
         self._project, self._texts, self._file, self._proof = project, texts, file, proof
         self._srdfs_added = False
         self._robots: dict[Path, list[Path]] = {}
-        self._own = {*project.index.related(file, texts, computed=True)}
+        self._own_files = {*project.index.related_files(file, texts, computed=True)}
 
     def edits(self, names: Names) -> tuple[set[Edit], tuple[Mention, ...]]:
         """Return the edits of certain uses and mentions of names, and the uncertain mentions.
@@ -103,7 +103,7 @@ class OtherFiles:
 
     @cached_property
     def _uses(self) -> list[Occurrence]:
-        texts = ((file, self._project.text(file, self._texts) or "") for file in self._own)
+        texts = ((file, self._project.text(file, self._texts) or "") for file in self._own_files)
         return [use for file, text in texts for use in occurrences_in(text, file) if use.kind in _SEARCHED_KINDS]
 
     @cached_property
@@ -111,8 +111,8 @@ class OtherFiles:
         """The files of each package that may mention names, the file's own package first."""
         files: dict[Path, list[Path]] = {}
         seen_files: set[Path] = set()
-        own = enclosing_package(self._file.parent)
-        folders = [] if own is None else [real_path(own[1])]
+        own_package = enclosing_package(self._file.parent)
+        folders = [] if own_package is None else [real_path(own_package[1])]
         for folder in dict.fromkeys((*folders, *map(real_path, self._project.index.packages))):
             files[folder] = [file for file in self._project.configurations_below(folder) if file not in seen_files]
             seen_files.update(files[folder])
@@ -123,10 +123,10 @@ class OtherFiles:
 
         Its files may then mean the renamed robots, too.
         """
-        package, own = enclosing_package(file.parent), enclosing_package(self._file.parent)
-        if package is None or own is None or not any((kind, mention.name) in names for kind in mention.kinds):
+        package, own_package = enclosing_package(file.parent), enclosing_package(self._file.parent)
+        if package is None or own_package is None or not any((kind, mention.name) in names for kind in mention.kinds):
             return False
-        return real_path(own[1]) in _dependencies(self._project, self._texts, real_path(package[1]))
+        return real_path(own_package[1]) in _dependencies(self._project, self._texts, real_path(package[1]))
 
     def _robots_of(self, file: Path) -> list[Path]:
         if file not in self._robots:
@@ -168,18 +168,18 @@ def _robots_of_package(project: Workspace, texts: Mapping[Path, str], folder: Pa
     """Return the descriptions to which a package may refer, with their files in the package."""
     entries = [entry for entry in project.index.roots(texts) if entry.name.endswith(_DESCRIPTION_SUFFIXES)]
     entries = [entry for entry in entries if ".srdf" not in entry.name and not entry.name.startswith(".")]
-    own = {entry: [entry] for entry in entries if entry.is_relative_to(folder)}
-    if own:
-        return own
+    own_entries = {entry: [entry] for entry in entries if entry.is_relative_to(folder)}
+    if own_entries:
+        return own_entries
     for entry in entries:
-        parts = [file for file in project.index.related(entry, texts) if file.is_relative_to(folder)]
+        parts = [file for file in project.index.related_files(entry, texts) if file.is_relative_to(folder)]
         if parts:
-            own[entry] = parts
-    if own:
-        return own
-    others = _dependencies(project, texts, folder)
-    inside = [entry for other in others for entry in entries if entry.is_relative_to(other)]
-    return {entry: [] for entry in inside or entries}
+            own_entries[entry] = parts
+    if own_entries:
+        return own_entries
+    dependencies = _dependencies(project, texts, folder)
+    entries_in_dependencies = [entry for other in dependencies for entry in entries if entry.is_relative_to(other)]
+    return {entry: [] for entry in entries_in_dependencies or entries}
 
 
 def _named_together(project: Workspace, texts: Mapping[Path, str], file: Path, robots: Sequence[Path]) -> list[Path]:
@@ -195,7 +195,8 @@ def _named_together(project: Workspace, texts: Mapping[Path, str], file: Path, r
     mentioned_robots = {robot for robot in robots if _named_in(robot, text)}
     for robot in robots:
         if any(
-            name.search(project.text(related_file, texts) or "") for related_file in project.index.related(robot, texts)
+            name.search(project.text(related_file, texts) or "")
+            for related_file in project.index.related_files(robot, texts)
         ):
             mentioned_robots.add(robot)
     for launch in project.files(_LAUNCH):

@@ -77,14 +77,14 @@ class Plugin:
     Attributes:
         type: the type, such as ``nav2_costmap_2d::InflationLayer``.
         node: the node that loads it.
-        listed: the parameter of the node that names its plugins.
+        list_parameter: the parameter of the node that names its plugins.
         purpose: the purpose of the plugin.
         parameters: the parameters, without the name of the plugin.
     """
 
     type: str
     node: str
-    listed: str
+    list_parameter: str
     purpose: str
     parameters: tuple[ParameterInfo, ...]
 
@@ -147,15 +147,19 @@ def plugins() -> Mapping[str, Plugin]:
     }
 
 
-def plugin_types(node: str, listed: str = "") -> list[str]:
+def plugin_types(node: str, list_parameter: str = "") -> list[str]:
     """Return the plugin types that a node loads.
 
     Args:
         node: the name of the node. A costmap has the same layers under any name.
-        listed: the parameter that lists the plugins, or empty for all parameters.
+        list_parameter: the parameter that lists the plugins, or empty for all parameters.
     """
     owner = "local_costmap" if node.endswith("costmap") else node
-    return [plugin.type for plugin in plugins().values() if plugin.node == owner and listed in ("", plugin.listed)]
+    return [
+        plugin.type
+        for plugin in plugins().values()
+        if plugin.node == owner and list_parameter in ("", plugin.list_parameter)
+    ]
 
 
 def controller_types() -> list[str]:

@@ -66,10 +66,10 @@ def _node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> Iterator
     is_top = cursor.parent_entry.parent is None
     if is_top and others and not any(sections(outline)):
         return  # This is another kind of file.
-    body, above = f"{PARAMETERS}:\n    $0", cursor.parent_entry.key
+    body, parent_key = f"{PARAMETERS}:\n    $0", cursor.parent_entry.key
     if not is_top:
-        if above in _COSTMAPS and len(cursor.parent_entry.path) == 1 and not present:
-            yield _key(cursor, above, "node", "", colon and f"{above}:\n  {body}")
+        if parent_key in _COSTMAPS and len(cursor.parent_entry.path) == 1 and not present:
+            yield _key(cursor, parent_key, "node", "", colon and f"{parent_key}:\n  {body}")
         if PARAMETERS not in present:
             text = phrase("the parameters of the node")
             yield _key(cursor, PARAMETERS, "", text, colon and f"{PARAMETERS}:\n  $0")
@@ -108,22 +108,22 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
         parts = parameter.name.split(".")
         if len(parts) <= len(prefix_parts) or any(a not in ("*", b) for a, b in zip(parts, prefix_parts, strict=False)):
             continue
-        rest = parts[len(prefix_parts) :]
-        first_names = _names_for(document, section, parameter) if rest[0] == "*" else [rest[0]]
+        remaining_parts = parts[len(prefix_parts) :]
+        first_names = _names_for(document, section, parameter) if remaining_parts[0] == "*" else [remaining_parts[0]]
         for first in first_names:
-            if len(rest) == 1 and first not in present:
+            if len(remaining_parts) == 1 and first not in present:
                 yield _parameter_key(cursor, first, parameter, colon)
-            elif len(rest) > 1:
-                groups.setdefault(first, []).append(".".join(rest[1:]))
-                name = ".".join([first, *rest[1:]])
+            elif len(remaining_parts) > 1:
+                groups.setdefault(first, []).append(".".join(remaining_parts[1:]))
+                name = ".".join([first, *remaining_parts[1:]])
                 if "*" not in name and name not in present:
                     dotted.append(_parameter_key(cursor, name, parameter, colon))
     yield from _keys_elsewhere(document, section, cursor, colon, present)
     uses_dots = any("." in name for name in present)
     yield from dotted if uses_dots else ()
-    for name, inside in groups.items():
+    for name, inner_names in groups.items():
         if name not in present:
-            names = ", ".join(f"`{part}`" for part in dict.fromkeys(inside))
+            names = ", ".join(f"`{part}`" for part in dict.fromkeys(inner_names))
             yield Completion(name, ItemKind.NAME, cursor.start, "", names, colon and f"{snippet_text(name)}:\n  $0")
     yield from dotted
 
@@ -135,12 +135,12 @@ def _keys_in_sources(
     for parameter in sources_of(document, section):
         prefix = f"{section.prefix}." if section.prefix else ""
         if parameter.name.startswith(prefix):
-            first, _, rest = parameter.name.removeprefix(prefix).partition(".")
+            first, _, remainder = parameter.name.removeprefix(prefix).partition(".")
             if first not in present:
                 detail = f"{parameter.type} = {parameter.default}" if parameter.default else parameter.type
-                end = ":\n  $0" if rest else ": $0"
+                end = ":\n  $0" if remainder else ": $0"
                 snippet = colon and snippet_text(first) + end
-                yield _key(cursor, first, "" if rest else detail, f"`{parameter.file.name}`", snippet)
+                yield _key(cursor, first, "" if remainder else detail, f"`{parameter.file.name}`", snippet)
 
 
 def _keys_elsewhere(
@@ -152,10 +152,10 @@ def _keys_elsewhere(
     for file in [*document.project.configuration_files(document.file)][:_MAX_FILES]:
         text = document.other(file) if file != document.file and file.name.endswith((".yaml", ".yml")) else ""
         for entry in sections(YamlOutline(text)) if f"{section.node}:" in text else ():
-            below: YamlEntry | None = entry if node_of(entry) == section.node else None
+            section_entry: YamlEntry | None = entry if node_of(entry) == section.node else None
             for key in section.prefix.split(".") if section.prefix else ():
-                below = None if below is None else below.child(key)
-            for child in () if below is None else below.children:
+                section_entry = None if section_entry is None else section_entry.child(key)
+            for child in () if section_entry is None else section_entry.children:
                 if child.key and child.key not in present:
                     detail = f"{file.name}: {child.value[:40]}" if child.value else file.name
                     end = ":\n  $0" if child.children else ": $0"
@@ -165,16 +165,16 @@ def _keys_elsewhere(
 def _plugin_keys(section: Section, cursor: YamlCursor, colon: str, present: set[str]) -> Iterator[Completion]:
     """Yield the listed plugins without a section, or the key ``plugin`` in such a section."""
     entries = section.entries()
-    for listed in dict.fromkeys(plugin.listed for plugin in plugins().values()):
-        entry = entries.get(listed)
+    for list_parameter in dict.fromkeys(plugin.list_parameter for plugin in plugins().values()):
+        entry = entries.get(list_parameter)
         names = [] if entry is None else [text for text, _ in entry.items()] or [entry.scalar]
         if section.prefix in names and "plugin" not in present:
             text = phrase("the type of the plugin")
             yield _key(cursor, "plugin", "string", text, colon and "plugin: $0")
-        if not section.prefix and (not section.node or plugin_types(section.node, listed)):
+        if not section.prefix and (not section.node or plugin_types(section.node, list_parameter)):
             for name in names:
                 if name and name not in present:
-                    yield _key(cursor, name, listed, "", colon and f"{snippet_text(name)}:\n  plugin: $0")
+                    yield _key(cursor, name, list_parameter, "", colon and f"{snippet_text(name)}:\n  plugin: $0")
 
 
 def _parameter_key(cursor: YamlCursor, label: str, parameter: ParameterInfo, colon: str) -> Completion:

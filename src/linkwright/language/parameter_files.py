@@ -98,14 +98,16 @@ def _explain_key(document: Document, outline: YamlOutline, entry: YamlEntry) -> 
         default = f" = `{declaration.default}`" if declaration.default else ""
         return f"**{name}** `{declaration.type}`{default}\n\n`{declaration.file.name}`".replace(" ``", "")
     declared_names = [declaration.name for declaration in sources_of(document, section)]
-    inside = {
+    nested_names = {
         parameter.removeprefix(f"{name}."): None for parameter in declared_names if parameter.startswith(f"{name}.")
     }
-    inside |= {rest: None for parameter in section.parameters() if (rest := parameter.rest_below(name))}
+    nested_names |= {
+        inner_name: None for parameter in section.parameters() if (inner_name := parameter.rest_below(name))
+    }
     facts = part_explanation(document, entry.key, (NameKind.JOINT, NameKind.LINK))
     if facts:
         return facts
-    return f"**{name}**: " + ", ".join(f"`{rest}`" for rest in inside) if inside else ""
+    return f"**{name}**: " + ", ".join(f"`{inner_name}`" for inner_name in nested_names) if nested_names else ""
 
 
 def _explain_node(outline: YamlOutline, entry: YamlEntry) -> str:

@@ -82,7 +82,7 @@ def parameter_values(document: Document, section: Section, cursor: YamlCursor) -
         for word in INTERFACES:
             if word not in present:
                 yield item(word)
-    elif any(plugin.listed == last for plugin in plugins().values()):
+    elif any(plugin.list_parameter == last for plugin in plugins().values()):
         for entry in section.entry.children:
             if entry.child("plugin") is not None and entry.key not in present:
                 yield item(entry.key, ItemKind.NAME)
@@ -144,13 +144,13 @@ def _plugin_types(section: Section, plugin: str, key: str) -> list[str]:
     if key == "primary_controller":
         return plugin_types(section.node, "controller_plugins")
     entries = section.entries()
-    for listed in dict.fromkeys(known_plugin.listed for known_plugin in plugins().values()):
-        entry, parameter = entries.get(listed), section.find(listed)
+    for list_parameter in dict.fromkeys(known_plugin.list_parameter for known_plugin in plugins().values()):
+        entry, parameter = entries.get(list_parameter), section.find(list_parameter)
         names = [parameter.default] if parameter is not None else []
         if entry is not None:
             names = [[text for text, _ in entry.items()], entry.scalar]
         if any(plugin == name or (isinstance(name, list) and plugin in name) for name in names):
-            return _sort_by_resemblance(plugin_types(section.node, listed), plugin)
+            return _sort_by_resemblance(plugin_types(section.node, list_parameter), plugin)
     return _sort_by_resemblance(
         plugin_types(section.node) or [known_plugin.type for known_plugin in plugins().values()], plugin
     )

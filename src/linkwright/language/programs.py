@@ -78,8 +78,10 @@ def used_packages(folder: Path) -> list[str]:
 
 def package_names(finder: PackageFinder, file: Path) -> list[str]:
     """Return all package names: the file's own first, then its dependencies, then the others."""
-    own = enclosing_package(file.parent)
-    first = [] if own is None else [own[0], *DEPENDENCY.findall(text_of(own[1] / "package.xml"))]
+    own_package = enclosing_package(file.parent)
+    first = (
+        [] if own_package is None else [own_package[0], *DEPENDENCY.findall(text_of(own_package[1] / "package.xml"))]
+    )
     known_packages = {*finder.packages(), *replaced_packages()}
     return [*dict.fromkeys(first), *sorted(known_packages - {*first})]
 

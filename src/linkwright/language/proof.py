@@ -149,14 +149,14 @@ class ExpansionProof:
         for former in self.trials:
             arguments = {names.get(key, key): value for key, value in former.arguments.items()}
             try:
-                after = self._edited_expansion(former, arguments, edits)
+                edited = self._edited_expansion(former, arguments, edits)
             except LinkwrightError as error:
                 first = error.diagnostics[0]
                 raise UnprovedError(
                     phrase("the edit causes this error: {reason}", reason=first.message), first.span
                 ) from None
             root = former.expansion.document.root
-            yield ExpansionPair(former.entry, root, after.document.root, str(former.expansion), str(after))
+            yield ExpansionPair(former.entry, root, edited.document.root, str(former.expansion), str(edited))
 
     def check_equal(self, edits: Collection[Edit], renamed: Mapping[str, str] | None = None) -> None:
         """Compare the expansions before and after edits, which must be equal.
@@ -169,10 +169,10 @@ class ExpansionProof:
             UnprovedError: the expansions differ, or cannot be compared.
         """
         for pair in self.pairs(edits, renamed):
-            before, after, name = pair.text_before, pair.text_after, pair.entry.name
-            if before != after and _COMMENT.sub("", before) == _COMMENT.sub("", after):
+            text_before, text_after, name = pair.text_before, pair.text_after, pair.entry.name
+            if text_before != text_after and _COMMENT.sub("", text_before) == _COMMENT.sub("", text_after):
                 raise UnprovedError(phrase("the comments in the expansion of '{file}' would change", file=name))
-            if before != after:
+            if text_before != text_after:
                 raise UnprovedError(phrase("the robot of '{file}' would change", file=name))
 
     def _add_entries(self, file: Path) -> None:
@@ -196,7 +196,9 @@ class ExpansionProof:
         texts = dict(self._texts)
         for file in {edit.file for edit in edits} | {*former.gaps}:
             gaps = former.gaps.get(file, ())
-            inside = [edit for edit in edits if edit.file == file]
-            remaining_edits = [edit for edit in inside if not any(start <= edit.start < end for start, end in gaps)]
+            edits_in_file = [edit for edit in edits if edit.file == file]
+            remaining_edits = [
+                edit for edit in edits_in_file if not any(start <= edit.start < end for start, end in gaps)
+            ]
             texts[file] = apply_edits(blank_out(self._project.text(file, self._texts) or "", gaps), remaining_edits)
         return expand_with_gaps(self._project, texts, former.entry, arguments)

@@ -91,8 +91,8 @@ class PythonPaths:
         outer = group.parent.group if group.parent is not None else None
         in_list = group.opening == "[" and outer is not None
         if group.function in JOINS or (in_list and outer is not None and outer.function == "PathJoinSubstitution"):
-            earlier = group.items[: group.items.index(item)]
-            value = self._join(earlier, 0) if earlier else None
+            earlier_items = group.items[: group.items.index(item)]
+            value = self._join(earlier_items, 0) if earlier_items else None
             return None if value is None else Value(value.text + "/", value.is_path)
         if in_list and not group.callee:  # This is a list of substitutions, which launch concatenates.
             return self._concatenated([self.value_of(other) for other in group.items[: group.items.index(item)]])

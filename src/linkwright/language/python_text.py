@@ -243,14 +243,14 @@ class PythonText:
         self._new_item(start + 1)
 
     def _close(self, bracket: str, end: int) -> None:
-        around = self._group
-        while around.parent is not None and _CLOSING[around.opening] != bracket:
-            around = around.parent.group
-        if around.parent is None:
+        group = self._group
+        while group.parent is not None and _CLOSING[group.opening] != bracket:
+            group = group.parent.group
+        if group.parent is None:
             return
-        while self._group is not around:
+        while self._group is not group:
             self._close_group(end)
-        around.is_closed = True
+        group.is_closed = True
         self._close_group(end)
 
     def _close_group(self, end: int) -> None:

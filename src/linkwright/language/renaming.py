@@ -79,7 +79,7 @@ def references(project: Workspace, texts: Mapping[Path, str], name: Occurrence) 
     pending = [name.file]
     is_shared = name.kind not in ROBOT_NAME_KINDS  # A link with the same name in another robot is a different link.
     for start in pending:
-        for file in project.index.related(start, texts, computed=True):
+        for file in project.index.related_files(start, texts, computed=True):
             if file not in occurrences:
                 uses = occurrences_in(project.text(file, texts) or "", file)
                 occurrences[file] = [use for use in uses if _is_same(use, name)]
@@ -185,7 +185,7 @@ def _visible_elsewhere(project: Workspace, texts: Mapping[Path, str], name: Occu
     if name.kind not in (NameKind.PARAMETER, NameKind.PROPERTY):
         return set()
     edits: set[Edit] = set()
-    for file in project.index.related(name.file, texts, computed=True):
+    for file in project.index.related_files(name.file, texts, computed=True):
         text = project.text(file, texts) or ""
         uses = [use for use in occurrences_in(text, file) if use.name == name.name]
         forwarding = {use.owner for use in uses if use.is_definition and _FORWARD.match(text, use.end)}

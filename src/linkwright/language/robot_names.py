@@ -150,7 +150,7 @@ def _likely_robots(document: Document) -> list[Path]:
     return sorted(entries, key=distance)[:_MAX_ROBOTS]
 
 
-def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, before: _Robot | None) -> _Robot:
+def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, cached: _Robot | None) -> _Robot:
     """Return the names of a description.
 
     If its text cannot be expanded, these are its earlier names, the names in the saved files, in the valid parts, or in
@@ -160,15 +160,15 @@ def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, before: _R
         project: the workspace.
         texts: the texts of the open files.
         entry: the description.
-        before: its earlier names, or None.
+        cached: its earlier names, or None.
     """
     robot = _expanded_robot(project, texts, entry)
     if robot is not None:
         return robot
-    related = dict.fromkeys((entry, *project.index.related(entry, texts)))
-    state = _state([*map(str, related), *(path for path, _ in (() if before is None else before.state))], texts)
-    if before is not None and before.is_expanded:
-        return replace(before, state=state)
+    related = dict.fromkeys((entry, *project.index.related_files(entry, texts)))
+    state = _state([*map(str, related), *(path for path, _ in (() if cached is None else cached.state))], texts)
+    if cached is not None and cached.is_expanded:
+        return replace(cached, state=state)
     saved = _expanded_robot(project, {}, entry) if texts else None
     if saved is not None:
         return replace(saved, state=state)

@@ -56,7 +56,7 @@ class RobotRenaming:
         self.unchanged: tuple[Mention, ...] = ()
         self._project, self._texts, self._name, self._new = project, texts, name, new
         self._proof = proof
-        self._files = project.index.related(name.file, texts, computed=True)
+        self._files = project.index.related_files(name.file, texts, computed=True)
         self._sources = NameSources(project, texts, self._files)
         self._others = OtherFiles(project, texts, name.file, proof)
 
@@ -97,11 +97,11 @@ class RobotRenaming:
 
     def _no_name_reason(self) -> Phrase:
         reason = self._proof.gap_reason
-        nothing = phrase("no link, joint or material takes its name from this position")
+        message = phrase("no link, joint or material takes its name from this position")
         return (
-            nothing
+            message
             if reason is None
-            else phrase("{nothing}, as far as it can be expanded: {reason}", nothing=nothing, reason=reason)
+            else phrase("{nothing}, as far as it can be expanded: {reason}", nothing=message, reason=reason)
         )
 
     def _required(self) -> Names:
@@ -147,7 +147,7 @@ class RobotRenaming:
                         yield value
 
     def _proposals(self, required: Names, literal: set[Edit]) -> Iterator[set[Edit]]:
-        """Yield the initial edits: of certain occurrences, and of computed definitions."""
+        """Yield the sets of initial edits: all certain occurrences, plus one way to edit a computed definition."""
         computed: list[tuple[SourceValue, str, str]] = []
         for kind, value in required:
             for trial in self._proof.trials:
@@ -213,19 +213,19 @@ class RobotRenaming:
             if old.tag != new.tag:
                 raise UnprovedError(phrase("the elements of the robot would change"))
             for kinds, key in _names_in(old, is_top=_is_definition(pair.before, old)):
-                before = old.attributes.get(key, "") if key else old.text().strip()
-                after = new.attributes.get(key, "") if key else new.text().strip()
-                new_name = next((names[kind, before] for kind in kinds if (kind, before) in names), None)
-                if new_name is None or after != before or new_name == before:
+                old_value = old.attributes.get(key, "") if key else old.text().strip()
+                new_value = new.attributes.get(key, "") if key else new.text().strip()
+                new_name = next((names[kind, old_value] for kind in kinds if (kind, old_value) in names), None)
+                if new_name is None or new_value != old_value or new_name == old_value:
                     continue
                 source = source_value(old, key)
                 if source is None:
                     continue
-                proposal = next(self._sources.edits(source, before, new_name), None)
+                proposal = next(self._sources.edits(source, old_value, new_name), None)
                 if proposal is None:
-                    raise _computed_name_error(source, before, old.attribute_span(key) if key else old.span())
+                    raise _computed_name_error(source, old_value, old.attribute_span(key) if key else old.span())
                 if {*proposal} <= {*edits}:  # The edits did not change the value.
-                    raise _computed_name_error(source, before, old.attribute_span(key) if key else old.span())
+                    raise _computed_name_error(source, old_value, old.attribute_span(key) if key else old.span())
                 yield from proposal
 
     def _check(self, pairs: Sequence[ExpansionPair], names: Names, required: Names) -> None:

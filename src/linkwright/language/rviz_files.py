@@ -78,9 +78,9 @@ def _keys(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
     present = {child.key for child in cursor.parent_entry.children if child is not cursor.entry}
     has_value = has_colon(document.text, cursor.offset)
     specs = owner.schema
-    here = ConfigOwner(owner.role, owner.entry, owner.keys[:-1]).spec(owner.keys[-1]) if owner.keys else None
-    if here is not None and here.children and here.kind != "group":
-        specs = (PropertySpec("Value", here.kind, here.default, here.description, here.options), *specs)
+    own_spec = ConfigOwner(owner.role, owner.entry, owner.keys[:-1]).spec(owner.keys[-1]) if owner.keys else None
+    if own_spec is not None and own_spec.children and own_spec.kind != "group":
+        specs = (PropertySpec("Value", own_spec.kind, own_spec.default, own_spec.description, own_spec.options), *specs)
     for spec in specs:
         if spec.name not in present and not spec.read_only:
             yield _property(spec, cursor.start, has_value=has_value)

@@ -141,27 +141,27 @@ def owner_of(entry: YamlEntry) -> ConfigOwner:
     keys: list[str] = []
     current = entry
     while current.parent is not None:
-        above = current.parent
-        if current.is_item and above.key in _LISTS:
-            return ConfigOwner("Views" if above.key == "Saved" else above.key, current, tuple(reversed(keys)))
-        if current.key == "Current" and above.key == "Views":
+        parent = current.parent
+        if current.is_item and parent.key in _LISTS:
+            return ConfigOwner("Views" if parent.key == "Saved" else parent.key, current, tuple(reversed(keys)))
+        if current.key == "Current" and parent.key == "Views":
             return ConfigOwner("Views", current, tuple(reversed(keys)))
         if current.key == OPTIONS:
             return ConfigOwner(OPTIONS, current, tuple(reversed(keys)))
         if current.key:
             keys.append(current.key)
-        current = above
+        current = parent
     return ConfigOwner("", entry)
 
 
 def display_class(name: str) -> Any:
     """Return the class of a display, or None if it cannot be imported."""
     entry = extensions(DISPLAYS).get(name)
-    return None if entry is None else _loaded(entry)
+    return None if entry is None else _load(entry)
 
 
 @cache
-def _loaded(entry: EntryPoint) -> Any:
+def _load(entry: EntryPoint) -> Any:
     try:
         return entry.load()
     except Exception:  # noqa: BLE001  # a display of another package may fail in any way

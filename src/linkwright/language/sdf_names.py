@@ -181,15 +181,15 @@ def _references(element: SourceElement, text: str) -> Iterator[tuple[str, int, S
 
 def _state_reference(element: SourceElement) -> Iterator[tuple[str, int, SourceElement]]:
     """Yield the name of a model or link in the state of a world, as a use of that name."""
-    around = [*element.ancestors_and_self()]
-    state = next((number for number, outer in enumerate(around) if outer.name == "state"), None)
-    scope = None if state is None else _scope(around[state].parent)
+    lineage = [*element.ancestors_and_self()]
+    state = next((number for number, outer in enumerate(lineage) if outer.name == "state"), None)
+    scope = None if state is None else _scope(lineage[state].parent)
     name = next(
         (candidate for candidate in element.tag.attributes() if candidate.name == "name" and candidate.value), None
     )
     if state is None or scope is None or name is None:
         return
-    for outer in reversed(around[1:state]):
+    for outer in reversed(lineage[1:state]):
         child = next(
             (candidate for candidate in _named_children(scope) if candidate.value("name") == outer.value("name")), None
         )

@@ -75,8 +75,8 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 def _program(text: Text, offset: int, folder: Path) -> Iterator[Completion]:
     typed = text.value[: offset - text.start]
-    name, equals, rest = typed.partition("=")
-    module, colon, function = rest.strip().partition(":")
+    name, equals, target = typed.partition("=")
+    module, colon, function = target.strip().partition(":")
     if colon:
         file = module_file(folder, module.strip())
         names = _FUNCTION.findall(text_of(file)) if file is not None else []
@@ -107,12 +107,12 @@ def _arguments(document: Document, offset: int) -> Iterator[Completion]:
 
 def _is_installed(item: Item) -> bool:
     """Return whether an item is a file in ``data_files``, in a list or a glob."""
-    around: Item | None = item
+    current: Item | None = item
     depth = 0
-    while around is not None and around.keyword != "data_files":
-        around, depth = around.group.parent, depth + 1
+    while current is not None and current.keyword != "data_files":
+        current, depth = current.group.parent, depth + 1
     group: Group = item.group
-    return around is not None and (group.function == "glob" or (group.opening == "[" and depth > 1))
+    return current is not None and (group.function == "glob" or (group.opening == "[" and depth > 1))
 
 
 def _explain(document: Document, offset: int) -> Explanation | None:

@@ -157,10 +157,10 @@ def _known_sources(document: Document) -> dict[Path, _Source]:
     return sources.sources
 
 
-def _read(project: Workspace, texts: Mapping[Path, str], before: _Sources | None) -> _Sources:
+def _read(project: Workspace, texts: Mapping[Path, str], cached: _Sources | None) -> _Sources:
     """Read the sources that have changed since they were read before."""
     files = [real_path(file) for folder in project.index.packages for file in walk(folder, _SOURCES)[0]][:_MAX_FILES]
-    cache = {} if before is None else before.cache
+    cache = {} if cached is None else cached.cache
     sources: dict[Path, _Source] = {}
     for file in files:
         try:

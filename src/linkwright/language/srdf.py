@@ -62,14 +62,19 @@ class _Semantics:
         descriptions = [*self._setup_assistant_descriptions(package[1])] if package is not None else []
         robot_name = _ROBOT.search(self.document.text)
         name = robot_name[1] if robot_name is not None else ""
-        beside = project.package_neighbors(file, ())
-        for other in dict.fromkeys((*beside, *project.index.files)):
+        neighbors = project.package_neighbors(file, ())
+        for other in dict.fromkeys((*neighbors, *project.index.files)):
             head = _ROBOT.search(self.document.other(other)[:_LONGEST_HEAD]) if name else None
             if head is not None and head[1] == name and not is_srdf(other):
                 descriptions.append(other)
-        whole = [other for other in beside if ".urdf" in other.name and not is_srdf(other)]
+        descriptions_beside = [other for other in neighbors if ".urdf" in other.name and not is_srdf(other)]
         words = {attribute.value or "" for token in tokens(self.document.text) for attribute in token.attributes()}
-        return [*islice(dict.fromkeys(descriptions or mentioned_robots(self.document, words) or whole), _MAX_ROBOTS)]
+        return [
+            *islice(
+                dict.fromkeys(descriptions or mentioned_robots(self.document, words) or descriptions_beside),
+                _MAX_ROBOTS,
+            )
+        ]
 
     def _setup_assistant_descriptions(self, folder: Path) -> Iterator[Path]:
         for match in _ASSISTANT.finditer(text_of(folder / ".setup_assistant")):
@@ -84,8 +89,8 @@ class _Semantics:
 
     def parts(self, kind: NameKind) -> list[str]:
         """Return the names of the links or joints, in the order of the descriptions."""
-        inside = [robot.links if kind is NameKind.LINK else robot.joints for robot in self.robots]
-        return [*dict.fromkeys(name for names in inside for name in names)]
+        names_by_robot = [robot.links if kind is NameKind.LINK else robot.joints for robot in self.robots]
+        return [*dict.fromkeys(name for names in names_by_robot for name in names)]
 
     def groups(self) -> dict[str, int]:
         """Return the names of the groups, each with its offset."""
@@ -134,9 +139,9 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 def _names_beside(text: str, offset: int) -> set[str | None]:
     """Return the names of the siblings with the same tag as the element at an offset."""
-    around = Outline.of(text).elements_around(offset)
-    inside = around[-2].children if len(around) > 1 else []
-    others = (other for other in inside if other is not around[-1] and other.tag.name == around[-1].tag.name)
+    lineage = Outline.of(text).elements_around(offset)
+    siblings = lineage[-2].children if len(lineage) > 1 else []
+    others = (other for other in siblings if other is not lineage[-1] and other.tag.name == lineage[-1].tag.name)
     return {attribute.value for other in others for attribute in other.tag.attributes() if attribute.name == "name"}
 
 

@@ -200,7 +200,7 @@ def _values(project: Workspace, texts: Mapping[Path, str], entry: Path) -> list[
     """Return other values of arguments: opposites of defaults, and values in conditions."""
     values: dict[tuple[str, str], None] = {}
     documents = []
-    for file in project.index.related(entry, texts, computed=True):
+    for file in project.index.related_files(entry, texts, computed=True):
         text = project.text(file, texts) or ""
         for token in tokens(text):
             if token.kind is Kind.START and token.name == "xacro:arg":

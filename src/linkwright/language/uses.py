@@ -40,9 +40,9 @@ def uses_at(document: Document, file_format: Format, offset: int, *, in_file: bo
         if not in_file or target.file == document.file:
             targets[target] = None
         for other in [document] if in_file else [*_documents(document, target.file)]:
-            own = format_of(other.file)
-            if own is not None:
-                targets.update(dict.fromkeys(_uses(other, own, target, name)))
+            other_format = format_of(other.file)
+            if other_format is not None:
+                targets.update(dict.fromkeys(_uses(other, other_format, target, name)))
     return list(targets)
 
 

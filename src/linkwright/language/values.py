@@ -15,16 +15,16 @@ from linkwright.xmltree import Overlay
 
 _MAX_EXPANSIONS = 12
 """The maximum number of expansions for the values of one file."""
-_SHOWN_VALUES = 8
-_SHOWN_BESIDE = 3
-_SHOWN_CALLS = 2
-_SHOWN_NAMES = 6
+_MAX_VALUES = 8
+_MAX_INLINE_VALUES = 3
+_MAX_CALLS = 2
+_MAX_NAMES = 6
 _MAX_LABEL = 60
-"""The maximum number of characters of a macro call, or of a value beside the text."""
+"""The maximum number of characters of a macro call, or of the values in an inlay hint."""
 
 
 @dataclass(slots=True)
-class ValuedText:
+class EvaluatedText:
     """A text with expressions, or one of its expressions, with the values.
 
     Attributes:
@@ -42,7 +42,7 @@ class ValuedText:
         return list(dict.fromkeys(evaluation.value for evaluation, _ in self.evaluations))
 
 
-def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[ValuedText]:
+def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[EvaluatedText]:
     """Return the values of the texts with expressions in a file, in no particular order.
 
     Args:
@@ -51,7 +51,7 @@ def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list
         file: the file.
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
-    valued_texts: dict[tuple[int, int], ValuedText] = {}
+    evaluated_texts: dict[tuple[int, int], EvaluatedText] = {}
     calls = (
         (entry, values) for entry in project.index.entries(file, texts) for values, _ in project.argument_calls(entry)
     )
@@ -60,18 +60,18 @@ def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list
         for expression in evaluated_expressions(inputs):
             if real_path(expression.file) == file:
                 key = expression.start, expression.end
-                text = valued_texts.setdefault(key, ValuedText(*key))
+                text = evaluated_texts.setdefault(key, EvaluatedText(*key))
                 text.evaluations += [(evaluation, values) for evaluation in expression.evaluations]
-    return list(valued_texts.values())
+    return list(evaluated_texts.values())
 
 
-def value_at(texts: Sequence[ValuedText], offset: int) -> ValuedText | None:
+def value_at(texts: Sequence[EvaluatedText], offset: int) -> EvaluatedText | None:
     """Return the smallest text with values around an offset, or None if there is none."""
-    around = [text for text in texts if text.start <= offset <= text.end and text.values()[0]]
-    return min(around, key=lambda text: text.end - text.start, default=None)
+    texts_at_offset = [text for text in texts if text.start <= offset <= text.end and text.values()[0]]
+    return min(texts_at_offset, key=lambda text: text.end - text.start, default=None)
 
 
-def outermost_texts(texts: Sequence[ValuedText]) -> Iterator[ValuedText]:
+def outermost_texts(texts: Sequence[EvaluatedText]) -> Iterator[EvaluatedText]:
     """Yield the texts that are not part of another text, in text order.
 
     Args:
@@ -84,14 +84,14 @@ def outermost_texts(texts: Sequence[ValuedText]) -> Iterator[ValuedText]:
             yield text
 
 
-def short_values(text: ValuedText) -> str:
-    """Return the first values of a text on one short line, for the end of its line."""
+def short_values(text: EvaluatedText) -> str:
+    """Return the first values of a text on one line, for an inlay hint."""
     values = [value[1:-1] if value[:1] in ("'", '"') else value for value in text.values() if value]
-    short_text = " | ".join(values[:_SHOWN_BESIDE]) + (" | ..." if len(values) > _SHOWN_BESIDE else "")
+    short_text = " | ".join(values[:_MAX_INLINE_VALUES]) + (" | ..." if len(values) > _MAX_INLINE_VALUES else "")
     return _shorten(short_text)
 
 
-def describe_values(text: ValuedText, source: str) -> str:
+def describe_values(text: EvaluatedText, source: str) -> str:
     """Return the values of a text in Markdown, each with its macro calls or arguments.
 
     Args:
@@ -100,24 +100,24 @@ def describe_values(text: ValuedText, source: str) -> str:
     """
     groups: dict[tuple[str, str], list[tuple[Evaluation, Mapping[str, str]]]] = {}
     for evaluation, arguments in text.evaluations:
-        names = ", ".join(f"`{name}` = `{value}`" for name, value in evaluation.names[:_SHOWN_NAMES])
+        names = ", ".join(f"`{name}` = `{value}`" for name, value in evaluation.names[:_MAX_NAMES])
         groups.setdefault((evaluation.value, names), []).append((evaluation, arguments))
     if len(groups) == 1:
         ((value, names),) = groups
         return f"`{source}` = `{value}`" + (f" ({names})" if names else "")
     lines = [
         f"- `{value}`{_origin(evaluations)}" + (f" ({names})" if names else "")
-        for (value, names), evaluations in [*groups.items()][:_SHOWN_VALUES]
+        for (value, names), evaluations in [*groups.items()][:_MAX_VALUES]
     ]
-    if len(groups) > _SHOWN_VALUES:
+    if len(groups) > _MAX_VALUES:
         lines.append("- ...")
     return f"`{source}`\n\n" + "\n".join(lines)
 
 
 def _origin(evaluations: Sequence[tuple[Evaluation, Mapping[str, str]]]) -> str:
-    """Return the macro calls that lead to a value, and the arguments if the defaults do not."""
+    """Return the macro calls that lead to a value, and the arguments, if they differ from the defaults."""
     calls = [call for call in dict.fromkeys(_call(evaluation.frame) for evaluation, _ in evaluations) if call]
-    origin = f" {', '.join(calls[:_SHOWN_CALLS])}" + (", ..." if len(calls) > _SHOWN_CALLS else "")
+    origin = f" {', '.join(calls[:_MAX_CALLS])}" + (", ..." if len(calls) > _MAX_CALLS else "")
     arguments = evaluations[0][1]
     if arguments and all(values for _, values in evaluations):
         origin += f" `{_shorten(' '.join(f'{name}:={value}' for name, value in arguments.items()))}`"

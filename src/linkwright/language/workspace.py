@@ -154,7 +154,7 @@ class Workspace:
             file: the file.
             texts: the texts of the open files.
         """
-        return [name for other in self.index.related(file, texts) for name in self._names_in(other, texts)]
+        return [name for other in self.index.related_files(file, texts) for name in self._names_in(other, texts)]
 
     def robot(self, entry: Path, texts: Mapping[Path, str]) -> Robot | None:
         """Return the robot of a description with default arguments, or None if it has errors.
@@ -220,11 +220,11 @@ class Workspace:
         ):
             self.index.refresh()
         elif not is_description and file not in texts:
-            below = [other for other in (*self.index.files, *self._results) if other.is_relative_to(file)]
-            if below or file.is_dir():  # A folder was created, moved or deleted.
-                entries = [entry for other in below for entry in self.index.entries(other, texts)]
+            files_below = [other for other in (*self.index.files, *self._results) if other.is_relative_to(file)]
+            if files_below or file.is_dir():  # A folder was created, moved or deleted.
+                entries = [entry for other in files_below for entry in self.index.entries(other, texts)]
                 self.index.refresh()
-                return [*dict.fromkeys((*entries, *below))]
+                return [*dict.fromkeys((*entries, *files_below))]
         package = enclosing_package(file.parent)
         descriptions = self.index.entries(file, texts) if is_description else []
         subjects = [*descriptions, *([] if package is None else [real_path(package[1])])]
@@ -242,7 +242,7 @@ class Workspace:
             texts: the texts of the open files.
             changed: files that are included in the result even if there is no finding about them.
         """
-        return self.record(subject, self.checked(subject, texts), texts, changed)
+        return self.record(subject, self.check_subject(subject, texts), texts, changed)
 
     def record(
         self, subject: Path, findings: tuple[Diagnostic, ...], texts: Mapping[Path, str], changed: Iterable[Path] = ()
@@ -253,14 +253,14 @@ class Workspace:
 
         Args:
             subject: the description or the folder of the package.
-            findings: the findings that `checked` has returned.
+            findings: the findings that `check_subject` has returned.
             texts: the texts of the open files that were checked.
             changed: files that are included in the result even if there is no finding about them.
         """
-        before = self._results.pop(subject, _NOTHING).findings
+        old_findings = self._results.pop(subject, _NOTHING).findings
         if findings:
             self._results[subject] = _Result(findings, versions_of(texts))
-        return self._of_files({_file(diagnostic, subject) for diagnostic in (*before, *findings)} | {*changed})
+        return self._of_files({_file(diagnostic, subject) for diagnostic in (*old_findings, *findings)} | {*changed})
 
     def without_findings(self) -> dict[Path, list[Diagnostic]]:
         """Return an empty list for each file with findings, to clear the findings in an editor."""
@@ -304,17 +304,17 @@ class Workspace:
                 )
         return unique_findings.all()
 
-    def checked(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
+    def check_subject(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
         """Check a description or package, and return the findings without their elements.
 
         Args:
             subject: a description, or the folder of a package, as `subjects` returns them.
             texts: the texts of the open files.
         """
-        findings = self._checked(subject, texts) if subject in texts or subject.exists() else ()
+        findings = self._check_subject(subject, texts) if subject in texts or subject.exists() else ()
         return tuple(map(without_element, findings))
 
-    def _checked(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
+    def _check_subject(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
         overlay = Overlay({str(path): text for path, text in texts.items()})
         if subject.is_dir():
             diagnostics, trouble = self._checker.check_package(subject, overlay, Contexts())

@@ -96,5 +96,5 @@ def innermost_element(elements: Sequence[SourceElement], offset: int) -> SourceE
         elements: the elements of a text, as `source_elements` returns them.
         offset: the character offset.
     """
-    around = [element for element in elements if element.start <= offset < element.end]
-    return around[-1] if around else None
+    lineage = [element for element in elements if element.start <= offset < element.end]
+    return lineage[-1] if lineage else None

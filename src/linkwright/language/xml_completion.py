@@ -85,13 +85,13 @@ def _elements(
 
 def _present_elements(text: str, cursor: Cursor) -> frozenset[str]:
     """Return the existing child elements around a cursor, without the one being typed."""
-    inside = Outline.of(text).elements
-    around: OutlineElement | None = None
+    children = Outline.of(text).elements
+    parent: OutlineElement | None = None
     for element in cursor.elements:
-        around = next((candidate for candidate in inside if candidate.tag.start == element.start), None)
-        inside = [] if around is None else around.children
-    own = cursor.token.start if cursor.token is not None else -1
-    return frozenset(child.tag.name for child in inside if child.tag.start != own)
+        parent = next((candidate for candidate in children if candidate.tag.start == element.start), None)
+        children = [] if parent is None else parent.children
+    typed_start = cursor.token.start if cursor.token is not None else -1
+    return frozenset(child.tag.name for child in children if child.tag.start != typed_start)
 
 
 def _unit_of(rule: ElementRule) -> str:

@@ -241,10 +241,10 @@ def hardware_of(text: str, hardware: OutlineElement | None) -> str:
 
 def element_at(text: str, elements: Sequence[Token]) -> OutlineElement | None:
     """Return the innermost of some nested elements in the outline of a text, or None if it is missing."""
-    inside, innermost = Outline.of(text).elements, None
+    children, innermost = Outline.of(text).elements, None
     for element in elements:
-        innermost = next((candidate for candidate in inside if candidate.tag.start == element.start), None)
-        inside = [] if innermost is None else innermost.children
+        innermost = next((candidate for candidate in children if candidate.tag.start == element.start), None)
+        children = [] if innermost is None else innermost.children
     return innermost
 
 
@@ -265,15 +265,15 @@ def _name_completions(
     """Yield completions of names of some kinds: expanded names and, in a macro, names as written."""
     if not kinds:
         return
-    expanded = [name for name in part_names(document) if name.kind in kinds]
+    names_of_parts = [name for name in part_names(document) if name.kind in kinds]
     defined_names = [name for kind in kinds for name in sorted_by_use(definitions_of_kind(names, kind), document.text)]
-    near = [name for name in defined_names if name.file == document.file]
+    names_in_file = [name for name in defined_names if name.file == document.file]
     in_macro = cursor.macro is not None
-    patterns = [name for name in near if "$" in name.name]
-    plain = [name for name in defined_names if "$" not in name.name]
+    patterns = [name for name in names_in_file if "$" in name.name]
+    literal_names = [name for name in defined_names if "$" not in name.name]
     macro = "" if cursor.macro is None else _attribute(cursor.macro, "name")
-    own = [name for name in near if name.owner == macro] if in_macro else []
-    for name in (*own, *(patterns if in_macro else ()), *expanded, *plain):
+    names_in_macro = [name for name in names_in_file if name.owner == macro] if in_macro else []
+    for name in (*names_in_macro, *(patterns if in_macro else ()), *names_of_parts, *literal_names):
         if name.start != start or name.file != document.file:
             yield Completion(name.name, ItemKind.NAME, start, name.detail or name.kind.value, name.file.name)
 
@@ -345,20 +345,20 @@ def complete_path(
             "",
         )
         typed = f"package://{value}/{typed[computed.end() :]}"
-    inside = _PATH.match(typed)
-    base, rest = (document.finder.find(inside[1]), inside[2]) if inside else (document.file.parent, typed)
-    if inside is None:
+    uri_match = _PATH.match(typed)
+    base, subpath = (document.finder.find(uri_match[1]), uri_match[2]) if uri_match else (document.file.parent, typed)
+    if uri_match is None:
         for beginning in ("package://", "$(find "):
             if beginning.startswith(typed):
                 yield Completion(beginning, ItemKind.VALUE, offset - len(typed))
-    if base is not None and "$" not in rest:
-        yield from _files(base, rest, offset, endings, document.file)
+    if base is not None and "$" not in subpath:
+        yield from _files(base, subpath, offset, endings, document.file)
 
 
-def _files(base: Path, typed: str, offset: int, endings: Sequence[str], own: Path) -> Iterator[Completion]:
-    below, _, name = typed.rpartition("/")
+def _files(base: Path, typed: str, offset: int, endings: Sequence[str], own_file: Path) -> Iterator[Completion]:
+    subfolder, _, name = typed.rpartition("/")
     try:
-        entries = [(entry.is_file(), entry.name) for entry in (base / below).iterdir() if entry != own]
+        entries = [(entry.is_file(), entry.name) for entry in (base / subfolder).iterdir() if entry != own_file]
     except (OSError, ValueError):
         return
 

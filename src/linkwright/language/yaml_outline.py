@@ -146,13 +146,13 @@ class YamlOutline:
         """Return the cursor at an offset."""
         start = self.text.rfind("\n", 0, offset) + 1
         line = self.text.count("\n", 0, start)
-        nothing = YamlCursor(YamlPosition.NOTHING, offset, self.root, offset)
+        no_position = YamlCursor(YamlPosition.NOTHING, offset, self.root, offset)
         if line >= len(self._last) or offset > self._comments.get(line, len(self.text)):
-            return nothing
+            return no_position
         last = self._last[line]
         if last.line < line and _is_in_flow(last, offset):
             return _value_cursor(self.text, last, offset)
-        before = self.text[start:offset]
+        prefix = self.text[start:offset]
         on_line = [entry for entry in _lineage(last) if entry.line == line and entry.parent is not None]
         for entry in on_line:
             if entry.key and entry.start <= offset <= entry.start + _written_length(self.text, entry):
@@ -167,10 +167,10 @@ class YamlOutline:
             if offset > entry.start and (not entry.key or offset >= entry.value_start) and entry.value_start <= offset:
                 return self._in_value(entry, offset)
         if on_line and on_line[0].key and offset > on_line[0].start:
-            return nothing  # The cursor is directly after the colon.
-        if on_line and before.strip():
-            return nothing
-        return self._in_new_line(before, last, line, offset)
+            return no_position  # The cursor is directly after the colon.
+        if on_line and prefix.strip():
+            return no_position
+        return self._in_new_line(prefix, last, line, offset)
 
     def _in_value(self, entry: YamlEntry, offset: int) -> YamlCursor:
         cursor = _value_cursor(self.text, entry, offset)
@@ -180,20 +180,20 @@ class YamlOutline:
             return YamlCursor(YamlPosition.KEY, offset, entry, cursor.start, cursor.typed)
         return cursor
 
-    def _in_new_line(self, before: str, last: YamlEntry, line: int, offset: int) -> YamlCursor:
+    def _in_new_line(self, prefix: str, last: YamlEntry, line: int, offset: int) -> YamlCursor:
         """Return the cursor in a line that has no entry yet."""
-        typed = before.lstrip(" \t")
-        column = len(before) - len(typed)
-        within = self._before(last, line)
-        while within.parent is not None and (within.column >= column or (within.value and not within.is_item)):
-            within = within.parent
+        typed = prefix.lstrip(" \t")
+        column = len(prefix) - len(typed)
+        parent = self._before(last, line)
+        while parent.parent is not None and (parent.column >= column or (parent.value and not parent.is_item)):
+            parent = parent.parent
         start = offset - len(typed)
-        is_list = bool(within.children) and all(child.is_item for child in within.children) and within.key != ""
+        is_list = bool(parent.children) and all(child.is_item for child in parent.children) and parent.key != ""
         if is_list and not typed.startswith("-"):
-            return YamlCursor(YamlPosition.NOTHING, offset, within, start)
+            return YamlCursor(YamlPosition.NOTHING, offset, parent, start)
         if typed.startswith("-"):
-            return YamlCursor(YamlPosition.VALUE, offset, within, offset, "", None, is_in_list=True)
-        return YamlCursor(YamlPosition.KEY, offset, within, start, typed.lstrip("\"'"))
+            return YamlCursor(YamlPosition.VALUE, offset, parent, offset, "", None, is_in_list=True)
+        return YamlCursor(YamlPosition.KEY, offset, parent, start, typed.lstrip("\"'"))
 
     def _before(self, last: YamlEntry, line: int) -> YamlEntry:
         while last.line >= line and last.parent is not None and line > 0:
@@ -232,23 +232,23 @@ class YamlOutline:
         if end < len(line):
             self._comments[number] = offset + end
         for _ in range(_MAX_DASHES):
-            rest = line[column:end]
-            if rest.startswith("-") and rest[1:2] in ("", " ", "\t", "\r"):
+            item_text = line[column:end]
+            if item_text.startswith("-") and item_text[1:2] in ("", " ", "\t", "\r"):
                 _pop_to_column(stack, column, is_item=True)
-                width = len(rest) - len(rest[1:].lstrip(" \t"))
-                value = rest[width:].rstrip()
+                width = len(item_text) - len(item_text[1:].lstrip(" \t"))
+                value = item_text[width:].rstrip()
                 added = YamlEntry("", column, offset + column, value, offset + column + width, number, stack[-1])
                 stack[-1].children.append(added)
                 stack.append(added)
                 column += width
                 continue
-            match = _KEY.match(rest[:_MAX_KEY])
+            match = _KEY.match(item_text[:_MAX_KEY])
             if match is None:
                 break
             if added is not None:
                 added.value = ""
             _pop_to_column(stack, column, is_item=False)
-            value = rest[match.end() :]
+            value = item_text[match.end() :]
             space = len(value) - len(value.lstrip(" \t"))
             begin = offset + column + match.end() + space
             added = YamlEntry(unquoted(match[1]), column, offset + column, value.strip(), begin, number, stack[-1])
@@ -395,8 +395,8 @@ def _value_cursor(text: str, entry: YamlEntry, offset: int) -> YamlCursor:
     start = entry.value_start
     in_list = entry.is_item
     if text[start : start + 1] in ("[", "{") and offset > start:
-        before = text[start:offset]
-        start += max(before.rfind(mark) for mark in "[{,") + 1
+        prefix = text[start:offset]
+        start += max(prefix.rfind(mark) for mark in "[{,") + 1
         in_list = True
         if entry.value.startswith("{"):
             key, colon, _ = text[start:offset].partition(":")
@@ -408,5 +408,5 @@ def _value_cursor(text: str, entry: YamlEntry, offset: int) -> YamlCursor:
     start += len(typed) - len(typed.lstrip())
     if text[start : start + 1] in ('"', "'") and offset > start:
         start += 1
-    within = entry.parent if entry.is_item and entry.parent is not None else entry
-    return YamlCursor(YamlPosition.VALUE, offset, within, min(start, offset), text[start:offset], None, in_list)
+    parent = entry.parent if entry.is_item and entry.parent is not None else entry
+    return YamlCursor(YamlPosition.VALUE, offset, parent, min(start, offset), text[start:offset], None, in_list)

@@ -73,5 +73,5 @@ def snippet_text(text: str) -> str:
 def has_colon(text: str, offset: int) -> bool:
     """Return whether a colon follows an offset in its line, outside a comment."""
     end = text.find("\n", offset)
-    rest = text[offset : end if end >= 0 else len(text)]
-    return ":" in rest.partition("#")[0]
+    rest_of_line = text[offset : end if end >= 0 else len(text)]
+    return ":" in rest_of_line.partition("#")[0]

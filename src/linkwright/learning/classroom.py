@@ -170,9 +170,9 @@ class Classroom:
     def take_hint(self, step: Step) -> int:
         """Record that one more hint of a step is shown, and return the number of shown hints."""
         available = len(step.text("").hints)
-        taken = min(self.progress.step(step.address).hints + 1, available)
-        self._note(step, hints=taken)
-        return taken
+        hint_count = min(self.progress.step(step.address).hints + 1, available)
+        self._note(step, hints=hint_count)
+        return hint_count
 
     def take_solution(self, step: Step) -> list[Path]:
         """Copy the solution of a step into the workspace, and record that it was used.
@@ -198,11 +198,13 @@ class Classroom:
 
     def steps_to_catch_up(self, step: Step) -> list[Step]:
         """Return the earlier steps with files that are neither passed nor taken over."""
-        before = self.course.steps[: self.course.steps.index(step)]
-        noted = [(earlier_step, self.progress.step(earlier_step.address)) for earlier_step in before]
+        earlier_steps = self.course.steps[: self.course.steps.index(step)]
+        steps_with_progress = [
+            (earlier_step, self.progress.step(earlier_step.address)) for earlier_step in earlier_steps
+        ]
         return [
             earlier_step
-            for earlier_step, done in noted
+            for earlier_step, done in steps_with_progress
             if done.passed is None and not done.taken_over and earlier_step.solution.is_dir()
         ]
 
@@ -226,8 +228,10 @@ class Classroom:
             LinkwrightError: LEARN111, a file cannot be written.
         """
         written = self._write(self.plan_catch_up(step))
-        before = self.course.steps[: self.course.steps.index(step)]
-        missing = [earlier_step for earlier_step in before if self.progress.step(earlier_step.address).passed is None]
+        earlier_steps = self.course.steps[: self.course.steps.index(step)]
+        missing = [
+            earlier_step for earlier_step in earlier_steps if self.progress.step(earlier_step.address).passed is None
+        ]
         self._note(*missing, taken_over=True)
         return written
 

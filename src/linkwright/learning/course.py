@@ -156,8 +156,12 @@ class Course:
         These are the initial files of the lessons, and the solutions of all earlier steps.
         """
         files: dict[Path, Path] = {}
-        for earlier in self.steps[: self.steps.index(step)]:
-            files = {**dict(files_below(earlier.lesson.start)), **files, **dict(files_below(earlier.solution))}
+        for earlier_step in self.steps[: self.steps.index(step)]:
+            files = {
+                **dict(files_below(earlier_step.lesson.start)),
+                **files,
+                **dict(files_below(earlier_step.solution)),
+            }
         return files
 
     def find_lessons(self, names: Sequence[str]) -> tuple[Lesson, ...]:
@@ -185,15 +189,15 @@ class Course:
             LinkwrightError: LEARN106, there is no such step, or there are several.
         """
         steps = [step for lesson in lessons or self.lessons for step in lesson.steps]
-        found = [step for step in steps if name in {step.address, step.id}]
-        if len(found) == 1:
-            return found[0]
-        if found:
+        matches = [step for step in steps if name in {step.address, step.id}]
+        if len(matches) == 1:
+            return matches[0]
+        if matches:
             raise LinkwrightError(
                 Diagnostic(
                     "LEARN106",
                     phrase("several lessons have a step '{name}'", name=name),
-                    hint=phrase("write {names}", names=quoted_names((step.address for step in found), " or ")),
+                    hint=phrase("write {names}", names=quoted_names((step.address for step in matches), " or ")),
                 )
             )
         names = [*(step.address for step in steps), *(step.id for step in steps)]

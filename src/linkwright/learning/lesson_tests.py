@@ -111,8 +111,8 @@ def test_lesson(course: Course, lesson: Lesson) -> Iterator[TestResult]:
         for step in lesson.steps:
             if step.id not in checks:
                 yield TestResult(lesson.id, step.id, phrase("the step has no checks"))
-            own = [case for case in cases if case.step == step.id]
-            yield from _test_step(step, workspace, own, Path(scratch) / "case", server)
+            own_cases = [case for case in cases if case.step == step.id]
+            yield from _test_step(step, workspace, own_cases, Path(scratch) / "case", server)
 
 
 test_lesson.__test__ = False  # type: ignore[attr-defined]  # pytest would collect it

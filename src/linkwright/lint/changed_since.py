@@ -17,7 +17,7 @@ Check = Callable[[Targets, Sequence[Path]], Sequence[Diagnostic]]
 """A function that returns the findings about targets, which were found in some paths."""
 
 
-class ChangedSince:
+class WorkingTreeChanges:
     """The changes of the working tree since a commit.
 
     Args:
@@ -49,7 +49,7 @@ class ChangedSince:
         return self._affected_paths(self.root, self._paths, filter(None, changed))
 
     def known_findings(self, check: Check) -> dict[Key, int]:
-        """Return the number of findings of the commit with each key, in which files have their new names."""
+        """Return how many findings the commit has under each key. Keys contain the new names of the files."""
         files = CommitFiles(self._repository, self._commit, self._name, must_be_complete=False)
         try:
             paths = [path for path in map(files.root.joinpath, self._old_names()) if path.exists()]

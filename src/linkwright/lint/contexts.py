@@ -140,7 +140,7 @@ class FileContext:
         frame = origin if isinstance(origin, Frame) else None
         while frame is not None and id(frame) not in numbers:
             chain.append(frame)
-            frame = frame.around
+            frame = frame.outer
         number = 0 if frame is None else numbers[id(frame)]
         for outer in reversed(chain):
             number = self._frame_numbers.setdefault((outer.macro, id(outer.site), number), len(self._frame_numbers) + 1)

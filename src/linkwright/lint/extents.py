@@ -24,13 +24,13 @@ from linkwright.urdf.bodies import WORLD, Bodies, Body
 if TYPE_CHECKING:
     from linkwright.geometry.mass import MassProperties
 
-MARKER = 0.01
-"""The size in m below which a body is a marker, so that nothing is concluded from its shapes."""
+MAX_MARKER_SIZE = 0.01
+"""The size in m below which a body is a marker, so its shapes are not used."""
 
-_NEGLIGIBLE = 0.01
+_NEGLIGIBLE_FRACTION = 0.01
 """The fraction of a body's mass below which the mass of one of its links is a negligible placeholder."""
 
-WEIGHTLESS = 1e-5
+MAX_PLACEHOLDER_MASS = 1e-5
 """The mass in kg below which a value is a placeholder, because simulators and exporters require a mass."""
 
 _MAX_LINK_FRAMES = 200
@@ -61,12 +61,12 @@ class Extents:
             and (link.visuals or link.collisions)
             and (body := self._bodies.of(link.name)) is not None
             and inertial.is_computable
-            and inertial.mass >= max(WEIGHTLESS, _NEGLIGIBLE * self._bodies.mass(body))
+            and inertial.mass >= max(MAX_PLACEHOLDER_MASS, _NEGLIGIBLE_FRACTION * self._bodies.mass(body))
             and WORLD not in body.links
         ]
 
     @cached_property
-    def measured(self) -> list[tuple[Link, Inertial, Bounds]]:
+    def measurable_links(self) -> list[tuple[Link, Inertial, Bounds]]:
         """The links whose body can rotate and be measured, with ``<inertial>`` and bounding box.
 
         The links are among `links_with_relevant_mass`. The box of the body is in the link's frame. Links are left out
@@ -74,7 +74,9 @@ class Extents:
         """
         rotating_links = (item for item in self.links_with_relevant_mass if self._bodies.turns(item[0].name))
         boxes = ((link, inertial, self.body_bounds(link)) for link, inertial in rotating_links)
-        return [(link, inertial, box) for link, inertial, box in boxes if box is not None and box.diagonal > MARKER]
+        return [
+            (link, inertial, box) for link, inertial, box in boxes if box is not None and box.diagonal > MAX_MARKER_SIZE
+        ]
 
     def mass_properties(self, body: Body) -> MassProperties:
         """Return the combined mass properties of a body in the frame of its first link."""
@@ -133,13 +135,13 @@ class Extents:
             return None if body is None else self.link_bounds(link)
         key = (body, link.name if len(body.frames) <= _MAX_LINK_FRAMES else body.links[0])
         if key not in self._body_boxes:
-            self._body_boxes[key] = self._around(body, _clamp_position(body.frames[key[1]]))
+            self._body_boxes[key] = self._bounds_in_frame(body, _clamp_position(body.frames[key[1]]))
         box = self._body_boxes[key]
         if box is None or key[1] == link.name:
             return box
         return box.moved(_ORIGIN.seen_from(_clamp_position(body.frames[link.name])))
 
-    def _around(self, body: Body, frame: Placement) -> Bounds | None:
+    def _bounds_in_frame(self, body: Body, frame: Placement) -> Bounds | None:
         """Return the box around a body in a frame that is given relative to the body's first link.
 
         The result is None if a shape cannot be measured.

@@ -115,7 +115,7 @@ def new_findings(findings: Sequence[Diagnostic], folder: Path, counts: Mapping[K
 
 def _with_new_names(finding: Diagnostic, key: Key, known_names: Sequence[frozenset[str]]) -> Diagnostic | None:
     """Return a finding with the names that no known finding lists, or None if there are none."""
-    if key.names and any(key.names < others for others in known_names):
+    if key.names and any(key.names < other_names for other_names in known_names):
         return None
     message = as_phrase(finding.message)
     lists = {name: items for name, value in message.arguments.items() if (items := listed_items(value))}
@@ -123,9 +123,9 @@ def _with_new_names(finding: Diagnostic, key: Key, known_names: Sequence[frozens
         return finding
     ((argument, entries),) = lists.items()
     listed_names = frozenset(name for item in entries for name in _QUOTED.findall(item))
-    others = key.names - listed_names
+    other_names = key.names - listed_names
     fingerprints: frozenset[str] = frozenset().union(
-        *(names for names in known_names if others <= names and names & listed_names)
+        *(names for names in known_names if other_names <= names and names & listed_names)
     )
     new_items = [item for item in entries if not fingerprints.issuperset(_QUOTED.findall(item) or [item])]
     if len(new_items) == len(entries):

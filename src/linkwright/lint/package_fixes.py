@@ -166,9 +166,9 @@ def _after_last(source: SourceText, last: tuple[int, int], entries: list[str]) -
     if indent.strip():
         return Edit(source.name, end, end, "".join(f", {entry}" for entry in entries))
     separator = f"{line_ending(text)}{indent}"
-    rest = _REST.match(text, end)
-    if rest is not None and rest[1] and rest[2]:  # a comment belongs to the entry before it
-        offset = end + len(rest[0].rstrip("\r"))
+    rest_match = _REST.match(text, end)
+    if rest_match is not None and rest_match[1] and rest_match[2]:  # a comment belongs to the entry before it
+        offset = end + len(rest_match[0].rstrip("\r"))
         return Edit(source.name, offset, offset, "".join(f"{separator}{entry}," for entry in entries))
     return Edit(source.name, end, end, "".join(f",{separator}{entry}" for entry in entries))
 
@@ -218,12 +218,12 @@ def _glob(setup: SetupFile) -> tuple[str | None, tuple[Edit, ...]]:
 
 def _share_folder(setup: SetupFile, name: str, folder: str = "") -> str:
     """Return the expression of a folder in the share folder, in the form of the other entries."""
-    text, below = setup.source.text, f"/{folder}" if folder else ""
+    text, subpath = setup.source.text, f"/{folder}" if folder else ""
     if _JOINED.search(text):
         return "os.path.join('share', package_name" + (f", '{folder}')" if folder else ")")
     if re.search(rf"^package_name\s*=\s*['\"]{re.escape(name)}['\"]", text, re.MULTILINE):
-        return "'share/' + package_name" + (f" + '{below}'" if below else "")
-    return f"'share/{name}{below}'"
+        return "'share/' + package_name" + (f" + '{subpath}'" if subpath else "")
+    return f"'share/{name}{subpath}'"
 
 
 def _patterns(package: PackageContext, folder: str, glob: str) -> str:

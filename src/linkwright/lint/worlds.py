@@ -27,7 +27,7 @@ from linkwright.sdf.joints import Axis, Joint
 from linkwright.sdf.links import Collision, Inertial, Link, Visual
 from linkwright.sdf.mesh_files import shapes_of
 from linkwright.sdf.models import Model
-from linkwright.sdf.report import described
+from linkwright.sdf.report import describe_element
 from linkwright.sdf.resources import Missing, ResourceFinder
 from linkwright.sdf.shapes import Cone, Ellipsoid, Heightmap, Mesh
 from linkwright.sdf.worlds import Sdf
@@ -142,7 +142,7 @@ def _axis_findings(models: Iterable[Model]) -> Iterator[Diagnostic]:
                 continue
             axis_element = joint.element.first(tag)
             xyz = axis_element.first("xyz") if axis_element is not None else None
-            message = phrase("the axis of {owner} has no direction", owner=described(joint.element))
+            message = phrase("the axis of {owner} has no direction", owner=describe_element(joint.element))
             finding = _warning(
                 "SDF122", message, xyz or joint.element, phrase("write the direction of the axis, such as 0 0 1")
             )
@@ -176,7 +176,7 @@ def _missing_mesh_findings(models: Iterable[Model], finder: ResourceFinder) -> I
             message = phrase(
                 "'{uri}' of {owner} is left out: {reason}",
                 uri=geometry.uri,
-                owner=described(element),
+                owner=describe_element(element),
                 reason=mesh_file.reason,
             )
             uri_elements = (child for child in element.walk() if child.tag in _URI_TAGS)
@@ -236,7 +236,7 @@ def _size_findings(shape: Visual | Collision) -> Iterator[Diagnostic]:
         sizes = (geometry.radius,)
     if sizes and not min(sizes) > 0 and shape.element is not None:
         geometry_element = shape.element.first("geometry") or shape.element
-        message = phrase("{owner} has a size that is not positive", owner=described(shape.element))
+        message = phrase("{owner} has a size that is not positive", owner=describe_element(shape.element))
         yield _warning(
             "SDF122", message, next(geometry_element.elements(), geometry_element), phrase("sizes are in meters")
         )

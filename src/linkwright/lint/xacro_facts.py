@@ -17,7 +17,7 @@ from linkwright.lint.xacro_names import Mentions, identifiers, mentions
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_typing import TYPE_CHECKING, TypeVar
 from linkwright.xacro.cache import BoundedCache
-from linkwright.xacro.expressions.symbols import MATHEMATICS
+from linkwright.xacro.expressions.builtin_names import MATHEMATICS
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xmltree import Comment, Document, Element, Text
@@ -340,7 +340,7 @@ class XacroFacts:
         return frozenset(name for facts in self._all_facts() for name in facts.used_arguments)
 
     @cached_property
-    def called(self) -> frozenset[str]:
+    def called_macros(self) -> frozenset[str]:
         """The names of all macros that a file or a neighbor calls, without namespaces."""
         return frozenset(name for facts in self._all_facts() for name in facts.called_macros)
 

@@ -61,5 +61,5 @@ def _check(sender: Connection, folders: list[Path], subject: Path, texts: dict[P
     project = Workspace(folders)
     with redirect_stdout(sys.stderr):  # Standard output carries only the responses of the server.
         project.index.refresh()
-        sender.send(project.checked(subject, texts))
+        sender.send(project.check_subject(subject, texts))
     sender.close()

@@ -57,8 +57,8 @@ class TextPositions:
         return self.range(0, len(self.text))
 
     def _at(self, line: int, column: int) -> types.Position:
-        before = self._source.line(line)[: column - 1]
-        units = len(before) if before.isascii() else len(before.encode(self._codec)) // self._bytes
+        prefix = self._source.line(line)[: column - 1]
+        units = len(prefix) if prefix.isascii() else len(prefix.encode(self._codec)) // self._bytes
         return types.Position(line - 1, units)
 
 

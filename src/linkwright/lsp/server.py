@@ -25,7 +25,7 @@ from linkwright.language.definitions import NameDefinition
 from linkwright.language.format import Document, Format
 from linkwright.language.formats import format_of
 from linkwright.language.includes import real_path
-from linkwright.language.values import ValuedText, values_in
+from linkwright.language.values import EvaluatedText, values_in
 from linkwright.language.workspace import MAX_CHARACTERS, Workspace
 from linkwright.lint.targets import XML_FILES
 from linkwright.lsp.findings import as_diagnostics
@@ -72,7 +72,7 @@ class LinkwrightServer(LanguageServer):
         self.project: Workspace | None = None
         self._uris: dict[Path, str] = {}
         self._saved_texts: dict[Path, tuple[int, TextPositions]] = {}
-        self._values: dict[Path, tuple[dict[Path, str], list[ValuedText]]] = {}
+        self._values: dict[Path, tuple[dict[Path, str], list[EvaluatedText]]] = {}
         self._changed: dict[Path, None] = {}
         self._has_changes = asyncio.Event()
         self._is_indexed = asyncio.Event()
@@ -200,7 +200,7 @@ class LinkwrightServer(LanguageServer):
         await self.when_indexed()
         return self.project.names(real_path(path), self.texts())
 
-    async def expression_values(self, path: Path) -> list[ValuedText]:
+    async def expression_values(self, path: Path) -> list[EvaluatedText]:
         """Wait for the index, and return the values of the expressions in a file."""
         project, file, texts = self.project, real_path(path), self.texts()
         if project is None:

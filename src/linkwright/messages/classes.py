@@ -120,11 +120,11 @@ class _FieldCode:
 
     def setter(self) -> str:
         name = self.name
-        return f"def S_{name}(self, value):\n{self._checked()}    self._{name} = value\n"
+        return f"def S_{name}(self, value):\n{self._check_lines()}    self._{name} = value\n"
 
     # --- the check ------------------------------------------------------------------------------------------
 
-    def _checked(self) -> str:
+    def _check_lines(self) -> str:
         name, kind, primitive = self.name, self.kind, self.kind.primitive
         if kind.is_numeric_array and kind.container is Container.ARRAY:
             return f"    value = Checks.check_fixed_array({name!r}, value, K_{name})\n"

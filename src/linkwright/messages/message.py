@@ -211,8 +211,8 @@ class _Nanoseconds(Message):
         Raises:
             AssertionError: the seconds do not fit into 32 bits.
         """
-        seconds, rest = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
-        return cls(sec=seconds, nanosec=rest)
+        seconds, remainder = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
+        return cls(sec=seconds, nanosec=remainder)
 
     @property
     def nanoseconds(self) -> int:

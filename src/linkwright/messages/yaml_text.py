@@ -180,11 +180,11 @@ def _block_scalar(text: str, path: tuple[str, ...]) -> str:
 
     To get this indentation, PyYAML formats the string inside containers of the same kinds.
     """
-    marker = _dump(_wrapped("X", path), flow_style=False)
-    return _dump(_wrapped(text, path), flow_style=False)[marker.index("X") : -1]
+    marker = _dump(_nest("X", path), flow_style=False)
+    return _dump(_nest(text, path), flow_style=False)[marker.index("X") : -1]
 
 
-def _wrapped(text: str, path: tuple[str, ...]) -> Any:
+def _nest(text: str, path: tuple[str, ...]) -> Any:
     value: Any = text
     for container in reversed(path):
         value = [value] if container == "s" else {"k": value}

@@ -50,7 +50,7 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
     try:
         factory = _find_factory(package, executable)
         ros_arguments = parse(arguments)
-        print_diagnostics([finding for _, finding in ros_arguments.parameters.left_out], sys.stderr)
+        print_diagnostics([finding for _, finding in ros_arguments.parameters.skipped_findings], sys.stderr)
         logging = set_up(ros_arguments, executable)
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)

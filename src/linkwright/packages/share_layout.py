@@ -148,14 +148,14 @@ def share_of_sources(name: str, folder: Path) -> Path:
     """
     if _LINK_FOLDER_MARK in str(folder):  # a launch file in a folder of links started the search
         return folder
-    moved = {path: file for path, file in _share_files(name, folder) if path != file.source}
-    moved |= substituted_files(name, folder)
-    if not moved:
+    moved_files = {path: file for path, file in _share_files(name, folder) if path != file.source}
+    moved_files |= substituted_files(name, folder)
+    if not moved_files:
         return folder
     from linkwright.packages.link_folder import link_folder
 
     try:
-        return link_folder(name, folder, moved)
+        return link_folder(name, folder, moved_files)
     except OSError:
         return folder
 
@@ -204,5 +204,5 @@ def _installed_files(folder: Path, share: str) -> Iterator[InstalledFile]:
 
         cmake = read_cmake(source, folder)
         hooks = set(cmake.hooks)  # only sourcing a build reads the hooks
-        yield from (file for file in cmake.moved(folder, share) if file.destination not in hooks)
+        yield from (file for file in cmake.moved_files(folder, share) if file.destination not in hooks)
         return

@@ -371,16 +371,16 @@ def is_local_connection(transport: BaseTransport | None) -> bool:
     endpoints = endpoints_of(transport)
     if endpoints is None:
         return False
-    (peer, _), (own, _) = endpoints
-    return peer.is_loopback or peer == own
+    (peer, _), (own_address, _) = endpoints
+    return peer.is_loopback or peer == own_address
 
 
 def endpoints_of(transport: BaseTransport | None) -> tuple[Endpoint, Endpoint] | None:
     """Return the address and port of the peer, and those of this program, or None if unknown."""
     if transport is None:
         return None
-    peer, own = (transport.get_extra_info(name) for name in ("peername", "sockname"))
-    return (_endpoint(peer), _endpoint(own)) if peer and own else None
+    peer, own_address = (transport.get_extra_info(name) for name in ("peername", "sockname"))
+    return (_endpoint(peer), _endpoint(own_address)) if peer and own_address else None
 
 
 def _endpoint(name: tuple[str, int]) -> Endpoint:

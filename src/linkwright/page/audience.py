@@ -125,7 +125,7 @@ class Page:
         self.outbox = Outbox()
         self.origin = origin
         self.language = language
-        self.own = configuration_name
+        self.configuration_name = configuration_name
         self.is_local = is_local
         self.may_be_own_user = may_be_own_user
         self.line = ConnectionMeter(asyncio.get_running_loop().time)

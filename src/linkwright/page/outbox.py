@@ -31,7 +31,7 @@ class ScaledData:
         pack: returns the binary frame with the given content.
 
     Attributes:
-        is_withdrawn: whether the content was replaced or removed, so that it must not be sent any more.
+        is_withdrawn: whether the content was replaced or removed, so that it must no longer be sent.
     """
 
     def __init__(self, key: str, content: DataContent, shrink: Shrink, pack: Pack) -> None:

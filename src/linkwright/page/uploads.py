@@ -94,7 +94,7 @@ class _Upload:
 
 
 class Uploads:
-    """The handler of the requests with which pages upload recordings.
+    """Handles the requests with which pages upload recordings.
 
     Args:
         guests: shows the recordings.

@@ -12,9 +12,6 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.page.audience import Page
 from linkwright.page.protocol.configuration import (
     AddDisplay,
-    AskConfigurationText,
-    AskDisplayChoices,
-    AskFolder,
     Configuration,
     ConfigurationRefused,
     ConfigurationSaved,
@@ -30,6 +27,9 @@ from linkwright.page.protocol.configuration import (
     Redo,
     RemoveDisplays,
     RenameDisplay,
+    RequestConfigurationText,
+    RequestDisplayChoices,
+    RequestFolder,
     RevertConfiguration,
     SaveConfiguration,
     ShowPanels,
@@ -114,7 +114,7 @@ class ConfigurationFeature(PageFeature):
             unsaved=history.has_unsaved_edits,
             undo=history.undo_name,
             redo=history.redo_name,
-            own=manager is not self.managers.shared,
+            is_own=manager is not self.managers.shared,
             recent=self._recent.paths,
         )
 
@@ -166,15 +166,15 @@ class ConfigurationFeature(PageFeature):
 
     # --- questions ---------------------------------------------------------------------------------------------
 
-    def _send_display_choices(self, request: Request[AskDisplayChoices]) -> None:
+    def _send_display_choices(self, request: Request[RequestDisplayChoices]) -> None:
         from linkwright.panels.displays import choices
 
         request.page.send(choices(self.context.node))
 
-    def _send_folder(self, request: Request[AskFolder]) -> None:
+    def _send_folder(self, request: Request[RequestFolder]) -> None:
         request.page.send(list_folder(request.message.path, _base_folder(request.manager)))
 
-    def _send_text(self, request: Request[AskConfigurationText]) -> None:
+    def _send_text(self, request: Request[RequestConfigurationText]) -> None:
         path = request.manager.config.path
         request.page.send(ConfigurationText(path.name if path else _DEFAULT_FILE_NAME, request.manager.config.text()))
 
@@ -243,9 +243,9 @@ class ConfigurationFeature(PageFeature):
 
 _HANDLERS: dict[type, Callable[..., None]] = {
     AddDisplay: ConfigurationFeature._add,
-    AskConfigurationText: ConfigurationFeature._send_text,
-    AskDisplayChoices: ConfigurationFeature._send_display_choices,
-    AskFolder: ConfigurationFeature._send_folder,
+    RequestConfigurationText: ConfigurationFeature._send_text,
+    RequestDisplayChoices: ConfigurationFeature._send_display_choices,
+    RequestFolder: ConfigurationFeature._send_folder,
     DuplicateDisplays: ConfigurationFeature._duplicate,
     GroupDisplays: ConfigurationFeature._group,
     LoadConfiguration: ConfigurationFeature._load,

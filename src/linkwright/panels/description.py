@@ -12,22 +12,22 @@ from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.packages import PackageFinder
 from linkwright.page.audience import Page
 from linkwright.page.protocol.description import (
-    NOTHING_ASKED,
+    NO_ARGUMENT_FORM,
     ArgumentForm,
-    AskDescription,
-    AskDescriptionText,
-    AskInertia,
     Description,
     DescriptionChanged,
     DescriptionText,
     DiagnosticItem,
     DiagnosticNote,
     Diagnostics,
-    GiveArguments,
     InertiaFindings,
+    RequestDescription,
+    RequestDescriptionText,
+    RequestInertia,
+    SetArguments,
 )
 from linkwright.page.protocol.message import ServerMessage, tag_of
-from linkwright.page.protocol.robot import AskProvenance
+from linkwright.page.protocol.robot import RequestProvenance
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.displays.robot_model import RobotModelDisplay
 from linkwright.urdf import Robot
@@ -47,11 +47,11 @@ class ArgumentsFeature(PageFeature):
     The values from the first page that answers are used.
     """
 
-    RECEIVES: ClassVar[tuple[type, ...]] = (GiveArguments,)
+    RECEIVES: ClassVar[tuple[type, ...]] = (SetArguments,)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._form = NOTHING_ASKED
+        self._form = NO_ARGUMENT_FORM
         self._on_values: OnValues | None = None
 
     def opening_messages(self) -> list[ServerMessage]:
@@ -68,11 +68,11 @@ class ArgumentsFeature(PageFeature):
         self._form, self._on_values = form, on_values
         self.context.pages.publish(form)
 
-    def receive(self, page: Page, message: GiveArguments) -> None:
+    def receive(self, page: Page, message: SetArguments) -> None:
         """Close the form, and report the values of the requested arguments."""
         on_values, names = self._on_values, set(self._form.names)
         if on_values is not None:
-            self.show_form(NOTHING_ASKED, None)
+            self.show_form(NO_ARGUMENT_FORM, None)
             on_values({name: value for name, value in message.values.items() if name in names})
 
 
@@ -158,7 +158,7 @@ def _changed_names(previous: Mapping[str, Part], current: Mapping[str, Part]) ->
     return [name for name, element in current.items() if previous.get(name) != element]
 
 
-_Request = AskDescription | AskDescriptionText | AskInertia | AskProvenance
+_Request = RequestDescription | RequestDescriptionText | RequestInertia | RequestProvenance
 
 
 class DescriptionFeature(PageFeature):
@@ -167,7 +167,12 @@ class DescriptionFeature(PageFeature):
     If a page repeats a request before it is answered, only the last request is answered.
     """
 
-    RECEIVES: ClassVar[tuple[type, ...]] = (AskDescription, AskDescriptionText, AskInertia, AskProvenance)
+    RECEIVES: ClassVar[tuple[type, ...]] = (
+        RequestDescription,
+        RequestDescriptionText,
+        RequestInertia,
+        RequestProvenance,
+    )
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -216,7 +221,7 @@ class DescriptionFeature(PageFeature):
 
     def receive(self, page: Page, message: _Request) -> None:
         """Answer a request in the background, and cancel an earlier equal request."""
-        file_name = message.file if isinstance(message, AskDescriptionText) else ""
+        file_name = message.file if isinstance(message, RequestDescriptionText) else ""
         key = (page, f"{tag_of(message)} {message.display} {file_name}")
         if key in self._answer_tasks:
             self._answer_tasks[key].cancel()
@@ -252,13 +257,13 @@ class DescriptionFeature(PageFeature):
         texts_with_findings = dict(self._texts_with_findings)
 
         def answer() -> ServerMessage | None:
-            if isinstance(request, AskDescriptionText):
+            if isinstance(request, RequestDescriptionText):
                 return _text(description, texts_with_findings, request)
             if description is None:
                 return None
-            if isinstance(request, AskDescription):
+            if isinstance(request, RequestDescription):
                 return description.details
-            if isinstance(request, AskInertia):
+            if isinstance(request, RequestInertia):
                 return description.findings(self.context.finder)
             return display.provenance(request.link) if display is not None else None
 
@@ -285,7 +290,7 @@ class DescriptionFeature(PageFeature):
 
 
 def _text(
-    description: KnownDescription | None, texts_with_findings: dict[str, str], request: AskDescriptionText
+    description: KnownDescription | None, texts_with_findings: dict[str, str], request: RequestDescriptionText
 ) -> DescriptionText:
     """Return the text of a file.
 

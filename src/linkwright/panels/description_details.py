@@ -65,10 +65,10 @@ class SourcePositions:
             element: the element from which the link or joint was read; None if it is unknown.
         """
         expanded_element = self._expanded_elements.get((tag, name))
-        expanded = None if expanded_element is None else _source_range(expanded_element)
+        expanded_range = None if expanded_element is None else _source_range(expanded_element)
         if element is None or element.source is None or element.source.name.startswith("<"):
-            return Written(expanded, None, [])
-        return Written(expanded, _source_range(element), list(islice(_calls(element), _MAX_CALLS)))
+            return Written(expanded_range, None, [])
+        return Written(expanded_range, _source_range(element), list(islice(_calls(element), _MAX_CALLS)))
 
 
 def _calls(element: Element) -> Iterator[CallSite]:

@@ -9,7 +9,7 @@ from linkwright.page.audience import Page
 from linkwright.page.protocol.configuration import DisplayChoices, DisplayClass, SetProperty, TopicChoice
 from linkwright.page.protocol.images import ImageSize
 from linkwright.page.protocol.markers import MarkerFeedback
-from linkwright.page.protocol.points import AskPoint, PointFields
+from linkwright.page.protocol.points import PointFields, RequestPoint
 from linkwright.page.protocol.robot import MeshStatus
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.config.former_names import GROUP
@@ -63,7 +63,7 @@ class PointsFeature(PageFeature):
     Pages have only the positions and colors of points.
     """
 
-    def receive(self, page: Page, message: AskPoint) -> None:
+    def receive(self, page: Page, message: RequestPoint) -> None:
         """Send the fields of a point, if it is still shown."""
         from linkwright.rviz.displays.point_clouds import CloudDisplay
 

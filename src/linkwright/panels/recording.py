@@ -156,7 +156,7 @@ class RecordingFeature(PageFeature):
             self._report_errors(error.diagnostics)
         recording.node.destroy_node()
         if recording.recorder.message_count:
-            self._add_file(path, recording.length, recording.simulated)
+            self._add_file(path, recording.length, recording.simulated_seconds)
         else:
             shutil.rmtree(path, ignore_errors=True)
             self._report_errors([_finding(phrase("no recording was saved, because no messages arrived"))])
@@ -246,10 +246,10 @@ class RecordingFeature(PageFeature):
         except OSError:
             return sys.maxsize
 
-    def _add_file(self, path: Path, length: float, simulated: float | None = None) -> None:
+    def _add_file(self, path: Path, length: float, simulated_seconds: float | None = None) -> None:
         for file in sorted(path.glob("*.mcap")):
             url = self.context.downloads.offer_repeatedly(file)
-            recorded_file = RecordedFile(path.name, str(path), file.stat().st_size, length, url, simulated)
+            recorded_file = RecordedFile(path.name, str(path), file.stat().st_size, length, url, simulated_seconds)
             self._files = [recorded_file, *self._files[: _MAX_FILES - 1]]
             self.context.node.get_logger().info(f"Recorded to '{display_path(path)}'")
 
@@ -321,7 +321,7 @@ class _CurrentRecording:
         return time.monotonic() - self._start_time
 
     @property
-    def simulated(self) -> float | None:
+    def simulated_seconds(self) -> float | None:
         """The simulated seconds since the start.
 
         None means that time is not simulated, or that it was reset.

@@ -13,7 +13,7 @@ from linkwright.geometry.exact_angles import sine_and_cosine
 from linkwright.geometry.single import Vector3, add_vectors, cross, scaled
 from linkwright.picture.vectors import along
 
-FIELD = 0.22
+HALF_FOV_TANGENT = 0.22
 """The tangent of half the field of view along the shorter side, for perspective cameras."""
 _MARGIN = 1.16
 """The ratio of the image's size to the size of the content that must be visible."""
@@ -82,24 +82,24 @@ class Camera:
             nearness = z
         return self.size[0] / 2 + x * self.scale, self.size[1] / 2 - y * self.scale, nearness
 
-    def points_at(self, x: Array, y: Array, depth: Array) -> Array:
+    def points_at(self, x: Array, y: Array, offset_toward: Array) -> Array:
         """Return the points that are visible at pixels, shape (n, 3): the inverse of `project`.
 
         Args:
             x: the pixels from the left.
             y: the pixels from the upper side.
-            depth: how much nearer than the middle's point each point is, along `toward`, in m.
+            offset_toward: the distance of each point from `center` along `toward`, in m.
         """
-        size = (self.distance - depth) / self.distance if self.distance else np.ones_like(depth)
+        size = (self.distance - offset_toward) / self.distance if self.distance else np.ones_like(offset_toward)
         across = (x - self.size[0] / 2) / self.scale * size + self.center[0]
         upward = (self.size[1] / 2 - y) / self.scale * size + self.center[1]
-        toward = depth + self.center[2]
+        toward = offset_toward + self.center[2]
         coordinates = [
             across * self.right[axis] + upward * self.up[axis] + toward * self.toward[axis] for axis in range(3)
         ]
         return np.stack(coordinates, axis=1)
 
-    def to_plane(self, height: float, x: Array, y: Array) -> Array:
+    def points_on_plane(self, height: float, x: Array, y: Array) -> Array:
         """Return the points at which the rays of pixels meet a horizontal plane, shape (n, 3).
 
         Args:
@@ -147,7 +147,7 @@ def fitting_camera(view: View, size: tuple[int, int], points: Sequence[Array]) -
     depth = float(z.max())
     z = z - depth
     shorter = min(width, height)
-    tangents = [FIELD * side / shorter / _MARGIN for side in (width, height)]
+    tangents = [HALF_FOV_TANGENT * side / shorter / _MARGIN for side in (width, height)]
     center, distances = [], []
     for values, tangent in zip((x, y), tangents, strict=True):
         # All points are between two planes through the camera: |value - center| <= tangent * (distance - z).
@@ -155,7 +155,9 @@ def fitting_camera(view: View, size: tuple[int, int], points: Sequence[Array]) -
         center.append((upper - lower) / 2)
         distances.append(max(upper + lower, _SMALLEST_EXTENT) / 2 / tangent)
     distance = max(distances)
-    return Camera(right, up, toward, (center[0], center[1], depth), distance, shorter / 2 / (FIELD * distance), size)
+    return Camera(
+        right, up, toward, (center[0], center[1], depth), distance, shorter / 2 / (HALF_FOV_TANGENT * distance), size
+    )
 
 
 def camera_axes(view: View) -> tuple[Vector3, Vector3, Vector3]:

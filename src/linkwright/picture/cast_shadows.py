@@ -45,9 +45,9 @@ class CastShadows:
         self._depth = max(self._high - float(z[is_used].min()), 1e-9)
         cells = ((x - self._origin[0]) / self._cell, (y - self._origin[1]) / self._cell)
         buffer = DepthBuffer(self._columns, 0, rows, self._high, self._high - self._depth)
-        buffer.add(ScreenTriangles.of(*cells, z, mesh.faces), solid)
+        buffer.add(ScreenTriangles.from_faces(*cells, z, mesh.faces), solid)
         self._distances = np.full((rows, self._columns), 2.0, np.float32)
-        visible = buffer.seen(1)
+        visible = buffer.visible_triangles(1)
         if visible is not None:
             self._distances[visible.window][visible.mask] = visible.distances
 

@@ -42,9 +42,9 @@ def edge_strength(distances: Floats, normals: Floats, bodies: NDArray[np.int32],
         inner[first] |= is_crease
         inner[second] |= is_crease
         steps = distances[second] - distances[first]
-        before, after = _pairs(axis)
+        previous, following = _pairs(axis)
         middle = (slice(1, -1), slice(None)) if axis == 0 else (slice(None), slice(1, -1))
-        outer[middle] |= np.abs(steps[after] - steps[before]) > _JUMP
+        outer[middle] |= np.abs(steps[following] - steps[previous]) > _JUMP
     outer |= _neighbors(outer)
     outer &= is_seen
     inner &= is_seen & ~outer
@@ -56,12 +56,12 @@ def edge_strength(distances: Floats, normals: Floats, bodies: NDArray[np.int32],
 
 def _neighbors(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return the samples next to the samples in a mask."""
-    beside = np.zeros_like(mask)
+    neighbors = np.zeros_like(mask)
     for axis in (0, 1):
         first, second = _pairs(axis)
-        beside[first] |= mask[second]
-        beside[second] |= mask[first]
-    return beside
+        neighbors[first] |= mask[second]
+        neighbors[second] |= mask[first]
+    return neighbors
 
 
 def _pairs(axis: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
@@ -73,8 +73,8 @@ def _pairs(axis: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
 
 def _fading(is_line: NDArray[np.bool_], is_seen: NDArray[np.bool_], per_pixel: int) -> Floats:
     """Return a factor for each pixel, which is below 1 where lines are too dense to be distinguished."""
-    lines, seen = (box_sums(pixel_sums(mask, per_pixel), _REACH) for mask in (is_line, is_seen))
-    density = lines.astype(np.float32) / np.maximum(seen, 1).astype(np.float32)
+    line_count, visible_count = (box_sums(pixel_sums(mask, per_pixel), _REACH) for mask in (is_line, is_seen))
+    density = line_count.astype(np.float32) / np.maximum(visible_count, 1).astype(np.float32)
     excess = np.maximum(density / np.float32(_DENSE), np.float32(1.0))
     factor: Floats = np.float32(1.0) / (excess * excess)
     return factor
@@ -97,8 +97,8 @@ def box_sums(values: NDArray[np.int64], reach: int) -> NDArray[np.int64]:
         count = values.shape[axis]
         places = np.arange(count)
         upper = totals.take(np.minimum(places + reach, count - 1), axis=axis)
-        below = places - reach - 1
-        lower = totals.take(np.maximum(below, 0), axis=axis)
-        has_lower = (below >= 0)[:, None] if axis == 0 else (below >= 0)[None, :]
+        lower_places = places - reach - 1
+        lower = totals.take(np.maximum(lower_places, 0), axis=axis)
+        has_lower = (lower_places >= 0)[:, None] if axis == 0 else (lower_places >= 0)[None, :]
         values = upper - np.where(has_lower, lower, 0)
     return values

@@ -22,7 +22,7 @@ _HEIGHTS = (0.015, 0.05, 0.12, 0.25, 0.5, 1e9)
 """The upper limits of the shadow's layers, relative to the size of the scene. Shadows of higher layers are softer."""
 _SOFTNESS = 0.30
 """The radius of the blur, relative to the height above the ground."""
-_LEAST_SOFTNESS = 0.012
+_MIN_SOFTNESS = 0.012
 _DARKNESS = 0.50
 _LINES = 8
 """The approximate number of grid cells along the longer side of the scene."""
@@ -85,12 +85,12 @@ def shadow_map(mesh: Mesh, key: Vector3) -> ShadowMap | None:
     x = mesh.points[:, 0] - height * (key[0] / key[2])
     y = mesh.points[:, 1] - height * (key[1] / key[2])
     size = max(float(extent) for extent in high - low) or 1e-6
-    margin = 2.2 * (_LEAST_SOFTNESS + _SOFTNESS * float(high[2] - low[2]) / size) * size
+    margin = 2.2 * (_MIN_SOFTNESS + _SOFTNESS * float(high[2] - low[2]) / size) * size
     left, right = float(x[is_used].min()) - margin, float(x[is_used].max()) + margin
     back, front = float(y[is_used].min()) - margin, float(y[is_used].max()) + margin
     cell = max(right - left, front - back) / _CELLS
     columns, rows = int((right - left) / cell) + 2, int((front - back) / cell) + 2
-    triangles = ScreenTriangles.of((x - left) / cell, (y - back) / cell, height / size, mesh.faces)
+    triangles = ScreenTriangles.from_faces((x - left) / cell, (y - back) / cell, height / size, mesh.faces)
     layers = np.zeros((len(_HEIGHTS), rows * columns), dtype=bool)
     for part in fragments(triangles, solid, columns, 0, rows):
         layers[np.searchsorted(_HEIGHTS, part.nearness), part.samples] = True
@@ -98,7 +98,7 @@ def shadow_map(mesh: Mesh, key: Vector3) -> ShadowMap | None:
     lower_limit = 0.0
     for limit, layer in zip(_HEIGHTS, layers.reshape(-1, rows, columns), strict=True):
         middle = (lower_limit + min(limit, 1.0)) / 2
-        reach = max(1, round((_LEAST_SOFTNESS + _SOFTNESS * middle) * size / cell))
+        reach = max(1, round((_MIN_SOFTNESS + _SOFTNESS * middle) * size / cell))
         light *= np.float32(1.0) - _blur(layer, reach)
         lower_limit = limit
     return ShadowMap(ground, (left, back), cell, (np.float32(1.0) - light) * np.float32(_DARKNESS))
@@ -184,4 +184,4 @@ def ground_points(
     width = camera.size[0]
     x = np.tile(np.arange(width) + (0.5 + offset[0]), last_row - first_row)
     y = np.repeat(np.arange(first_row, last_row) + (0.5 + offset[1]), width)
-    return camera.to_plane(height, x, y)
+    return camera.points_on_plane(height, x, y)

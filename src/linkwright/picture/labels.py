@@ -15,7 +15,7 @@ from linkwright.picture.vectors import Floats
 
 _HEIGHT = 15.0
 """The height of a line of text in pixels, for an image whose shorter side has `_USUAL_SIDE` pixels."""
-_USUAL_SIDE, _LEAST_SCALE = 600.0, 0.75
+_USUAL_SIDE, _MIN_SCALE = 600.0, 0.75
 _PEN, _HALO, _DOT = 0.75, 2.6, 2.4
 """In pixels: half the width of lines, the radius of the bright area around them, and the radius of the dots."""
 _OFFSET, _SPACING, _BORDER = 14.0, 2.0, 4.0
@@ -52,7 +52,7 @@ def draw_labels(light: Floats, alpha: Floats, anchors: Sequence[Anchor], camera:
     if not anchors:
         return
     x, y, _ = camera.project(np.array([anchor.position for anchor in anchors]))
-    scale = max(min(camera.size) / _USUAL_SIDE, _LEAST_SCALE)
+    scale = max(min(camera.size) / _USUAL_SIDE, _MIN_SCALE)
     labels: list[_Placed] = []
     for index in sorted(range(len(anchors)), key=lambda number: (float(y[number]), number)):
         labels.append(_place(anchors[index].text, (float(x[index]), float(y[index])), labels, camera.size, scale))

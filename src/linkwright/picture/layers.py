@@ -45,9 +45,9 @@ class Mesh:
                 surfaces.append(surface.placed(body.frame))
                 owners.append(body)
         if not surfaces:
-            nothing = np.zeros((0, 3))
+            no_points = np.zeros((0, 3))
             no_indices = np.zeros((0, 3), np.int64)
-            return cls(nothing, nothing, no_indices, np.zeros(0, np.int64), (), ())
+            return cls(no_points, no_points, no_indices, np.zeros(0, np.int64), (), ())
         starts = np.cumsum([0, *(len(surface.points) for surface in surfaces)])
         return cls(
             np.concatenate([surface.points for surface in surfaces]),
@@ -82,7 +82,7 @@ class Mesh:
         """The indices of the triangles that cast a shadow, shape (n,)."""
         return self.selected([part.alpha > 0.0 and body.ghost is None for part, body in self._pairs])
 
-    def outlined(self) -> dict[Color, Indices]:
+    def outlined_triangles(self) -> dict[Color, Indices]:
         """Return the indices of the triangles of outlined bodies, by the color of the outline."""
         colors = dict.fromkeys(body.outline for body in self.bodies if body.outline is not None)
         return {color: self.selected([body.outline == color for body in self.bodies]) for color in colors}

@@ -24,7 +24,7 @@ _STRENGTH = 2.6
 _BLUR = 2
 """The radius in pixels of the blur that hides the pattern of the examined points."""
 _STEPS = 4096
-_LEAST = 0.30
+_MIN_LIGHT = 0.30
 """The fraction of the light that remains in the deepest corner."""
 
 
@@ -56,7 +56,7 @@ def ambient_light(depth: Floats, normals: Floats, is_seen: NDArray[np.bool_], ca
             if shift != (0, 0):
                 _add_blocked(blocked, depth, normals, is_seen, meters, shift, reach)
     light = 1.0 - blocked * (_STRENGTH / (_DIRECTIONS * len(_RINGS)))
-    steps = np.where(is_seen, np.rint(np.maximum(light, np.float32(_LEAST)) * _STEPS), 0.0).astype(np.int64)
+    steps = np.where(is_seen, np.rint(np.maximum(light, np.float32(_MIN_LIGHT)) * _STEPS), 0.0).astype(np.int64)
     count = np.maximum(box_sums(is_seen.astype(np.int64), _BLUR), 1)
     ambient: Floats = (box_sums(steps, _BLUR) / (count * _STEPS)).astype(np.float32)
     return ambient
@@ -78,20 +78,20 @@ def _add_blocked(
     shift: tuple[int, int],
     reach: float,
 ) -> None:
-    """Add the light that is blocked by the points at an offset in pixels, to the right and down."""
+    """Add to `blocked` the light that is blocked by the points `shift` (right, down) pixels away."""
     across, down = shift
     rows, columns = depth.shape
-    here = (slice(max(0, -down), min(rows, rows - down)), slice(max(0, -across), min(columns, columns - across)))
-    there = (slice(max(0, down), min(rows, rows + down)), slice(max(0, across), min(columns, columns + across)))
-    if here[0].stop <= here[0].start or here[1].stop <= here[1].start:
+    inner = (slice(max(0, -down), min(rows, rows - down)), slice(max(0, -across), min(columns, columns - across)))
+    shifted = (slice(max(0, down), min(rows, rows + down)), slice(max(0, across), min(columns, columns + across)))
+    if inner[0].stop <= inner[0].start or inner[1].stop <= inner[1].start:
         return
-    size = meters[here]
+    size = meters[inner]
     x, y = size * float(across), size * float(-down)
-    z = depth[there] - depth[here]
+    z = depth[shifted] - depth[inner]
     square = x * x + y * y + z * z
-    above = normals[0][here] * x + normals[1][here] * y + normals[2][here] * z
-    sine = above / np.sqrt(np.maximum(square, np.float32(1e-20)))
+    height = normals[0][inner] * x + normals[1][inner] * y + normals[2][inner] * z
+    sine = height / np.sqrt(np.maximum(square, np.float32(1e-20)))
     limit = size * float(1.6 * reach)
     nearness = np.maximum(1.0 - square / (limit * limit), np.float32(0.0))
     gain = np.maximum(sine - np.float32(_BIAS), np.float32(0.0)) * nearness
-    blocked[here] += np.where(is_seen[there], gain, np.float32(0.0))
+    blocked[inner] += np.where(is_seen[shifted], gain, np.float32(0.0))

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.geometry.arrays import Array
-from linkwright.picture.vectors import Floats, Indices, expanded
+from linkwright.picture.vectors import Floats, Indices, repeat_indices
 
 _SNAP = 256.0
 """Corners are rounded to multiples of 1 / _SNAP samples."""
@@ -48,7 +48,7 @@ class ScreenTriangles:
     gradients: Array
 
     @classmethod
-    def of(cls, x: Array, y: Array, nearness: Array, faces: Indices) -> ScreenTriangles:
+    def from_faces(cls, x: Array, y: Array, nearness: Array, faces: Indices) -> ScreenTriangles:
         """Return the triangles with the given corners. `faces` has the indices of the corners, shape (n, 3)."""
         tx, ty, tn = x[faces], y[faces], nearness[faces]
         x1, y1, n1 = tx[:, 1] - tx[:, 0], ty[:, 1] - ty[:, 0], tn[:, 1] - tn[:, 0]
@@ -91,31 +91,32 @@ def fragments(
     x, y = triangles.x[selected], triangles.y[selected]
     top = np.ceil(np.clip(y.min(axis=1) - 0.5, first_row, last_row)).astype(np.int64)
     bottom = np.ceil(np.clip(y.max(axis=1) - 0.5, first_row, last_row)).astype(np.int64)
-    is_seen = (bottom > top) & (x.max(axis=1) > 0.0) & (x.min(axis=1) < width)
-    selected, top, counts = selected[is_seen], top[is_seen], (bottom - top)[is_seen]
-    x, y = _sorted_by_row(np.rint(x[is_seen] * _SNAP) / _SNAP, np.rint(y[is_seen] * _SNAP) / _SNAP)
+    is_on_grid = (bottom > top) & (x.max(axis=1) > 0.0) & (x.min(axis=1) < width)
+    selected, top, counts = selected[is_on_grid], top[is_on_grid], (bottom - top)[is_on_grid]
+    x, y = _sorted_by_row(np.rint(x[is_on_grid] * _SNAP) / _SNAP, np.rint(y[is_on_grid] * _SNAP) / _SNAP)
     slopes = _slopes(x, y)
     low, high = triangles.nearness[selected].min(axis=1), triangles.nearness[selected].max(axis=1)
     start = 0
     ends = np.cumsum(counts)
     while start < len(selected):
-        before = int(ends[start - 1]) if start else 0
-        stop = max(start + 1, int(np.searchsorted(ends, before + _MAX_FRAGMENTS // 4, side="right")))
-        part = slice(start, stop)
-        items, numbers = expanded(counts[part])
-        items = items + start
-        rows = top[items] + numbers
-        left, right = _spans(x, y, slopes, items, rows + 0.5, width)
+        previous_end = int(ends[start - 1]) if start else 0
+        stop = max(start + 1, int(np.searchsorted(ends, previous_end + _MAX_FRAGMENTS // 4, side="right")))
+        batch = slice(start, stop)
+        owners, row_steps = repeat_indices(counts[batch])
+        owners = owners + start
+        rows = top[owners] + row_steps
+        left, right = _spans(x, y, slopes, owners, rows + 0.5, width)
         is_filled = right > left
-        items, rows, left, right = items[is_filled], rows[is_filled], left[is_filled], right[is_filled]
-        yield from _filled(triangles, selected, items, rows, left, right, (low, high), width, first_row)
+        owners, rows = owners[is_filled], rows[is_filled]
+        left, right = left[is_filled], right[is_filled]
+        yield from _span_fragments(triangles, selected, owners, rows, left, right, (low, high), width, first_row)
         start = stop
 
 
-def _filled(
+def _span_fragments(
     triangles: ScreenTriangles,
     selected: Indices,
-    items: Indices,
+    owners: Indices,
     rows: Indices,
     left: Indices,
     right: Indices,
@@ -123,29 +124,33 @@ def _filled(
     width: int,
     first_row: int,
 ) -> Iterator[Fragments]:
-    """Yield the fragments of the spans from `left` to `right`, in batches."""
-    own = selected[items]
-    downward = triangles.gradients[own, 1] * (rows + 0.5 - triangles.y[own, 0])
-    across, corner, base = triangles.gradients[own, 0], triangles.x[own, 0], triangles.nearness[own, 0]
+    """Yield the fragments of the spans from `left` to `right`, in batches.
+
+    `owners` has the index in `selected` of the triangle of each span.
+    """
+    triangle_ids = selected[owners]
+    downward = triangles.gradients[triangle_ids, 1] * (rows + 0.5 - triangles.y[triangle_ids, 0])
+    across, corner = triangles.gradients[triangle_ids, 0], triangles.x[triangle_ids, 0]
+    base = triangles.nearness[triangle_ids, 0]
     counts = right - left
     # The nearness of a narrow triangle must not exceed that of its corners after rounding.
-    low, high = limits[0][items], limits[1][items]
+    low, high = limits[0][owners], limits[1][owners]
     at_left = np.clip(base + across * (left + 0.5 - corner) + downward, low, high)
     at_right = np.clip(base + across * (right - 0.5 - corner) + downward, low, high)
     across = (at_right - at_left) / np.maximum(counts - 1, 1)
     starts = (rows - first_row) * width + left
     ends = np.cumsum(counts)
     begin = 0
-    while begin < len(items):
-        before = int(ends[begin - 1]) if begin else 0
-        stop = max(begin + 1, int(np.searchsorted(ends, before + _MAX_FRAGMENTS, side="right")))
-        part = slice(begin, stop)
-        repeats = counts[part]
-        numbers = np.arange(int(ends[stop - 1]) - before) - np.repeat(ends[part] - repeats - before, repeats)
+    while begin < len(owners):
+        previous_end = int(ends[begin - 1]) if begin else 0
+        stop = max(begin + 1, int(np.searchsorted(ends, previous_end + _MAX_FRAGMENTS, side="right")))
+        batch = slice(begin, stop)
+        repeats = counts[batch]
+        steps = np.arange(int(ends[stop - 1]) - previous_end) - np.repeat(ends[batch] - repeats - previous_end, repeats)
         yield Fragments(
-            np.repeat(own[part], repeats),
-            np.repeat(starts[part], repeats) + numbers,
-            np.repeat(at_left[part], repeats) + np.repeat(across[part], repeats) * numbers,
+            np.repeat(triangle_ids[batch], repeats),
+            np.repeat(starts[batch], repeats) + steps,
+            np.repeat(at_left[batch], repeats) + np.repeat(across[batch], repeats) * steps,
         )
         begin = stop
 
@@ -173,20 +178,20 @@ def _slopes(x: Array, y: Array) -> tuple[Array, Array, Array]:
 
 
 def _spans(
-    x: Array, y: Array, slopes: tuple[Array, Array, Array], items: Indices, centers: Floats, width: int
+    x: Array, y: Array, slopes: tuple[Array, Array, Array], owners: Indices, centers: Floats, width: int
 ) -> tuple[Indices, Indices]:
     """Return the first sample of each row that is inside its triangle, and the sample after the last one."""
-    is_upper = centers < y[items, 1]
+    is_upper = centers < y[owners, 1]
     corner = np.where(is_upper, 0, 1)
-    short = x[items, corner] + (centers - y[items, corner]) * np.where(is_upper, slopes[0][items], slopes[1][items])
-    long = x[items, 0] + (centers - y[items, 0]) * slopes[2][items]
+    short = x[owners, corner] + (centers - y[owners, corner]) * np.where(is_upper, slopes[0][owners], slopes[1][owners])
+    long = x[owners, 0] + (centers - y[owners, 0]) * slopes[2][owners]
     left = np.ceil(np.clip(np.minimum(short, long) - 0.5, 0, width)).astype(np.int64)
     right = np.ceil(np.clip(np.maximum(short, long) - 0.5, 0, width)).astype(np.int64)
     return left, right
 
 
 @dataclass(frozen=True, slots=True)
-class SeenTriangles:
+class VisibleTriangles:
     """The samples of a buffer at which a triangle is visible.
 
     Attributes:
@@ -244,44 +249,44 @@ class DepthBuffer:
         selected: Indices,
         *,
         behind: DepthBuffer | None = None,
-        before: DepthBuffer | None = None,
+        in_front_of: DepthBuffer | None = None,
     ) -> None:
         """Add triangles.
 
         Args:
             triangles: the triangles.
             selected: the indices of the triangles to add.
-            behind: a buffer behind whose triangles these must be.
-            before: a buffer before whose triangles these must be.
+            behind: only samples behind this buffer's triangles are added.
+            in_front_of: only samples in front of this buffer's triangles are added.
         """
-        for part in fragments(triangles, selected, self.width, self.first_row, self.last_row):
-            steps = np.maximum((self._nearest - part.nearness) * self._steps, 0.0).astype(np.int64)
-            keys = (steps << _TRIANGLE_BITS) | part.triangles
-            samples = part.samples
-            for other, is_behind in ((behind, True), (before, False)):
+        for batch in fragments(triangles, selected, self.width, self.first_row, self.last_row):
+            steps = np.maximum((self._nearest - batch.nearness) * self._steps, 0.0).astype(np.int64)
+            keys = (steps << _TRIANGLE_BITS) | batch.triangles
+            samples = batch.samples
+            for other, is_behind in ((behind, True), (in_front_of, False)):
                 if other is not None:
                     is_kept = (keys > other.keys[samples]) if is_behind else (keys < other.keys[samples])
                     samples, keys = samples[is_kept], keys[is_kept]
             np.minimum.at(self.keys, samples, keys)
 
-    def seen(self, aligned: int) -> SeenTriangles | None:
+    def visible_triangles(self, block_size: int) -> VisibleTriangles | None:
         """Return the visible triangles, or None if there are none.
 
         Args:
-            aligned: a number of samples; the extent of the result is a multiple of it.
+            block_size: the extent of the result is a multiple of this number of samples.
         """
         keys = self.keys.reshape(-1, self.width)
         is_seen = keys != NOTHING
         rows, columns = np.flatnonzero(is_seen.any(axis=1)), np.flatnonzero(is_seen.any(axis=0))
         if not len(rows):
             return None
-        window = (_align(rows, len(keys), aligned), _align(columns, self.width, aligned))
+        window = (_align(rows, len(keys), block_size), _align(columns, self.width, block_size))
         mask = is_seen[window]
         seen_keys = keys[window][mask]
         distances = (seen_keys >> _TRIANGLE_BITS).astype(np.float32)
         distances *= np.float32(1.0 / _DEPTH_STEPS)
         y, x = np.nonzero(mask)
-        return SeenTriangles(
+        return VisibleTriangles(
             window,
             mask,
             seen_keys & (MAX_TRIANGLES - 1),

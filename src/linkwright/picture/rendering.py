@@ -15,7 +15,7 @@ from linkwright.picture.ground import GroundGrid, ground_points, is_ground_visib
 from linkwright.picture.labels import draw_labels
 from linkwright.picture.occlusion import ambient_light, occlusion_reach
 from linkwright.picture.outlines import draw_outline
-from linkwright.picture.rasterizer import NOTHING, DepthBuffer, ScreenTriangles, SeenTriangles
+from linkwright.picture.rasterizer import NOTHING, DepthBuffer, ScreenTriangles, VisibleTriangles
 from linkwright.picture.scene import Scene, camera_for
 from linkwright.picture.shading import Lights, Shader
 from linkwright.picture.vectors import Floats, Indices, along
@@ -84,7 +84,7 @@ class _Renderer:
         self._width, self._height = camera.size
         self._per_pixel = _PER_PIXEL if self._width * self._height <= _LARGE_IMAGE else _PER_PIXEL_OF_LARGE
         x, y, nearness = camera.project(mesh.points)
-        self._screen = ScreenTriangles.of(x * self._per_pixel, y * self._per_pixel, nearness, mesh.faces)
+        self._screen = ScreenTriangles.from_faces(x * self._per_pixel, y * self._per_pixel, nearness, mesh.faces)
         self._range = (float(nearness.max()), float(nearness.min())) if len(nearness) else (1.0, 0.0)
         lights = Lights.of(camera)
         self._shader = Shader(mesh, self._screen, lights)
@@ -111,8 +111,8 @@ class _Renderer:
         requested_rows = slice(first - upper, last - upper)
         light, alpha = light[requested_rows], alpha[requested_rows]
         light_below, alpha_below = self._ground(first, last)
-        rest = 1.0 - alpha
-        return light + light_below * rest[:, :, None], alpha + alpha_below * rest
+        transparency = 1.0 - alpha
+        return light + light_below * transparency[:, :, None], alpha + alpha_below * transparency
 
     # --- bodies ------------------------------------------------------------------------------------------------
 
@@ -133,9 +133,9 @@ class _Renderer:
         ghosts = mesh.ghosts
         if len(ghosts):
             layer = opaque.empty_copy()
-            layer.add(self._screen, ghosts, before=opaque)
+            layer.add(self._screen, ghosts, in_front_of=opaque)
             self._blend(light, alpha, layer, opacity=_GHOST_ALPHA)
-        for color, triangles in mesh.outlined().items():
+        for color, triangles in mesh.outlined_triangles().items():
             layer = opaque.empty_copy()
             layer.add(self._screen, triangles)
             draw_outline(light, alpha, (layer.keys != NOTHING).reshape(alpha.shape), color, scale)
@@ -146,7 +146,7 @@ class _Renderer:
         layers: list[DepthBuffer] = []
         for _ in range(_PEELED_LAYERS):
             layer = opaque.empty_copy()
-            layer.add(self._screen, transparent, behind=layers[-1] if layers else None, before=opaque)
+            layer.add(self._screen, transparent, behind=layers[-1] if layers else None, in_front_of=opaque)
             if layer.is_empty:
                 break
             layers.append(layer)
@@ -170,7 +170,7 @@ class _Renderer:
             opacity: the opacity; None for that of the materials.
             is_first: whether nothing was drawn yet; corners and shadows are those of the first surface.
         """
-        visible = buffer.seen(self._per_pixel)
+        visible = buffer.visible_triangles(self._per_pixel)
         if visible is None:
             return
         shaded = self._shader.shade(visible)
@@ -184,13 +184,13 @@ class _Renderer:
         colors += (lines * alphas * _EDGE_LIGHT)[:, None]
         light, alpha = light[visible.window], alpha[visible.window]
         if not is_first:
-            rest = 1.0 - alphas
-            colors += light[visible.mask] * rest[:, None]
-            alphas = alphas + alpha[visible.mask] * rest
+            transparency = 1.0 - alphas
+            colors += light[visible.mask] * transparency[:, None]
+            alphas = alphas + alpha[visible.mask] * transparency
         light[visible.mask] = colors
         alpha[visible.mask] = alphas
 
-    def _ambient(self, visible: SeenTriangles, normals: Floats) -> Floats:
+    def _ambient(self, visible: VisibleTriangles, normals: Floats) -> Floats:
         """Return the fraction of ambient light at samples, computed at the center of each pixel."""
         scale, camera = self._per_pixel, self._camera
         middles = (slice(scale // 2, None, scale), slice(scale // 2, None, scale))
@@ -214,7 +214,7 @@ class _Renderer:
         spread: Floats = np.repeat(np.repeat(ambient, scale, axis=0), scale, axis=1)[visible.mask]
         return spread
 
-    def _lines(self, visible: SeenTriangles, normals: Floats) -> Floats:
+    def _lines(self, visible: VisibleTriangles, normals: Floats) -> Floats:
         """Return the darkness of lines at samples."""
         bodies = np.full(visible.mask.shape, -1, np.int32)
         bodies[visible.mask] = self._body_numbers[self._mesh.parts[visible.triangles]]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from linkwright.geometry.single import Vector3, add_vectors, scaled
 from linkwright.picture.camera import Camera
 from linkwright.picture.layers import Mesh
-from linkwright.picture.rasterizer import ScreenTriangles, SeenTriangles
+from linkwright.picture.rasterizer import ScreenTriangles, VisibleTriangles
 from linkwright.picture.vectors import Floats, Indices, along, unit_vector, unit_vectors
 
 _KEY, _FILL, _SKY, _GROUND, _SHINE, _RIM = 0.74, 0.14, 0.34, 0.14, 0.09, 0.05
@@ -88,7 +88,7 @@ class Shader:
         }
         self._starts = np.cumsum([0, *(len(surface.points) for surface in mesh.surfaces)])
 
-    def shade(self, visible: SeenTriangles) -> Shaded:
+    def shade(self, visible: VisibleTriangles) -> Shaded:
         """Return the colors of the samples at which triangles are visible."""
         table, rows = self._table(visible.triangles)
         parts = [

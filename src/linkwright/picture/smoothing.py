@@ -11,7 +11,7 @@ from linkwright.picture.vectors import (
     Indices,
     cross_products,
     dot_products,
-    expanded,
+    repeat_indices,
     sums_by_index,
     unit_vectors,
 )
@@ -115,13 +115,13 @@ def _creased_normals(rough_corners: Indices, welded: Indices, face_normals: Arra
     neighbor_counts[neighbor_counts > _MAX_NEIGHBORS] = 0
     weighted = face_normals[faces[order]] * weights[rough_corners[order], None]
     sums = weighted.copy()
-    items, numbers = expanded(neighbor_counts)
-    others = starts[items] + numbers
-    own_faces, other_faces = faces[order][items], faces[order][others]
+    corner_indices, neighbor_steps = repeat_indices(neighbor_counts)
+    neighbors = starts[corner_indices] + neighbor_steps
+    own_faces, other_faces = faces[order][corner_indices], faces[order][neighbors]
     meets = (own_faces != other_faces) & (
         dot_products(face_normals[own_faces], face_normals[other_faces]) >= CREASE_COSINE
     )
-    sums += sums_by_index(items[meets], weighted[others[meets]], len(order))
+    sums += sums_by_index(corner_indices[meets], weighted[neighbors[meets]], len(order))
     normals = np.empty_like(sums)
     normals[order] = unit_vectors(sums)
     return normals

@@ -57,7 +57,7 @@ def sums_by_index(indices: Indices, vectors: Floats, count: int) -> Array:
     return np.stack([np.bincount(indices, vectors[:, axis], count) for axis in range(3)], axis=1)
 
 
-def expanded(counts: Indices) -> tuple[Indices, Indices]:
+def repeat_indices(counts: Indices) -> tuple[Indices, Indices]:
     """Return, for items with repetition counts, the item index of each repetition, and its number from 0."""
     items = np.repeat(np.arange(len(counts)), counts)
     starts = np.cumsum(counts) - counts

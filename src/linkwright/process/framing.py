@@ -12,7 +12,7 @@ _LENGTH = re.compile(rb"Content-Length: *(\d+)", re.IGNORECASE)
 _MAX_HEADER_LINES = 10
 
 
-def framed(content: bytes) -> bytes:
+def add_header(content: bytes) -> bytes:
     """Return a message preceded by its header."""
     return b"Content-Length: %d\r\n\r\n%b" % (len(content), content)
 

@@ -8,7 +8,7 @@ import time
 from collections.abc import Iterator
 
 _NANOSECOND = 1e-9
-_MOST_DELAY = 10.0
+_MAX_SLOWDOWN = 10.0
 """The clock is slower than real time by at most this factor."""
 
 
@@ -29,7 +29,7 @@ class PatientClock:
     def __init__(self, process: int | None = None) -> None:
         self._process = os.getpid() if process is None else process
         self._start = self._last = time.monotonic()
-        self._hindered = 0.0
+        self._waited = 0.0
         self._usages = dict(_usages_below(self._process))
         self.cpu_seconds = 0.0
 
@@ -42,12 +42,13 @@ class PatientClock:
             run_before, wait_before = self._usages.get(thread, (0.0, 0.0))
             running += run - run_before
             waiting += wait - wait_before
-        if waiting > 0.0:  # the sum for sequential threads, the share for parallel ones
-            self._hindered += min(now - self._last, running + waiting) * waiting / (running + waiting)
+        if waiting > 0.0:
+            # For one thread, this is its waiting time; for parallel threads, the share of the time that they waited.
+            self._waited += min(now - self._last, running + waiting) * waiting / (running + waiting)
         self.cpu_seconds += running
         self._usages, self._last = usages, now
         elapsed = now - self._start
-        return max(elapsed - self._hindered, elapsed / _MOST_DELAY)
+        return max(elapsed - self._waited, elapsed / _MAX_SLOWDOWN)
 
 
 def _usages_below(root: int) -> Iterator[tuple[str, tuple[float, float]]]:

@@ -58,7 +58,7 @@ class Fault(NamedTuple):
 
 @dataclass(frozen=True)
 class Drawings:
-    """The drawings of robots that a review makes.
+    """Which drawings of the robots a review makes.
 
     Attributes:
         images: whether to make images from four sides.
@@ -84,7 +84,7 @@ class FilePair:
         cases: the names of the compared argument sets.
         images: images of both versions.
         scene: both versions in 3D.
-        expanded: the elements of changed files that the compared robots show.
+        expanded: the elements of changed files that the expansions of the compared robots use.
         missing: the names of packages and files that were left out because a version does not find them.
         is_lost: whether the new version cannot be read, and the old version can.
     """

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.build_facts import BuildFacts
+from linkwright.review.files.build_facts import BuildFacts, FactKind
 from linkwright.review.files.cmake_files import CMAKE_FILE, read_cmake_facts
 from linkwright.review.files.setup_files import SETUP_FILE, read_setup_facts
 from linkwright.review.versions import Version, Versions
@@ -32,7 +33,10 @@ def _package(version: Version, path: str) -> PurePosixPath | None:
 
 def _places(version: Version, package: PurePosixPath, path: str) -> frozenset[str] | None:
     """Return the installed paths of a file without the name of its package, or None if they are not known."""
-    facts = _facts(version.root, version, package.as_posix().removeprefix("."))
+    folder = version.root / package
+    if Manifest(read_document(str(folder / MANIFEST))).is_ros1:
+        return None  # catkin also finds the sources
+    facts = package_facts(version, package.as_posix().removeprefix("."))
     if facts is None or not facts.is_complete:
         return None
     source = PurePosixPath(path).relative_to(package).as_posix()
@@ -40,15 +44,49 @@ def _places(version: Version, package: PurePosixPath, path: str) -> frozenset[st
 
 
 @lru_cache(maxsize=64)
-def _facts(root: Path, version: Version, package: str) -> BuildFacts | None:
-    """Return what the build file of a package installs, or None if it is not known. Catkin also finds the sources."""
-    folder = root / package
-    if Manifest(read_document(str(folder / MANIFEST))).is_ros1:
-        return None
+def package_facts(version: Version, package: str) -> BuildFacts | None:
+    """Return the facts of the build file of a package, or None if it has none that can be read.
+
+    Args:
+        version: the version.
+        package: the folder of the package relative to the root; empty for the root.
+    """
     for name, read in ((CMAKE_FILE, read_cmake_facts), (SETUP_FILE, read_setup_facts)):
-        if (folder / name).is_file():
+        path = f"{package}/{name}".lstrip("/")
+        if version.file(path).is_file():
             try:
-                return read(version, f"{package}/{name}".lstrip("/"))
-            except (UnreadableFileError, OSError, ValueError):
+                return read(version, path)
+            except (UnreadableFileError, LinkwrightError, OSError, ValueError):
                 return None
     return None
+
+
+def build_file(version: Version, package: str) -> str | None:
+    """Return the path of the build file of a package, or None if it has none."""
+    paths = (f"{package}/{name}".lstrip("/") for name in (CMAKE_FILE, SETUP_FILE))
+    return next((path for path in paths if version.file(path).is_file()), None)
+
+
+def python_packages(version: Version, package: str) -> list[str]:
+    """Return the folders of the installed Python packages of a package, relative to it or to its folder ``src``."""
+    names: list[str] = []
+    for name, read in ((CMAKE_FILE, read_cmake_facts), (SETUP_FILE, read_setup_facts)):
+        path = f"{package}/{name}".lstrip("/")
+        if version.file(path).is_file():
+            try:
+                facts = read(version, path)
+            except (UnreadableFileError, LinkwrightError, OSError, ValueError):
+                continue
+            names += (fact.name.replace(".", "/") for fact in facts.facts if fact.kind is FactKind.MODULE)
+    return names
+
+
+def is_exported_header(version: Version, package: str, path: str) -> bool:
+    """Return whether other packages find a header: it is installed, or in a folder that catkin exports."""
+    facts = package_facts(version, package.removeprefix("."))
+    if facts is None:
+        return False
+    source = PurePosixPath(path).relative_to(package).as_posix()
+    folders = (fact.name for fact in facts.facts if fact.kind is FactKind.EXPORTED_FOLDER)
+    is_installed = any(target.startswith("include/") and source == other for target, other in facts.files.items())
+    return is_installed or any(PurePosixPath(source).is_relative_to(folder) for folder in folders)

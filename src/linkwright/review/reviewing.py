@@ -24,8 +24,8 @@ from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.maps import is_map, map_of_image
 from linkwright.review.files.mesh_groups import grouped_meshes
-from linkwright.review.files.node_sources import source_subjects
 from linkwright.review.files.plugin_files import plugin_subjects
+from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST, rosbuild_subjects
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
 from linkwright.review.installed_paths import keeps_installed_path
@@ -40,6 +40,7 @@ from linkwright.review.kinds import (
 )
 from linkwright.review.launches.formats import is_launch_yaml, with_other_formats
 from linkwright.review.launches.helpers import makes_actions
+from linkwright.review.lost_files import lost_files
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
 from linkwright.review.other_files import file_states
 from linkwright.review.parts import compare_parts
@@ -48,6 +49,7 @@ from linkwright.review.renamed_folders import with_renamed_folders
 from linkwright.review.renamed_packages import with_moved_files, without_consequences
 from linkwright.review.robots.lone_robots import read_lone_robot, robot_text
 from linkwright.review.robots.semantics import semantic_files
+from linkwright.review.sources.comparing import source_subjects
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -154,9 +156,11 @@ class _Reviewer:
         for path, change in lost_references(self._versions, self._changed_files):
             lost.setdefault(path, []).append(change)
         result = [replace(subject, changes=[*subject.changes, *lost.pop(subject.path, ())]) for subject in subjects]
+        result = _with_changes(result, lost_files(self._versions, self._changed_files))
         for path, changes in lost.items():
             result.append(Subject(SubjectKind.LAUNCH_FILE, path, self._old_path(path), path, changes))
         result += plugin_subjects(self._versions, self._changed_files)
+        result += rosbuild_subjects(self._versions, self._changed_files)
         paths = {subject.path for subject in result}
         result += (found for found in source_subjects(self._versions, self._changed_files) if found.path not in paths)
         return sorted(result, key=lambda subject: subject.path)
@@ -211,7 +215,7 @@ class _Reviewer:
     def _package_build_file(self, file: ChangedFile) -> tuple[str, str] | None:
         """Return the paths of the ``CMakeLists.txt`` of the package that runs another one, or None."""
         path = PurePosixPath(file.path)
-        folder = _package_folder(self._versions.new, file.path)
+        folder = _package_folder(self._versions.new, file.path, (MANIFEST, ROSBUILD_MANIFEST))
         if path.name != CMAKE_FILE or folder is None:
             return None
         new_path = self._versions.new.relative(folder / CMAKE_FILE)
@@ -370,6 +374,15 @@ def _is_only_moved(subject: Subject) -> bool:
     return templates == [_MOVED] and not subject.figures and not subject.problems
 
 
+def _with_changes(subjects: Sequence[Subject], changes: Iterator[tuple[str, Change]]) -> list[Subject]:
+    """Return subjects with more changes of build files, which need not have changed themselves."""
+    result = {subject.path: subject for subject in subjects}
+    for path, change in changes:
+        subject = result.get(path, Subject(SubjectKind.BUILD, path, path, path))
+        result[path] = replace(subject, changes=[*subject.changes, change])
+    return list(result.values())
+
+
 def _reported_paths(subjects: Sequence[Subject]) -> set[str]:
     """Return the paths of subjects with changes, and of the files in which these are."""
     changes = (change for subject in subjects for change in subject.changes)
@@ -411,12 +424,10 @@ def _targets(version: Version) -> set[str]:
     return {path for path in files if path is not None} | semantic_files(version)
 
 
-def _package_folder(version: Version, path: str) -> Path | None:
+def _package_folder(version: Version, path: str, manifests: Sequence[str] = (MANIFEST,)) -> Path | None:
     """Return the folder of the package that contains a file, or None if there is none."""
-    folders = version.file(path).parents
-    return next(
-        (folder for folder in folders if folder.is_relative_to(version.root) and (folder / MANIFEST).is_file()), None
-    )
+    folders = (folder for folder in version.file(path).parents if folder.is_relative_to(version.root))
+    return next((folder for folder in folders if any((folder / name).is_file() for name in manifests)), None)
 
 
 def _package_folders(versions: Versions, packages: Sequence[str]) -> list[str]:

@@ -40,9 +40,9 @@ def actor_model(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
 
     Args:
         actor: the actor to display.
-        hips: the position of the skeleton's first joint in the mesh of the skin, in meters of the mesh; Gazebo puts
-            this joint at the pose of the actor. None if the skin does not exist: a plain figure of a person's size
-            replaces the skin.
+        hips: the position of the skeleton's first joint in the coordinates of the skin's mesh, before its scale is
+            applied; Gazebo puts this joint at the pose of the actor. None if the skin does not exist: a plain figure of
+            a person's size replaces the skin.
     """
     links = [Link(link.name, pose=link.pose, visuals=link.visuals, element=link.element) for link in actor.links]
     if actor.skin is not None and hips is None:

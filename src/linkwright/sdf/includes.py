@@ -11,7 +11,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Se
 from linkwright.sdf.actors import Actor
 from linkwright.sdf.frames import FrameError
 from linkwright.sdf.lights import Light
-from linkwright.sdf.merging import merged
+from linkwright.sdf.merging import merge_models
 from linkwright.sdf.models import Include, Model
 from linkwright.sdf.reader import Reading, read
 from linkwright.sdf.resources import Missing, ResourceFinder
@@ -133,13 +133,13 @@ class _Resolver:
 
     def _merge_model(self, enclosing_model: Model, included_model: Model, include: Include) -> Model:
         try:
-            return merged(enclosing_model, included_model)
+            return merge_models(enclosing_model, included_model)
         except FrameError as error:
             message = phrase(
                 "'{attribute}' refers to '{name}', which does not exist", attribute="placement_frame", name=error.name
             )
             self._report("SDF141", message, include, None, Severity.ERROR)
-            return merged(enclosing_model, replace(included_model, placement_frame=""))
+            return merge_models(enclosing_model, replace(included_model, placement_frame=""))
 
     def _load_entity(self, include: Include, path: Path, chain: tuple[Path, ...]) -> Entity | None:
         """Return the included model, light or actor, with the changes that the include makes.

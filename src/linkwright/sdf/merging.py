@@ -18,7 +18,7 @@ from linkwright.sdf.poses import MODEL, RawPose
 _Posed = TypeVar("_Posed", Link, Frame, Model)
 
 
-def merged(enclosing_model: Model, included_model: Model) -> Model:
+def merge_models(enclosing_model: Model, included_model: Model) -> Model:
     """Return a model with the links, joints and other contents of an included model.
 
     A new frame with the pose of `included_model` replaces its model frame.

@@ -33,7 +33,7 @@ def is_old(root: Element) -> bool:
     return _MATCH_OLD_VERSION(root.attributes.get("version", "").strip()) is not None
 
 
-def upgraded(element: Element, rule: ElementRule) -> Element:
+def upgrade_element(element: Element, rule: ElementRule) -> Element:
     """Return a copy of an element translated to SDF 1.3.
 
     All elements keep their positions in the source.
@@ -64,7 +64,7 @@ def _upgraded_child(child: Element, rule: ElementRule) -> Node:
     child_rule = rule.child_rules.get(tag)
     if child_rule is None or tag == "plugin":
         return child
-    new_element = upgraded(child, child_rule)
+    new_element = upgrade_element(child, child_rule)
     new_element.tag = tag
     return new_element
 

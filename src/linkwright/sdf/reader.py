@@ -13,7 +13,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, did_you_mean, phrase
 from linkwright.schema import ElementRule, reader_of
-from linkwright.sdf.old_versions import is_old, upgraded
+from linkwright.sdf.old_versions import is_old, upgrade_element
 from linkwright.sdf.poses import POSE, SEPARATOR, WORLD
 from linkwright.sdf.report import NEWEST, SdfReport
 from linkwright.sdf.unread import changes_nothing, links_of_static_models
@@ -135,7 +135,7 @@ def read(document: Document) -> Reading:
     report.is_of_classic = _minor(root) <= _NEWEST_LENIENT_MINOR
     if is_too_deep(root, report):
         return Reading(None, report.in_order())
-    sdf: Sdf = read_element(upgraded(root, SDF) if is_old(root) else root, SDF, report)
+    sdf: Sdf = read_element(upgrade_element(root, SDF) if is_old(root) else root, SDF, report)
     if not (sdf.worlds or sdf.models or sdf.lights or sdf.actors):
         hint = phrase("put a <world> or a <model> into <sdf>")
         report.error("SDF131", phrase("<sdf> contains neither a world nor a model"), root, hint=hint)

@@ -11,7 +11,7 @@ from linkwright.sdf.lights import Light
 from linkwright.sdf.links import Collision, Link, Visual
 from linkwright.sdf.models import Frame, Model
 from linkwright.sdf.poses import MODEL, SEPARATOR, WORLD, RawPose
-from linkwright.sdf.report import described
+from linkwright.sdf.report import describe_element
 from linkwright.sdf.sensors import Sensor
 from linkwright.sdf.worlds import Sdf, World
 from linkwright.xmltree import Element
@@ -155,7 +155,7 @@ def _link_candidates(frames: Frames) -> list[str]:
 
 
 def _description(element: Element | None) -> Phrase:
-    return phrase("a model") if element is None else described(element)
+    return phrase("a model") if element is None else describe_element(element)
 
 
 def _error(

@@ -30,7 +30,7 @@ NEWEST = (1, 12)
 """The newest supported version of SDF. Older files are read with its rules, as in libsdformat."""
 
 
-def described(element: Element) -> Phrase:
+def describe_element(element: Element) -> Phrase:
     """Return a description of an element for messages, such as ``link 'chassis'`` or ``<pose>``."""
     name = element.attributes.get("name")
     if name is None:
@@ -52,7 +52,7 @@ class SdfReport(Findings):
     def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
         """Report a missing required attribute, or an empty element whose text is required."""
         if attribute is rule.text:
-            message = phrase("<{tag}> of {owner} is empty", tag=rule.tag, owner=described(owner))
+            message = phrase("<{tag}> of {owner} is empty", tag=rule.tag, owner=describe_element(owner))
             self.error("SDF120", message, element, hint=phrase("write <{tag}>...</{tag}>", tag=rule.tag))
             return
         values = {"tag": rule.tag, "name": attribute.name}
@@ -66,7 +66,7 @@ class SdfReport(Findings):
         if owner is element or owner.attributes.get("name") is None:
             message = phrase("<{tag}> has no '{name}'", **values)
         else:
-            message = phrase("<{tag}> of {owner} has no '{name}'", **values, owner=described(owner))
+            message = phrase("<{tag}> of {owner} has no '{name}'", **values, owner=describe_element(owner))
         self.error("SDF120", message, element, hint=hint)
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
@@ -114,7 +114,7 @@ class SdfReport(Findings):
             self._misspelled.append(misspelled)
         self.error(
             "SDF130",
-            phrase("{element} has no <{tag}>", element=described(element), tag=child.tag),
+            phrase("{element} has no <{tag}>", element=describe_element(element), tag=child.tag),
             misspelled or element,
             hint=hint,
         )
@@ -216,12 +216,14 @@ def _describe_location(element: Element, rule: ElementRule, attribute: Attribute
     Examples are ``<mass> of link 'arm'`` and ``'type' of joint 'elbow'``.
     """
     if "name" in element.attributes:
-        return phrase("'{name}' of {owner}", name=attribute.name, owner=described(element))
+        return phrase("'{name}' of {owner}", name=attribute.name, owner=describe_element(element))
     location = phrase("<{tag}>", tag=rule.tag)
     if attribute is not rule.text:
         location = phrase("'{name}' in <{tag}>", name=attribute.name, tag=rule.tag)
     return (
-        location if owner is element else phrase("{value_name} of {owner}", value_name=location, owner=described(owner))
+        location
+        if owner is element
+        else phrase("{value_name} of {owner}", value_name=location, owner=describe_element(owner))
     )
 
 

@@ -100,37 +100,37 @@ class ResourceFinder:
         self._environment = os.environ if environment is None else environment
         self._nearby_folders: dict[Path, tuple[Path, ...]] = {}
 
-    def file(self, address: str, beside: Path) -> Path | Missing:
+    def file(self, address: str, nearby_file: Path) -> Path | Missing:
         """Return the existing file or folder of a URI, or the reason why there is none.
 
         Args:
             address: the URI or path as written.
-            beside: the folder of the file that contains the URI; plain paths are relative to it.
+            nearby_file: the folder of the file that contains the URI; plain paths are relative to it.
         """
         address = address.strip()
         scheme, colon, path_after_scheme = address.partition("://")
         if not colon:
-            return self._find_plain_path(address, beside)
+            return self._find_plain_path(address, nearby_file)
         if scheme == "model":
-            return self._find_model_uri(address, unquote(path_after_scheme).lstrip("/"), beside)
+            return self._find_model_uri(address, unquote(path_after_scheme).lstrip("/"), nearby_file)
         if scheme in ("http", "https"):
             return self._find_in_cache(address)
         if scheme == "file" and absolute_path(f"//{path_after_scheme}") is None:
-            return self._find_file_uri(address, unquote(path_after_scheme), beside)
+            return self._find_file_uri(address, unquote(path_after_scheme), nearby_file)
         try:
-            path = self._packages.resolve(address, beside)
+            path = self._packages.resolve(address, nearby_file)
         except LinkwrightError as error:
             suggested_scheme = find_misspelled(scheme, _SCHEMES)
             hint = error.diagnostics[0].hint if suggested_scheme is None else did_you_mean(scheme, [suggested_scheme])
             return Missing(error.diagnostics[0].message, hint)
         return path if path.exists() else _no_file(path)
 
-    def model(self, address: str, beside: Path) -> Path | Missing:
+    def model(self, address: str, nearby_file: Path) -> Path | Missing:
         """Return the SDF file for a model's URI, or the reason why there is none.
 
         The URI names the file, or the folder of a model. In a folder, the newest supported SDF version is used.
         """
-        path = self.file(address, beside)
+        path = self.file(address, nearby_file)
         if isinstance(path, Missing) or not path.is_dir():
             return path
         return model_file(path)
@@ -206,15 +206,17 @@ class ResourceFinder:
             yield share / "models"
         yield _OWN_MODELS_FOLDER
 
-    def _find_plain_path(self, path: str, beside: Path) -> Path | Missing:
+    def _find_plain_path(self, path: str, nearby_file: Path) -> Path | Missing:
         candidates = (
-            [Path(path)] if Path(path).is_absolute() else [beside / path, *(folder / path for folder in self._folders)]
+            [Path(path)]
+            if Path(path).is_absolute()
+            else [nearby_file / path, *(folder / path for folder in self._folders)]
         )
         return next((candidate for candidate in candidates if candidate.exists()), None) or _no_file(candidates[0])
 
-    def _find_file_uri(self, address: str, path: str, beside: Path) -> Path | Missing:
+    def _find_file_uri(self, address: str, path: str, nearby_file: Path) -> Path | Missing:
         parent_folders = (folder.parent for folder in self._folders)
-        folders = (*self._folders, *parent_folders, *(beside.absolute() / "x").parents)
+        folders = (*self._folders, *parent_folders, *(nearby_file.absolute() / "x").parents)
         candidates = [folder / subfolder / path for folder in folders for subfolder in _MEDIA_SUBFOLDERS]
         existing_path = next((candidate for candidate in candidates if candidate.exists()), None)
         if existing_path is not None:
@@ -228,12 +230,12 @@ class ResourceFinder:
         )
         return Missing(phrase("there is no '{path}' on the search path", path=address), hint, severity)
 
-    def _find_model_uri(self, address: str, path: str, beside: Path) -> Path | Missing:
+    def _find_model_uri(self, address: str, path: str, nearby_file: Path) -> Path | Missing:
         if not path:
             return Missing(phrase("'{uri}' does not name a model", uri=address), phrase("write model://MODEL"))
-        if beside not in self._nearby_folders:
-            self._nearby_folders[beside] = _around(beside.absolute())
-        nearby_folders = self._nearby_folders[beside]
+        if nearby_file not in self._nearby_folders:
+            self._nearby_folders[nearby_file] = _around(nearby_file.absolute())
+        nearby_folders = self._nearby_folders[nearby_file]
         for folder in (
             *self._folders,
             *nearby_folders[:2],
@@ -245,7 +247,7 @@ class ResourceFinder:
                 return candidate
         name, _, path_in_model = path.partition("/")
         for folder in self._folders:
-            if (folder / name).is_dir() and (_is_ours(beside) or not _is_ours(folder)):
+            if (folder / name).is_dir() and (_is_ours(nearby_file) or not _is_ours(folder)):
                 return _no_file(folder / path)
         reason = phrase("there is no model '{name}' on the search path", name=name)
         renamed_folder = next(

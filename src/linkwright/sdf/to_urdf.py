@@ -16,7 +16,7 @@ from linkwright.sdf.links import Collision, Inertial, Link, Visual
 from linkwright.sdf.materials import Material
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import AT_ORIGIN, WORLD
-from linkwright.sdf.report import SdfReport, described
+from linkwright.sdf.report import SdfReport, describe_element
 from linkwright.sdf.shapes import Mesh, Shape
 from linkwright.sdf.worlds import Sdf
 from linkwright.urdf import Reading
@@ -240,7 +240,7 @@ class _Converter:
 
 
 def _joint_description(joint: Joint) -> Phrase:
-    return described(joint.element) if joint.element is not None else phrase("joint '{name}'", name=joint.name)
+    return describe_element(joint.element) if joint.element is not None else phrase("joint '{name}'", name=joint.name)
 
 
 def _limit(axis: Axis) -> urdf.Limit:

@@ -46,13 +46,13 @@ def numbers(text: str) -> tuple[float, ...]:
     return tuple(map(number, text.split()))
 
 
-def plain(value: float) -> str:
+def shortest_text(value: float) -> str:
     """Format a number with as few characters as possible without loss."""
     return repr(float(value) or 0.0).removesuffix(".0")  # ``or 0.0`` changes -0.0 to 0.0
 
 
 def _joined(values: Iterable[float]) -> str:
-    return " ".join(map(plain, values))
+    return " ".join(map(shortest_text, values))
 
 
 def leading_number(text: str) -> float | None:
@@ -128,13 +128,13 @@ def _pose_numbers(text: str) -> tuple[float, ...]:
 
 
 TEXT = ValueType("text")
-NUMBER = ValueType("number", number, plain)
+NUMBER = ValueType("number", number, shortest_text)
 INTEGER = ValueType("integer", _integer)
 TRUTH = ValueType("true or false", _truth, lambda value: "true" if value else "false")
 VECTOR2 = ValueType("2 numbers", _vector2, _joined)
 VECTOR3 = ValueType("3 numbers", _vector3, _joined)
 COLOR = ValueType("3 or 4 numbers from 0 to 1", _color, _joined)
-TIME = ValueType("seconds, or seconds and nanoseconds", _time, plain)
+TIME = ValueType("seconds, or seconds and nanoseconds", _time, shortest_text)
 POSE = ValueType("6 numbers", _pose_numbers, _joined)
 
 COUNTS = {VECTOR2: 2, VECTOR3: 3, COLOR: 4, POSE: 6}

@@ -87,7 +87,7 @@ def _describe_skipped(cmake: CMakeFile) -> list[str]:
 def _install_all(args: Any, name: str, folder: Path, cmake: CMakeFile) -> None:
     create_file(args, f"{_RESOURCE_INDEX}/packages/{name}")
     install(args, MANIFEST, f"share/{name}/{MANIFEST}")
-    for file in cmake.installed(folder):
+    for file in cmake.installed_files(folder):
         if file.is_generated:
             create_file(args, file.destination, content=file.text(folder))
         else:

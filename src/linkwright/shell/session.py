@@ -100,7 +100,8 @@ def _interactive_command(scratch: Path, variables: dict[str, str], additions: Ca
         return [os.environ.get("COMSPEC", "cmd.exe")]
     shell = os.environ.get("SHELL") or "/bin/sh"
     shell_name = Path(shell).name
-    if shell_name in _SHELLS_WITH_START_FILE:  # the entries of the user's start-up file precede our folder
+    if shell_name in _SHELLS_WITH_START_FILE:
+        # The folder is appended after the start-up file has run, so that the user's own entries come first.
         folders = variables["PATH"].split(os.pathsep)
         variables["PATH"] = os.pathsep.join(folder for folder in folders if folder != variables[MARK])
     if shell_name == "bash":

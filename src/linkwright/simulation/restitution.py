@@ -53,7 +53,7 @@ class Stepper:
         self._recovery = Recovery(model, data)
 
     def expect_overlaps(self) -> None:
-        """Limit the separation speed of bodies that overlap, until no bodies overlap any more."""
+        """Limit the separation speed of bodies that overlap, until bodies no longer overlap."""
         self._recovery.expect()
 
     def make_steps(self, count: int) -> None:

@@ -27,7 +27,7 @@ _WAKING_SPEED = 1e-30
 
 
 class Sleep:
-    """A monitor that lets trees of bodies fall asleep when they are at rest.
+    """Lets trees of bodies fall asleep when they are at rest.
 
     Args:
         schedule: the schedule of the simulation.

@@ -20,7 +20,7 @@ _ACTIVE_STATE = "active"
 
 
 class TaskResult(Enum):
-    """How a navigation task ended; `UNKNOWN` while it runs."""
+    """The result of a navigation task; `UNKNOWN` while it runs."""
 
     UNKNOWN = 0
     SUCCEEDED = 1

@@ -34,7 +34,7 @@ def as_path(value: object) -> TimedPath | None:
     return _thin_out(rows.tolist())
 
 
-def recorded(points: Sequence[TimedPath]) -> dict[str, TimedPath]:
+def recorded_paths(points: Sequence[TimedPath]) -> dict[str, TimedPath]:
     """Return the paths that were recorded during a run, by name."""
     moving = [path for path in points if path]
     return {ROBOT if number == 1 else f"{ROBOT} {number}": path for number, path in enumerate(moving, start=1)}

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from linkwright.standins import activate
-from linkwright.sweep.paths import TimedPath, as_path, recorded
+from linkwright.sweep.paths import TimedPath, as_path, recorded_paths
 from linkwright.sweep.plan import Run
 from linkwright.sweep.scenario import COLUMNS, SEED, Scenario, describe_error, line_in_traceback, load_scenario
 from linkwright.testing.paths import record_paths
@@ -94,7 +94,7 @@ def run_scenario(scenario: Scenario, run: Run) -> Outcome:
         raise BadResultError(f"the scenario must return a dict, not {type(returned).__name__}")
     used_names = {*COLUMNS, *run.parameters}
     results: dict[str, Result] = {}
-    paths = recorded(recorded_points)
+    paths = recorded_paths(recorded_points)
     for name, value in returned.items():
         if not isinstance(name, str) or name in used_names:
             raise BadResultError(f"a result cannot be named {name!r}: use text that is not a column's name")

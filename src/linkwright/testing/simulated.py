@@ -403,7 +403,7 @@ def _with_world_friction(world: World, friction: float) -> World:
 
 
 class _RunControl:
-    """The handler of the simulator services that pause the simulation or run single steps."""
+    """Handles the simulator services that pause the simulation or run single steps."""
 
     def __init__(self, simulation: Simulation) -> None:
         self.is_paused = False

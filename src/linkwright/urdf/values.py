@@ -27,7 +27,7 @@ _VECTOR3 = re.compile(rf" *{_COMPONENT} +{_COMPONENT} +{_COMPONENT} *").fullmatc
 # If a text consists only of these characters, Python and urdfdom agree on whether it is a number. For a single, short
 # value, the fastest test is to strip these characters.
 _NUMBER_CHARACTERS = "-+.0123456789eE "
-_PLAIN = re.compile(r"[-+.0-9eE ]*").fullmatch
+_DECIMAL_CHARACTERS = re.compile(r"[-+.0-9eE ]*").fullmatch
 
 _NAME = re.compile(r"[A-Za-z_]\w*").fullmatch
 
@@ -69,7 +69,7 @@ def vector3(text: str) -> Vector3:
     Raises:
         ValueError: if the count is not 3, or if one of the words is not a number.
     """
-    if _PLAIN(text):
+    if _DECIMAL_CHARACTERS(text):
         x, y, z = map(float, text.split())
     else:
         match = _VECTOR3(text)
@@ -112,7 +112,7 @@ def number_hint(text: str) -> Phrase | None:
     if len(stripped.split()) > 1 and all(map(_is_number, stripped.split())):
         return phrase("give one number")
     if stripped != plain_text(stripped) and _is_number(plain_text(stripped)):
-        return phrase("write it with an English keyboard: '{text}'", text=plain_text(stripped))
+        return phrase("use ASCII characters: '{text}'", text=plain_text(stripped))
     if stripped in _UNITS:
         return _UNITS[stripped][0]
     name = stripped.strip("${}\uff5b\uff5d")
@@ -144,7 +144,7 @@ def vector_hint(text: str, count: int) -> Phrase | None:
         return phrase("write a point as decimal separator: '{text}'", text=" ".join(pieces))
     pieces = plain_text(text).split()
     if len(pieces) == count and text != plain_text(text) and all(map(_is_number, pieces)):
-        return phrase("write it with an English keyboard: '{text}'", text=" ".join(pieces))
+        return phrase("use ASCII characters: '{text}'", text=" ".join(pieces))
     pieces = re.split(r"\s*[x\u00d7*]\s*", text.strip())
     if len(pieces) == count and all(map(_is_number, pieces)):
         return phrase("separate the numbers with spaces: '{numbers}'", numbers=" ".join(pieces))
@@ -175,7 +175,7 @@ def looks_like_degree_limits(lower: float, upper: float) -> bool:
     """Return whether the bounds of a joint are probably in degrees.
 
     In addition to `looks_like_degrees`, one bound must be a typical joint angle in degrees, because limits of 10, 50 or
-    100 rad are often written for joints without real limits, or with a gear.
+    100 rad are common for joints that have no real limits, and for motor angles before a gear.
     """
     return looks_like_degrees(lower, upper) and any(
         30 <= abs(bound) <= 360 and bound % 15 == 0 for bound in (lower, upper)
@@ -187,7 +187,7 @@ def degrees_hint(*angles: float) -> Phrase:
     return phrase("angles are in radians: '{angles}'", angles=" ".join(f"{radians(angle):.6g}" for angle in angles))
 
 
-def plain(value: float) -> str:
+def shortest_text(value: float) -> str:
     """Return a number as the shortest text that the reader converts back without loss."""
     return repr(value).removesuffix(".0")
 
@@ -207,11 +207,11 @@ JOINT_TYPES_TEXT = ", ".join(JOINT_TYPES)
 
 
 def _number_text(value: float) -> str | None:
-    return None if isinf(value) else plain(value)
+    return None if isinf(value) else shortest_text(value)
 
 
 def _list_text(values: Iterable[float]) -> str:
-    return " ".join(map(plain, values))
+    return " ".join(map(shortest_text, values))
 
 
 def _read_quaternion(text: str) -> Quaternion:

@@ -65,7 +65,7 @@ class GuestRecordings:
             LinkwrightError: BAG101, BAG102, BAG107, see `BagReader`; BAG111, the limit of recordings is reached.
         """
         from linkwright.bag import BagReader, Playback  # imported here, because few viewers show other recordings
-        from linkwright.viewer.recorded_robot import published, robot_of
+        from linkwright.viewer.recorded_robot import publish_recording, robot_of
         from linkwright.viewer.recording_config import recording_config
 
         await self._close_longest_idle()
@@ -86,7 +86,7 @@ class GuestRecordings:
             config = recording_config(bag, robot)
             graph = Graph()
             node = graph.create_node("rosbag2_player", start_parameter_services=False)
-            output = published(bag, node, robot)
+            output = publish_recording(bag, node, robot)
             viewer = Viewer(
                 graph,
                 library=host_context.library,

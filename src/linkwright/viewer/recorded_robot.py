@@ -122,7 +122,7 @@ class RecordingWithTransforms:
             self._tf_publisher.publish(TFMessage(batch=batch))
 
 
-def published(bag: BagReader, node: Node, robot: Robot | None) -> PublishedRecording | RecordingWithTransforms:
+def publish_recording(bag: BagReader, node: Node, robot: Robot | None) -> PublishedRecording | RecordingWithTransforms:
     """Return the object that publishes a recording in a separate graph.
 
     Args:

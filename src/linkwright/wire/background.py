@@ -156,7 +156,7 @@ class BackgroundTransport(ABC):
         deadline = time.monotonic() + timeout
         if not self.wait_until_ready(timeout):
             return False
-        self.look_around()
+        self.start_discovery()
         while time.monotonic() < deadline and not self._closed:
             if self._has_settled(time.monotonic() - max(self._remote_entities.changed_at, self._joined_at)):
                 return True
@@ -218,7 +218,7 @@ class BackgroundTransport(ABC):
         """Withdraw an endpoint that neither sends nor receives."""
         self._mirror(lambda engine: engine.close_endpoint(presence))
 
-    def look_around(self) -> None:  # noqa: B027 - not needed if discovery runs continuously
+    def start_discovery(self) -> None:  # noqa: B027 - not needed if discovery runs continuously
         """Start discovery for the next query, unless discovery runs continuously."""
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:

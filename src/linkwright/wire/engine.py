@@ -18,7 +18,7 @@ from typing import Any, ClassVar, TypeAlias
 from linkwright.graph.faults import ExternalShutdownException
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.rules import NodeIdentity
-from linkwright.wire.guarded_calls import guarded
+from linkwright.wire.guarded_calls import call_guarded
 
 _MAX_WORK_S = 0.02
 """Seconds after which the engine interrupts work on endpoints of this process to handle changes outside."""
@@ -111,7 +111,7 @@ class Engine(ABC):
             self._process_next_request()
 
     def _process_next_request(self) -> None:
-        guarded(partial(self._work.popleft(), self), self._report)
+        call_guarded(partial(self._work.popleft(), self), self._report)
 
     def _report(self, error: Exception) -> None:
         """Log that an endpoint is not mirrored, with the reason.

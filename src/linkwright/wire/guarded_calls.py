@@ -10,7 +10,7 @@ from typing import TypeVar
 R = TypeVar("R")
 
 
-def guarded(call: Callable[[], R], report: Callable[[Exception], object] | None = None) -> R | None:
+def call_guarded(call: Callable[[], R], report: Callable[[Exception], object] | None = None) -> R | None:
     """Call a function, and report an exception instead of raising it.
 
     Args:
@@ -27,7 +27,7 @@ def guarded(call: Callable[[], R], report: Callable[[Exception], object] | None 
         if report is None:
             _report_unhandled(error)
         else:
-            guarded(partial(report, error))
+            call_guarded(partial(report, error))
         return None
 
 

@@ -25,15 +25,15 @@ def is_switched_off(environment: Mapping[str, str] | None = None) -> bool:
 @contextmanager
 def switched_off() -> Iterator[None]:
     """Switch communication with other processes off, in a ``with`` block."""
-    before = os.environ.get(SWITCH)
+    old_value = os.environ.get(SWITCH)
     os.environ[SWITCH] = "0"
     try:
         yield
     finally:
-        if before is None:
+        if old_value is None:
             del os.environ[SWITCH]
         else:
-            os.environ[SWITCH] = before
+            os.environ[SWITCH] = old_value
 
 
 def switched_off_reason() -> Phrase:

@@ -150,10 +150,10 @@ class Expander:
         Raises:
             LinkwrightError: the errors found, each with its location.
         """
-        expanded = self.walk(document)
-        if expanded is None or self._errors:
+        expanded_nodes = self.walk(document)
+        if expanded_nodes is None or self._errors:
             raise LinkwrightError(*self.errors, *self.session.diagnostics)
-        return expanded
+        return expanded_nodes
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
@@ -180,9 +180,9 @@ class Expander:
         except RecursionError:
             self._errors.append(self._nesting_diagnostic())
             return None
-        expanded = container.children[0]
-        assert isinstance(expanded, Element), "the expansion of an ordinary element is an element"
-        result = Document(expanded, document.source)
+        expanded_node = container.children[0]
+        assert isinstance(expanded_node, Element), "the expansion of an ordinary element is an element"
+        result = Document(expanded_node, document.source)
         result.prolog, result.epilog = list(document.prolog), list(document.epilog)
         result.doctype, result.doctype_index = document.doctype, document.doctype_index
         return result

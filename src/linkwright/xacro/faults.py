@@ -25,17 +25,17 @@ class Frame:
     Attributes:
         macro: the macro's name, or None for an include.
         site: the element that calls the macro or includes the file.
-        around: the frame of the enclosing call or include, or None.
+        outer: the frame of the enclosing call or include, or None.
         depth: the number of frames up to and including this one.
     """
 
-    __slots__ = ("around", "depth", "macro", "site")
+    __slots__ = ("depth", "macro", "outer", "site")
 
-    def __init__(self, macro: str | None, site: Element, around: Frame | None) -> None:
+    def __init__(self, macro: str | None, site: Element, outer: Frame | None) -> None:
         self.macro = macro
         self.site = site
-        self.around = around
-        self.depth: int = 1 if around is None else around.depth + 1
+        self.outer = outer
+        self.depth: int = 1 if outer is None else outer.depth + 1
 
     def note(self) -> Note:
         """Return a note on this call or include for a message."""
@@ -64,7 +64,7 @@ def frames(innermost: Frame | None) -> Iterator[Frame]:
     frame = innermost
     while frame is not None:
         yield frame
-        frame = frame.around
+        frame = frame.outer
 
 
 def trail(innermost: Frame | None) -> tuple[Note, ...]:

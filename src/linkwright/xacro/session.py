@@ -19,7 +19,7 @@ from linkwright.diagnostics import (
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.loading.lean_typing import TYPE_CHECKING, Any, Protocol
 from linkwright.xacro.cache import read_document
-from linkwright.xacro.expressions import sandbox, symbols
+from linkwright.xacro.expressions import builtin_names, sandbox
 from linkwright.xacro.expressions.bounded import RefusalError, checked_keys
 from linkwright.xacro.expressions.expression import compile_expression
 from linkwright.xacro.expressions.sandbox import Module
@@ -98,7 +98,7 @@ class Session:
         self._packages = packages
         self._package_paths: dict[str, str] = {}
         self._main_file = file
-        self.globals = Scope(None, self, symbols.global_names(self))
+        self.globals = Scope(None, self, builtin_names.global_names(self))
 
     def close(self) -> None:
         """Break the reference cycle of the session and its scopes, which frees memory at once."""

@@ -226,8 +226,8 @@ class _Fault:
             )
         if name.casefold() == inner.casefold():
             hint = phrase("write both alike: '<{name}>' and '</{name}>'", name=name.casefold())
-        before = self._text[opened_at:start]
-        opening = next((character for character in _ANGLE_LOOKALIKES if f"{character}{name}" in before), None)
+        preceding_text = self._text[opened_at:start]
+        opening = next((character for character in _ANGLE_LOOKALIKES if f"{character}{name}" in preceding_text), None)
         if opening is not None:
             hint = lookalike_hint(opening) or hint
         return Diagnostic(
@@ -378,7 +378,7 @@ class _Fault:
         match_ = _OPEN_QUOTE.search(tag)
         if tag_start < 0 or match_ is None or ">" not in match_[2]:
             return None
-        message = phrase("the quotes around the value of '{open_quote}' are not closed", open_quote=match_[1])
+        message = phrase("the quotes around the value of '{attribute}' are not closed", attribute=match_[1])
         hint = lookalike_hint(match_[2]) or phrase("write a quote at the end of the value")
         return self._diagnostic("XML206", message, len(match_[1]), offset=tag_start + match_.start(), hint=hint)
 
@@ -386,7 +386,7 @@ class _Fault:
         match_ = _UNCLOSED_QUOTE.search(self._preceding_text)
         if match_ is None:
             return None
-        message = phrase("the quotes around the value of '{open_quote}' are not closed", open_quote=match_[1])
+        message = phrase("the quotes around the value of '{attribute}' are not closed", attribute=match_[1])
         start, hint = self._offset - len(match_[0]), phrase("write a quote at the end of the value")
         return self._diagnostic("XML206", message, len(match_[1]), offset=start, hint=hint)
 

@@ -180,10 +180,10 @@ class _Layout:
         return "".join(parts)
 
     @staticmethod
-    def _is_beside(before: _Node, node: _Node) -> bool:
+    def _is_beside(previous: _Node, node: _Node) -> bool:
         """Return whether one of two adjacent nodes is a comment on the other one's line."""
-        return Kind.COMMENT in (before.token.kind, node.token.kind) and Kind.INSTRUCTION not in (
-            before.token.kind,
+        return Kind.COMMENT in (previous.token.kind, node.token.kind) and Kind.INSTRUCTION not in (
+            previous.token.kind,
             node.token.kind,
         )
 

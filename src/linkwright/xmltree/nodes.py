@@ -19,7 +19,7 @@ _COLLECTION_THRESHOLD = 50_000
 """The number of new objects after which the collector still runs inside the context."""
 _depth_lock = allocate_lock()
 _active = 0
-_before = (0, 0, 0)
+_old_thresholds = (0, 0, 0)
 
 
 class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as a function is
@@ -30,12 +30,12 @@ class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as
     """
 
     def __enter__(self) -> None:
-        global _active, _before  # noqa: PLW0603 - there is one collector for the whole process
+        global _active, _old_thresholds  # noqa: PLW0603 - there is one collector for the whole process
         with _depth_lock:
             if _active == 0:
-                _before = gc.get_threshold()
-                if 0 < _before[0] < _COLLECTION_THRESHOLD:
-                    gc.set_threshold(_COLLECTION_THRESHOLD, *_before[1:])
+                _old_thresholds = gc.get_threshold()
+                if 0 < _old_thresholds[0] < _COLLECTION_THRESHOLD:
+                    gc.set_threshold(_COLLECTION_THRESHOLD, *_old_thresholds[1:])
             _active += 1
 
     def __exit__(self, *_: object) -> None:
@@ -46,7 +46,7 @@ class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as
                 if gc.get_freeze_count() == 0:  # move new objects to the oldest generation without a collection
                     gc.freeze()
                     gc.unfreeze()
-                gc.set_threshold(*_before)
+                gc.set_threshold(*_old_thresholds)
 
 
 class Text:

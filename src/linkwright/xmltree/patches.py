@@ -82,12 +82,12 @@ def find_start_tag(element: Element) -> StartTag | None:
         return None
     text = element.source.text
     name = _TAG_NAME.match(text, element.offset)
-    rest = name and _START_TAG_REST.match(text, name.end())
-    if not name or not rest or name[0] != f"<{element.tag}":
+    rest_of_tag = name and _START_TAG_REST.match(text, name.end())
+    if not name or not rest_of_tag or name[0] != f"<{element.tag}":
         return None
-    is_whole = rest[0].endswith("/>")
-    attribute_text = text[name.end() : rest.end() - (2 if is_whole else 1)]
-    return StartTag(element.offset, name.end() + len(attribute_text.rstrip()), rest.end(), is_whole)
+    is_whole = rest_of_tag[0].endswith("/>")
+    attribute_text = text[name.end() : rest_of_tag.end() - (2 if is_whole else 1)]
+    return StartTag(element.offset, name.end() + len(attribute_text.rstrip()), rest_of_tag.end(), is_whole)
 
 
 def element_range(element: Element) -> tuple[int, int] | None:
@@ -106,11 +106,11 @@ def element_range(element: Element) -> tuple[int, int] | None:
             return None
         end = markup.end()
         if markup[0] == "<":
-            rest = _START_TAG_REST.match(text, end)
-            if rest is None:
+            rest_of_tag = _START_TAG_REST.match(text, end)
+            if rest_of_tag is None:
                 return None
-            end = rest.end()
-            depth += not rest[0].endswith("/>")
+            end = rest_of_tag.end()
+            depth += not rest_of_tag[0].endswith("/>")
         elif markup[0].startswith("</"):
             depth -= 1
     return element.offset, end

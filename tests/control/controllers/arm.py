@@ -1,4 +1,4 @@
-"""Arms for controllers: joints with commands and states on a stand, trajectories as messages, goals of actions."""
+"""Helpers for arm controllers: joints on a stand, trajectory messages, goals of actions."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from linkwright.graph.actions.client import ActionClient
 from linkwright.messages import Duration, Header, Time, get_action, get_message
-from tests.control.stand import Stand
+from tests.control.stand import TestBench
 
 SECOND = 1_000_000_000
 JOINTS = ("shoulder", "elbow")
@@ -18,7 +18,7 @@ def trajectory(
     names: tuple[str, ...] = JOINTS,
     start_ns: int = 0,
 ) -> Any:
-    """A trajectory message: seconds, positions, velocities and accelerations of each point."""
+    """Return a trajectory message; each point has seconds, positions, velocities and accelerations."""
     point_type = get_message("trajectory_msgs/msg/JointTrajectoryPoint")
     fields = ("positions", "velocities", "accelerations", "effort")
     trajectory_points = [
@@ -35,52 +35,52 @@ def trajectory(
 
 
 def tolerance(name: str, position: float = 0.0, velocity: float = 0.0) -> Any:
-    """A tolerance of a goal."""
+    """Return the tolerance of a joint in a goal."""
     return get_message("control_msgs/msg/JointTolerance")(name=name, position=position, velocity=velocity)
 
 
 class SentGoal:
-    """A goal that was sent to an action of a controller.
+    """A goal that was sent to a controller's action.
 
     Attributes:
-        feedback: the messages that came so far.
-        accepted, status, result: what is known so far; None before.
+        feedback: the messages so far.
+        accepted, status, result: the state so far; None before.
     """
 
-    def __init__(self, stand: Stand, action_type: str, name: str, goal: Any) -> None:
+    def __init__(self, stand: TestBench, action_type: str, name: str, goal: Any) -> None:
         self.feedback: list[Any] = []
         self.status: int | None = None
         self.result: Any = None
         self._client = ActionClient(stand.node, get_action(action_type), name)
         self._handle: Any = None
-        self._sent = self._client.send_goal_async(goal, feedback_callback=self._fed)
-        self._sent.add_done_callback(self._answered)
+        self._sent = self._client.send_goal_async(goal, feedback_callback=self._on_feedback)
+        self._sent.add_done_callback(self._on_response)
 
     @property
     def accepted(self) -> bool | None:
-        """Whether the goal was accepted."""
+        """Return whether the goal was accepted."""
         return None if self._handle is None else self._handle.accepted
 
     def cancel(self) -> None:
-        """Ask for it to be given up."""
+        """Request the cancellation of the goal."""
         self._handle.cancel_goal_async()
 
-    def _fed(self, message: Any) -> None:
+    def _on_feedback(self, message: Any) -> None:
         self.feedback.append(message.feedback)
 
-    def _answered(self, future: Any) -> None:
+    def _on_response(self, future: Any) -> None:
         self._handle = future.result()
         if self._handle.accepted:
-            self._handle.get_result_async().add_done_callback(self._ended)
+            self._handle.get_result_async().add_done_callback(self._on_result)
 
-    def _ended(self, future: Any) -> None:
+    def _on_result(self, future: Any) -> None:
         self.status, self.result = future.result().status, future.result().result
 
 
 async def run(
-    stand: Stand, controller: Any, seconds: float, hardware: Callable[[], object] | None = None, rate: float = 100.0
+    stand: TestBench, controller: Any, seconds: float, hardware: Callable[[], object] | None = None, rate: float = 100.0
 ) -> None:
-    """Update a controller for a while; the hardware moves after each update."""
+    """Update a controller for some time; the hardware moves after each update."""
     for _ in range(round(seconds * rate)):
         await stand.step(controller, 1.0 / rate)
         if hardware is not None:

@@ -1,4 +1,4 @@
-"""Commands for drives, and wheels that do as they are told."""
+"""Commands for drives, and wheels that follow their commands."""
 
 from __future__ import annotations
 
@@ -6,35 +6,35 @@ from typing import Any
 
 from linkwright.control.controllers.controller import Controller
 from linkwright.messages import Header, Time, Vector3, get_message
-from tests.control.stand import Stand
+from tests.control.stand import TestBench
 
 STEP = 0.01
 
 
-def twist(forward: float = 0.0, turning: float = 0.0, sideways: float = 0.0) -> Any:
-    """A velocity."""
+def twist(forward: float = 0.0, yaw_rate: float = 0.0, sideways: float = 0.0) -> Any:
+    """Return a velocity command."""
     return get_message("geometry_msgs/msg/Twist")(
-        linear=Vector3(x=forward, y=sideways, z=0.0), angular=Vector3(x=0.0, y=0.0, z=turning)
+        linear=Vector3(x=forward, y=sideways, z=0.0), angular=Vector3(x=0.0, y=0.0, z=yaw_rate)
     )
 
 
-def stamped(nanoseconds: int, *velocity: float) -> Any:
-    """A velocity with the time that it was told at."""
+def stamped_twist(nanoseconds: int, *velocity: float) -> Any:
+    """Return a velocity command with its time stamp."""
     header = Header(stamp=Time.from_nanoseconds(nanoseconds), frame_id="base_link")
     return get_message("geometry_msgs/msg/TwistStamped")(header=header, twist=twist(*velocity))
 
 
-async def roll(stand: Stand, controller: Controller[Any], count: int = 1) -> None:
-    """Go on in steps, after each of which the wheels are where their commands bring them."""
+async def roll(stand: TestBench, controller: Controller[Any], count: int = 1) -> None:
+    """Step a controller; after each step the wheels move by their commands."""
     for _ in range(count):
         await stand.step(controller, STEP)
         for name, command in stand.commands.items():
-            joint, kind = name.rsplit("/", 1)
-            if kind == "velocity":
+            joint, interface = name.rsplit("/", 1)
+            if interface == "velocity":
                 stand.states[f"{joint}/position"].value += command.value * STEP
             stand.states[name].value = command.value
 
 
-def warnings(stand: Stand) -> list[str]:
-    """What was told so far, from warnings on."""
+def warnings(stand: TestBench) -> list[str]:
+    """Return the log's warnings and errors so far."""
     return [record.text for record in stand.log if record.level.name in ("WARN", "ERROR")]

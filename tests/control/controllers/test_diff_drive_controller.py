@@ -9,7 +9,7 @@ from linkwright.control.controllers.controller import ControllerError
 from linkwright.control.controllers.diff_drive_controller import DiffDriveController
 from linkwright.control.controllers.registry import controller_class
 from linkwright.diagnostics import LinkwrightError
-from tests.control.controllers.driving import STEP, roll, stamped, twist, warnings
+from tests.control.controllers.driving import STEP, roll, stamped_twist, twist, warnings
 
 NAME = "base"
 ROBOT = {
@@ -22,7 +22,7 @@ ROBOT = {
 
 @pytest.fixture
 def wheels(stand):
-    """A stand with two wheels."""
+    """Return a stand with two wheels."""
     for joint in ("left", "right"):
         stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
     return stand
@@ -32,8 +32,8 @@ def speeds(stand) -> list[float]:
     return [stand.commands[f"{joint}/velocity"].value for joint in ("left", "right")]
 
 
-def command(stand, *velocity: float, at: int = 0) -> None:
-    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(at, *velocity))
+def command(stand, *velocity: float, time_ns: int = 0) -> None:
+    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped_twist(time_ns, *velocity))
 
 
 def test_controller_is_found_by_type():
@@ -50,12 +50,12 @@ async def test_command_turns_wheels(wheels):
 
 
 async def test_multipliers_correct_wheel_dimensions(wheels):
-    more = {
+    parameters = {
         "wheel_separation_multiplier": 2.0,
         "left_wheel_radius_multiplier": 0.5,
         "right_wheel_radius_multiplier": 2.0,
     }
-    controller = wheels.start(DiffDriveController, NAME, **ROBOT, **more)
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, **parameters)
     command(wheels, 1.0, 0.5)
     await wheels.step(controller)
     assert speeds(wheels) == pytest.approx([0.8 / 0.05, 1.2 / 0.2])
@@ -84,15 +84,15 @@ async def test_odometry_matches_driven_arc(wheels, feedback):
     transforms = wheels.record("tf2_msgs/msg/TFMessage", "/tf")
     command(wheels, 0.5, 0.4)
     await roll(wheels, controller, 501)
-    place, velocity = odometry[-1].pose.pose, odometry[-1].twist.twist
-    turn = 0.4 * 5.0
-    assert (place.position.x, place.position.y) == pytest.approx((1.25 * sin(turn), 1.25 * (1 - cos(turn))), abs=1e-9)
-    assert (place.orientation.z, place.orientation.w) == pytest.approx((sin(turn / 2), cos(turn / 2)))
+    pose, velocity = odometry[-1].pose.pose, odometry[-1].twist.twist
+    yaw = 0.4 * 5.0
+    assert (pose.position.x, pose.position.y) == pytest.approx((1.25 * sin(yaw), 1.25 * (1 - cos(yaw))), abs=1e-9)
+    assert (pose.orientation.z, pose.orientation.w) == pytest.approx((sin(yaw / 2), cos(yaw / 2)))
     assert (velocity.linear.x, velocity.angular.z) == pytest.approx((0.5, 0.4))
     assert (odometry[-1].header.frame_id, odometry[-1].child_frame_id) == ("odom", "base_link")
     last = transforms[-1].transforms[0]
     assert (last.header.frame_id, last.child_frame_id) == ("odom", "base_link")
-    assert last.transform.translation.x == place.position.x
+    assert last.transform.translation.x == pose.position.x
 
 
 async def test_odometry_starts_at_zero_for_any_wheel_angle(wheels):
@@ -118,7 +118,7 @@ async def test_open_loop_odometry_follows_limited_command(wheels):
 async def test_command_expires_after_timeout(wheels, zero):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, cmd_vel_timeout=0.25)
     await wheels.step(controller, 0.001)
-    command(wheels, 1.0, at=0 if zero else wheels.time_ns + 1_000_000)
+    command(wheels, 1.0, time_ns=0 if zero else wheels.time_ns + 1_000_000)
     await wheels.step(controller, 0.001, count=251)
     assert speeds(wheels) == pytest.approx([10.0, 10.0])
     await wheels.step(controller, 0.001)
@@ -127,7 +127,7 @@ async def test_command_expires_after_timeout(wheels, zero):
 
 async def test_command_with_stamp_of_other_clock_expires(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
-    command(wheels, 1.0, at=1_700_000_000_000_000_000)
+    command(wheels, 1.0, time_ns=1_700_000_000_000_000_000)
     await wheels.step(controller)
     assert speeds(wheels) == pytest.approx([10.0, 10.0])
     await wheels.step(controller, count=51)
@@ -137,7 +137,7 @@ async def test_command_with_stamp_of_other_clock_expires(wheels):
 async def test_outdated_command_is_ignored_and_reported(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     await wheels.step(controller, count=100)
-    command(wheels, 1.0, at=100_000_000)
+    command(wheels, 1.0, time_ns=100_000_000)
     await wheels.step(controller)
     assert speeds(wheels) == [0.0, 0.0]
     (text,) = warnings(wheels)
@@ -160,9 +160,9 @@ async def test_command_is_dropped_when_time_resets(wheels):
 @pytest.mark.parametrize("value", [nan, inf])
 async def test_command_that_is_not_a_number_stops_robot(wheels, value):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
-    command(wheels, 1.0, at=1)
+    command(wheels, 1.0, time_ns=1)
     await wheels.step(controller)
-    command(wheels, 1.0, value, at=2)
+    command(wheels, 1.0, value, time_ns=2)
     await wheels.step(controller)
     assert speeds(wheels) == [0.0, 0.0]
     assert warnings(wheels) == ["a velocity command that is not a finite number is rejected, and the drive stops"]
@@ -173,7 +173,7 @@ async def test_humble_accepts_unstamped_commands(wheels):
     wheels.publish("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel_unstamped", twist(1.0))
     await wheels.step(controller)
     assert speeds(wheels) == pytest.approx([10.0, 10.0])
-    command(wheels, 0.5, at=wheels.time_ns)
+    command(wheels, 0.5, time_ns=wheels.time_ns)
     await wheels.step(controller)
     assert speeds(wheels) == pytest.approx([5.0, 5.0])
     assert not warnings(wheels)
@@ -192,18 +192,18 @@ async def test_limits_are_respected_and_limited_command_published(wheels):
         command(wheels, *((9.0, -9.0), (-9.0, 9.0), (0.3, 0.1))[number // 15 % 3])
         await wheels.step(controller, STEP)
     forward = [0.0, *(message.twist.linear.x for message in commands)]
-    turning = [0.0, *(message.twist.angular.z for message in commands)]
+    yaw_rates = [0.0, *(message.twist.angular.z for message in commands)]
     assert len(forward) == 201
     assert all(-0.5 <= speed <= 1.0 for speed in forward)
     assert all(-4.0 - 1e-9 <= (b - a) / STEP <= 2.0 + 1e-9 for a, b in pairwise(forward))
-    assert all(abs(speed) <= 1.5 for speed in turning)
-    assert all(abs(b - a) / STEP <= 3.0 + 1e-9 for a, b in pairwise(turning))
-    assert controller.commands[0].value == pytest.approx((forward[-1] - turning[-1] * 0.2) / 0.1)
+    assert all(abs(speed) <= 1.5 for speed in yaw_rates)
+    assert all(abs(b - a) / STEP <= 3.0 + 1e-9 for a, b in pairwise(yaw_rates))
+    assert controller.commands[0].value == pytest.approx((forward[-1] - yaw_rates[-1] * 0.2) / 0.1)
 
 
 async def test_disabled_humble_limits_are_ignored(wheels):
-    off = {"has_velocity_limits": False, "max_velocity": 0.1, "has_jerk_limits": False, "max_jerk": 0.0}
-    controller = wheels.start(DiffDriveController, NAME, **ROBOT, linear={"x": off | {"max_acceleration": 0.0}})
+    disabled = {"has_velocity_limits": False, "max_velocity": 0.1, "has_jerk_limits": False, "max_jerk": 0.0}
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, linear={"x": disabled | {"max_acceleration": 0.0}})
     command(wheels, 1.0)
     await wheels.step(controller)
     assert speeds(wheels) == pytest.approx([10.0, 10.0])
@@ -217,10 +217,10 @@ async def test_jazzy_limits_differ_by_direction(wheels):
         "max_deceleration_reverse": 10.0,
     }
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, linear={"x": limits}, cmd_vel_timeout=9.0)
-    for target, reached in ((9.0, 0.2), (-9.0, -0.2), (-9.0, -1.0), (9.0, 0.0), (9.0, 0.2)):
+    for target, expected in ((9.0, 0.2), (-9.0, -0.2), (-9.0, -1.0), (9.0, 0.0), (9.0, 0.2)):
         command(wheels, target)
         await wheels.step(controller, 0.1)
-        assert speeds(wheels)[0] * 0.1 == pytest.approx(reached, abs=1e-9)
+        assert speeds(wheels)[0] * 0.1 == pytest.approx(expected, abs=1e-9)
 
 
 async def test_chained_mode_accepts_reference_interfaces(wheels):
@@ -236,7 +236,7 @@ async def test_chained_mode_accepts_reference_interfaces(wheels):
 
 async def test_deactivation_stops_wheels(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
-    command(wheels, 1.0, at=1)
+    command(wheels, 1.0, time_ns=1)
     await wheels.step(controller)
     controller.on_deactivate()
     assert speeds(wheels) == [0.0, 0.0]
@@ -251,8 +251,8 @@ async def test_deactivation_stops_wheels(wheels):
 
 async def test_odometry_has_publish_rate_and_covariances(wheels):
     diagonal = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
-    more = {"publish_rate": 20.0, "pose_covariance_diagonal": diagonal, "enable_odom_tf": False}
-    controller = wheels.start(DiffDriveController, NAME, **ROBOT, **more)
+    parameters = {"publish_rate": 20.0, "pose_covariance_diagonal": diagonal, "enable_odom_tf": False}
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, **parameters)
     odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     transforms = wheels.record("tf2_msgs/msg/TFMessage", "/tf")
     await wheels.step(controller, count=100)
@@ -293,7 +293,7 @@ async def test_set_odometry_service_sets_pose(wheels):
 
 
 @pytest.mark.parametrize(
-    ("parameters", "words"),
+    ("parameters", "message"),
     [
         (
             {"left_wheel_names": [], "right_wheel_names": []},
@@ -316,10 +316,10 @@ async def test_set_odometry_service_sets_pose(wheels):
         ),
     ],
 )
-def test_invalid_parameters_fail_configuration(wheels, parameters, words):
+def test_invalid_parameters_fail_configuration(wheels, parameters, message):
     with pytest.raises(ControllerError) as error:
         wheels.start(DiffDriveController, NAME, **ROBOT | parameters)
-    assert words in str(error.value)
+    assert message in str(error.value)
 
 
 async def test_wheel_state_that_is_not_a_number_is_reported(wheels):

@@ -1,4 +1,4 @@
-"""Humble's parameters of controllers and Jazzy's: declared are those of one, and taken are those of both."""
+"""Parameters of controllers: those of the current distribution are declared, those of Humble and Jazzy are read."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ TRAJECTORY = "joint_trajectory_controller/JointTrajectoryController"
 CAR = "ackermann_steering_controller/AckermannSteeringController"
 
 
-def declared(controller) -> set[str]:
-    """The names of its parameters."""
+def parameter_names(controller) -> set[str]:
+    """Return the names of a controller's parameters."""
     return set(controller.node.graph_node.parameter_names())
 
 
@@ -31,7 +31,7 @@ async def test_declared_parameters_match_distribution(stand, monkeypatch, kind, 
     names_by_distribution = {}
     for distribution in ("", "humble", "jazzy"):
         monkeypatch.setenv("ROS_DISTRO", distribution)
-        names_by_distribution[distribution] = declared(
+        names_by_distribution[distribution] = parameter_names(
             stand.make(controller_class(kind), f"it_{distribution}", **parameters)
         )
     assert names_by_distribution[""] == names_by_distribution["humble"]
@@ -57,6 +57,6 @@ async def test_parameters_of_other_distribution_are_accepted(stand, monkeypatch,
     controller = stand.make(controller_class(DRIVE), **WHEELS, **limits)
     axis = controller.parameters.linear.x
     assert (axis.has_velocity_limits, axis.max_deceleration) == (True, -2.0)
-    assert {"linear.x.has_velocity_limits", "linear.x.max_deceleration"} <= declared(controller)
-    assert "angular.z.has_velocity_limits" in declared(controller) or distribution == "jazzy"
+    assert {"linear.x.has_velocity_limits", "linear.x.max_deceleration"} <= parameter_names(controller)
+    assert "angular.z.has_velocity_limits" in parameter_names(controller) or distribution == "jazzy"
     assert not [record.text for record in log if "is not a parameter" in str(record.text)]

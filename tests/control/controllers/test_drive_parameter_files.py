@@ -1,4 +1,4 @@
-"""Parameter files of drives, as people have them, are read whole: what is in them is known, and the drive starts."""
+"""Typical parameter files of drives: all parameters are known, and the drive starts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from linkwright.control.controllers.registry import controller_class
 from linkwright.diagnostics import SourceText
 from linkwright.graph.parameters.files import parse_parameters, read_parameter_file
-from tests.control.controllers.driving import stamped, warnings
+from tests.control.controllers.driving import stamped_twist, warnings
 
 FILE = Path(__file__).with_name("drives.yaml")
 TYPES = {
@@ -37,8 +37,8 @@ async def test_all_parameters_of_file_are_recognized(stand, name):
     assert not warnings(stand)
 
 
-def documented(page: str) -> str:
-    """The parameter file of a drive on a page."""
+def documented_file(page: str) -> str:
+    """Return the parameter file of a drive on a page."""
     text = (Path(__file__).resolve().parents[3] / "docs" / page).read_text("utf-8")
     (example,) = re.findall(r"```yaml\n(base_controller.*?)```", text, re.DOTALL)
     return example
@@ -48,10 +48,10 @@ def documented(page: str) -> str:
 async def test_documented_drive_starts(stand, page):
     for joint in ("left_joint", "right_joint"):
         stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
-    parameters = parse_parameters(SourceText(page, documented(page))).for_node("/base_controller")
+    parameters = parse_parameters(SourceText(page, documented_file(page))).for_node("/base_controller")
     controller = stand.start(controller_class(TYPES["jazzy_base"]), "base_controller", **parameters)
     second = 1_000_000_000
-    stand.publish("geometry_msgs/msg/TwistStamped", "/base_controller/cmd_vel", stamped(second, 9.0))
+    stand.publish("geometry_msgs/msg/TwistStamped", "/base_controller/cmd_vel", stamped_twist(second, 9.0))
     await stand.step(controller, 1.0)
     assert [command.value for command in controller.commands] == pytest.approx([0.8 / 0.06] * 2)
     assert not warnings(stand)

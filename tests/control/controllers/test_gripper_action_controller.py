@@ -1,4 +1,4 @@
-"""Grippers: goals that are reached, stalled, canceled."""
+"""Grippers: goals that are reached, stalled or canceled."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ PARALLEL = "control_msgs/action/ParallelGripperCommand"
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
 
 
-class Fingers:
-    """A gripper on a stand: hardware that moves to its command at 0.1 m/s, as far as it can."""
+class Gripper:
+    """A gripper on a stand: hardware that moves to its command at 0.1 m/s, up to a limit."""
 
     def __init__(
         self, stand: Any, kind: type = PositionGripper, commands: tuple[str, ...] = ("position",), **parameters: Any
@@ -33,9 +33,9 @@ class Fingers:
         return self.stand.commands["finger/position"].value
 
     def move(self) -> None:
-        place, speed = (self.stand.states[f"finger/{kind}"] for kind in ("position", "velocity"))
-        step = min(max(min(self.command, self.limit) - place.value, -0.001), 0.001)
-        place.value += step
+        position, speed = (self.stand.states[f"finger/{interface}"] for interface in ("position", "velocity"))
+        step = min(max(min(self.command, self.limit) - position.value, -0.001), 0.001)
+        position.value += step
         speed.value = step / 0.01
 
     async def run(self, seconds: float) -> None:
@@ -59,7 +59,7 @@ def test_controllers_are_found_by_type(name, kind):
 
 
 async def test_gripper_holds_position_and_moves_to_goal(stand):
-    fingers = Fingers(stand)
+    fingers = Gripper(stand)
     await fingers.run(0.05)
     assert fingers.command == 0.0
     goal = fingers.send_goal(0.05, effort=7.0)
@@ -74,7 +74,7 @@ async def test_gripper_holds_position_and_moves_to_goal(stand):
 
 @pytest.mark.parametrize(("allowed", "status"), [(False, ABORTED), (True, SUCCEEDED)])
 async def test_blocked_gripper_stalls(stand, allowed, status):
-    fingers = Fingers(stand, allow_stalling=allowed, stall_timeout=0.5)
+    fingers = Gripper(stand, allow_stalling=allowed, stall_timeout=0.5)
     fingers.limit = 0.02
     goal = fingers.send_goal(0.05)
     await fingers.run(0.65)
@@ -86,7 +86,7 @@ async def test_blocked_gripper_stalls(stand, allowed, status):
 
 
 async def test_canceled_goal_holds_position(stand):
-    fingers = Fingers(stand)
+    fingers = Gripper(stand)
     goal = fingers.send_goal(0.5)
     await fingers.run(0.2)
     goal.cancel()
@@ -96,7 +96,7 @@ async def test_canceled_goal_holds_position(stand):
 
 
 async def test_new_goal_preempts_previous_goal(stand):
-    fingers = Fingers(stand)
+    fingers = Gripper(stand)
     first = fingers.send_goal(0.5)
     await fingers.run(0.1)
     second = fingers.send_goal(0.0)
@@ -105,17 +105,17 @@ async def test_new_goal_preempts_previous_goal(stand):
 
 
 async def test_goal_is_rejected_if_not_a_number_or_inactive(stand):
-    fingers = Fingers(stand)
+    fingers = Gripper(stand)
     wrong = fingers.send_goal(nan)
     await fingers.run(0.02)
     fingers.controller.on_deactivate()
-    late = fingers.send_goal(0.1)
+    rejected = fingers.send_goal(0.1)
     await stand.graph.settle()
-    assert (wrong.accepted, late.accepted) == (False, False)
+    assert (wrong.accepted, rejected.accepted) == (False, False)
 
 
 async def test_effort_follows_error_up_to_maximum_of_goal(stand):
-    fingers = Fingers(
+    fingers = Gripper(
         stand, EffortGripper, ("effort", "position"), gains={"finger": {"p": 100.0, "d": 10.0}}, goal_tolerance=0.001
     )
     goal = fingers.send_goal(0.1, effort=4.0)
@@ -134,7 +134,7 @@ async def test_effort_follows_error_up_to_maximum_of_goal(stand):
 
 async def test_parallel_gripper_forwards_maximum_effort_and_velocity(stand):
     stand.joint("limits", commands=("effort", "velocity"))
-    fingers = Fingers(
+    fingers = Gripper(
         stand,
         ParallelGripper,
         max_effort_interface="limits/effort",

@@ -7,7 +7,7 @@ import pytest
 from linkwright.control.controllers.controller import ControllerError
 from linkwright.control.controllers.husarion_mecanum_controller import HusarionMecanumController
 from linkwright.control.controllers.mecanum_drive_controller import MecanumDriveController
-from tests.control.controllers.driving import roll, stamped, twist
+from tests.control.controllers.driving import roll, stamped_twist, twist
 
 NAME = "base"
 CORNERS = ("front_left", "front_right", "rear_left", "rear_right")
@@ -21,17 +21,17 @@ ROBOT = {f"{corner}_wheel_name": corner for corner in CORNERS} | {
 
 @pytest.fixture
 def wheels(stand):
-    """A stand with four wheels."""
+    """Return a stand with four wheels."""
     for joint in CORNERS:
         stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
     return stand
 
 
 def command(stand, forward: float, sideways: float, turning: float) -> None:
-    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(0, forward, turning, sideways))
+    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped_twist(0, forward, turning, sideways))
 
 
-def commanded(stand) -> list[float]:
+def wheel_commands(stand) -> list[float]:
     return [stand.commands[f"{corner}/velocity"].value for corner in CORNERS]
 
 
@@ -53,21 +53,21 @@ async def test_wheel_speeds_match_motion_with_and_without_header(wheels, velocit
     controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, use_stamped_vel=False)
     command(wheels, *velocity)
     await wheels.step(controller)
-    assert commanded(wheels) == pytest.approx(wheels_turn)
+    assert wheel_commands(wheels) == pytest.approx(wheels_turn)
     forward, sideways, turning = velocity
     message = twist(-forward, -turning, -sideways)
     wheels.publish("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel_unstamped", message)
     await wheels.step(controller)
-    assert commanded(wheels) == pytest.approx([-speed for speed in wheels_turn])
+    assert wheel_commands(wheels) == pytest.approx([-speed for speed in wheels_turn])
 
 
 async def test_command_expires_after_timeout(wheels):
     controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, cmd_vel_timeout=0.1)
     command(wheels, 1.0, 0.0, 0.0)
     await wheels.step(controller, 0.05)
-    assert commanded(wheels) == [10.0] * 4
+    assert wheel_commands(wheels) == [10.0] * 4
     await wheels.step(controller, 0.05, count=3)
-    assert commanded(wheels) == [0.0] * 4
+    assert wheel_commands(wheels) == [0.0] * 4
 
 
 async def test_limits_apply_to_each_axis_and_result_is_published(wheels):
@@ -85,11 +85,11 @@ async def test_odometry_matches_driven_arc(wheels, source):
     odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     command(wheels, 0.3, 0.4, 0.5)
     await roll(wheels, controller, 501)
-    place, velocity = odometry[-1].pose.pose, odometry[-1].twist.twist
-    turn = 2.5
-    x = (0.3 * sin(turn) + 0.4 * (cos(turn) - 1.0)) / 0.5
-    y = (0.3 * (1.0 - cos(turn)) + 0.4 * sin(turn)) / 0.5
-    assert (place.position.x, place.position.y) == pytest.approx((x, y), abs=0.02)
+    pose, velocity = odometry[-1].pose.pose, odometry[-1].twist.twist
+    yaw = 2.5
+    x = (0.3 * sin(yaw) + 0.4 * (cos(yaw) - 1.0)) / 0.5
+    y = (0.3 * (1.0 - cos(yaw)) + 0.4 * sin(yaw)) / 0.5
+    assert (pose.position.x, pose.position.y) == pytest.approx((x, y), abs=0.02)
     assert (velocity.linear.x, velocity.linear.y, velocity.angular.z) == pytest.approx((0.3, 0.4, 0.5))
 
 

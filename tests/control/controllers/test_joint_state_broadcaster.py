@@ -68,5 +68,5 @@ async def test_state_interfaces_can_be_mapped(stand):
 
 async def test_unknown_parameter_is_reported(stand):
     stand.start(JointStateBroadcaster, joint=["hip"])
-    (logged,) = [record.text for record in stand.log if "not a parameter" in record.text]
-    assert logged == "'joint' is not a parameter of this controller; did you mean 'joints'?"
+    (warning,) = [record.text for record in stand.log if "not a parameter" in record.text]
+    assert warning == "'joint' is not a parameter of this controller; did you mean 'joints'?"

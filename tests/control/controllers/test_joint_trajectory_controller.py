@@ -1,4 +1,4 @@
-"""The controller of trajectories: what it commands when, what it refuses, and how goals end."""
+"""The joint trajectory controller: its commands over time, rejections, and the ends of goals."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BY_POSITION = {"joints": list(JOINTS), "command_interfaces": ["position"], "stat
 
 
 class Arm:
-    """A controller on a stand, and hardware that does what it is told at once, but for what is stuck."""
+    """A controller on a stand, with hardware that follows its commands at once, except for stuck joints."""
 
     def __init__(self, stand: Any, **parameters: Any) -> None:
         self.stand = stand
@@ -31,26 +31,26 @@ class Arm:
         self.stuck: set[str] = set()
         self.controller = stand.start(JointTrajectoryController, **facts)
 
-    def command(self, joint: str, kind: str = "position") -> float:
-        return self.stand.commands[f"{joint}/{kind}"].value
+    def command(self, joint: str, interface: str = "position") -> float:
+        return self.stand.commands[f"{joint}/{interface}"].value
 
-    def obey(self) -> None:
+    def follow_commands(self) -> None:
         for name, command in self.stand.commands.items():
-            joint, _, kind = name.partition("/")
-            if joint not in self.stuck and kind == "position":
+            joint, _, interface = name.partition("/")
+            if joint not in self.stuck and interface == "position":
                 self.stand.states[name].value = command.value
 
     async def run(self, seconds: float) -> None:
-        await run(self.stand, self.controller, seconds, self.obey)
+        await run(self.stand, self.controller, seconds, self.follow_commands)
 
     def publish(self, message: Any) -> None:
         self.stand.publish(TYPE, "/controller/joint_trajectory", message)
 
-    def send_goal(self, message: Any, **more: Any) -> SentGoal:
-        goal = get_action(ACTION).Goal(trajectory=message, **more)
+    def send_goal(self, message: Any, **fields: Any) -> SentGoal:
+        goal = get_action(ACTION).Goal(trajectory=message, **fields)
         return SentGoal(self.stand, ACTION, "/controller/follow_joint_trajectory", goal)
 
-    def logged(self) -> list[str]:
+    def log_texts(self) -> list[str]:
         return [str(record.text) for record in self.stand.log]
 
 
@@ -102,7 +102,7 @@ async def test_accelerations_are_commanded(stand):
     point = (2.0, [1.0, 1.0], [0.0, 0.0], [0.0, 0.0])
     stand.publish(TYPE, "/controller/joint_trajectory", trajectory(point))
     await run(stand, controller, 1.0)
-    values = [stand.commands[f"shoulder/{kind}"].value for kind in three]
+    values = [stand.commands[f"shoulder/{interface}"].value for interface in three]
     assert values == pytest.approx([0.5, 15.0 / 16.0, 0.0], abs=1e-9)
 
 
@@ -120,7 +120,7 @@ async def test_effort_by_pid_moves_mass_along_trajectory(stand):
 
     def fall() -> None:
         for joint in JOINTS:
-            position, velocity = (stand.states[f"{joint}/{kind}"] for kind in ("position", "velocity"))
+            position, velocity = (stand.states[f"{joint}/{interface}"] for interface in ("position", "velocity"))
             velocity.value += 0.01 * (arm.command(joint, "effort") - 1.0)
             position.value += 0.01 * velocity.value
 
@@ -151,7 +151,7 @@ async def test_goal_succeeds_with_feedback(stand):
     assert goal.feedback[5].joint_names == list(JOINTS)
     assert goal.feedback[5].desired.positions[0] == pytest.approx(0.5)
     assert goal.feedback[5].error.positions[0] == pytest.approx(0.0)
-    assert "Goal reached, success!" in arm.logged()
+    assert "Goal reached, success!" in arm.log_texts()
 
 
 async def test_joints_can_be_listed_in_any_order(stand):
@@ -216,7 +216,7 @@ async def test_invalid_trajectory_is_rejected_with_reason(stand, message, expect
     arm.publish(message)
     await arm.run(1.5)
     assert goal.accepted is False
-    assert arm.logged().count(expected) == 2
+    assert arm.log_texts().count(expected) == 2
     assert arm.command("shoulder") == 0.0
 
 
@@ -225,7 +225,7 @@ async def test_partial_goal_requires_joint_names(stand):
     goal = arm.send_goal(trajectory(names=()))
     await arm.run(0.05)
     assert goal.accepted is False
-    assert "Empty joint names on incoming trajectory." in arm.logged()
+    assert "Empty joint names on incoming trajectory." in arm.log_texts()
 
 
 async def test_nonzero_final_velocity_can_be_forbidden(stand):
@@ -233,7 +233,7 @@ async def test_nonzero_final_velocity_can_be_forbidden(stand):
     goal = arm.send_goal(trajectory((1.0, [1.0, 1.0], [0.0, 0.1])))
     await arm.run(0.05)
     assert goal.accepted is False
-    assert "Velocity of last trajectory point of joint elbow is not zero: 0.100000000000000" in arm.logged()
+    assert "Velocity of last trajectory point of joint elbow is not zero: 0.100000000000000" in arm.log_texts()
 
 
 async def test_points_without_positions_are_integrated_if_allowed(stand):
@@ -276,7 +276,7 @@ async def test_violated_path_tolerance_aborts_goal_and_holds_joints(stand):
     assert arm.command("shoulder") == 0.0
     assert arm.command("elbow") == pytest.approx(0.11)
     assert "State tolerances failed for joint 'shoulder': Position Error: 0.110000, Position Tolerance: 0.100000" in (
-        arm.logged()
+        arm.log_texts()
     )
 
 
@@ -307,8 +307,10 @@ async def test_goal_never_times_out_without_goal_time(stand):
 async def test_goal_overrides_tolerances(stand):
     arm = Arm(stand, constraints={"goal_time": 0.1, "shoulder": {"trajectory": 0.1, "goal": 0.1}})
     arm.stuck.add("shoulder")
-    erased = [tolerance("shoulder", -1.0)]
-    first = arm.send_goal(trajectory((0.5, [1.0, 1.0])), path_tolerance=erased, goal_tolerance=erased)
+    erased_tolerances = [tolerance("shoulder", -1.0)]
+    first = arm.send_goal(
+        trajectory((0.5, [1.0, 1.0])), path_tolerance=erased_tolerances, goal_tolerance=erased_tolerances
+    )
     await arm.run(1.0)
     assert first.status == SUCCEEDED
     second = arm.send_goal(
@@ -341,7 +343,7 @@ async def test_invalid_goal_tolerances_keep_controller_tolerances(stand, wrong, 
     goal = arm.send_goal(trajectory((0.5, [1.0, 1.0])), path_tolerance=[tolerance("shoulder", -1.0), wrong])
     await arm.run(0.5)
     assert goal.status == ABORTED
-    assert message in arm.logged()
+    assert message in arm.log_texts()
 
 
 async def test_canceled_goal_holds_joints(stand):
@@ -388,15 +390,15 @@ async def test_rejected_goal_keeps_previous_goal(stand):
 
 async def test_inactive_controller_rejects_goals_and_ends_current_goal(stand):
     arm = Arm(stand, command_interfaces=["position", "velocity"])
-    running = arm.send_goal(trajectory((1.0, [1.0, 1.0], [0.0, 0.0])))
+    current_goal = arm.send_goal(trajectory((1.0, [1.0, 1.0], [0.0, 0.0])))
     await arm.run(0.5)
     arm.controller.on_deactivate()
     stand.exchange.deliver()
-    late = arm.send_goal(trajectory(GOOD))
+    rejected_goal = arm.send_goal(trajectory(GOOD))
     await stand.graph.settle()
-    assert (running.status, late.accepted) == (CANCELED, False)
-    assert running.result.error_string == "Current goal cancelled during deactivate transition."
-    assert "Can't accept new action goals. Controller is not running." in arm.logged()
+    assert (current_goal.status, rejected_goal.accepted) == (CANCELED, False)
+    assert current_goal.result.error_string == "Current goal cancelled during deactivate transition."
+    assert "Can't accept new action goals. Controller is not running." in arm.log_texts()
     assert arm.command("shoulder") == pytest.approx(0.5, abs=0.01)
     assert arm.command("shoulder", "velocity") == 0.0
 
@@ -451,13 +453,13 @@ async def test_ended_trajectory_is_dropped_after_cmd_timeout(stand):
     await arm.run(0.9)
     assert arm.command("shoulder") == 1.0
     await arm.run(0.2)
-    assert "Aborted due to command timeout" in arm.logged()
+    assert "Aborted due to command timeout" in arm.log_texts()
     assert arm.command("shoulder") == 0.0
 
 
 async def test_cmd_timeout_below_goal_time_is_ignored_with_warning(stand):
     arm = Arm(stand, cmd_timeout=0.5, constraints={"goal_time": 0.6})
-    assert "Command timeout must be higher than goal_time tolerance (0.500000 vs. 0.600000)" in arm.logged()
+    assert "Command timeout must be higher than goal_time tolerance (0.500000 vs. 0.600000)" in arm.log_texts()
 
 
 async def test_state_is_published_each_update_or_at_set_rate(stand):
@@ -478,16 +480,16 @@ async def test_state_is_published_each_update_or_at_set_rate(stand):
 
 
 async def test_errors_of_held_joints_are_computed_only_for_subscribers(stand, monkeypatch):
-    compare, compared = JointTrajectoryController._compare, []
+    compare, comparisons = JointTrajectoryController._compare, []
     monkeypatch.setattr(
-        JointTrajectoryController, "_compare", lambda self, target: compared.append(target) or compare(self, target)
+        JointTrajectoryController, "_compare", lambda self, target: comparisons.append(target) or compare(self, target)
     )
     arm = Arm(stand)
     await arm.run(0.1)
-    assert compared == []
+    assert comparisons == []
     states = stand.record("control_msgs/msg/JointTrajectoryControllerState", "/controller/controller_state")
     await arm.run(0.02)
-    assert len(states) == len(compared) == 2
+    assert len(states) == len(comparisons) == 2
     assert list(states[-1].error.positions) == [0.0, 0.0]
 
 

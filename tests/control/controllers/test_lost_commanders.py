@@ -1,4 +1,4 @@
-"""Controllers whose commander is lost: what moves for ever stops, positions and efforts are held."""
+"""Controllers whose commander is lost: velocities are stopped, positions and efforts are held."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ WHEELS = {"left_wheel_names": ["left"], "right_wheel_names": ["right"], "wheel_s
 
 
 @pytest.mark.parametrize(
-    ("kind", "interface", "after"),
+    ("kind", "interface", "expected"),
     [
         (FORWARD, "velocity", 0.0),
         ("velocity_controllers/JointGroupVelocityController", "velocity", 0.0),
@@ -23,19 +23,19 @@ WHEELS = {"left_wheel_names": ["left"], "right_wheel_names": ["right"], "wheel_s
         (FORWARD, "effort", 0.5),
     ],
 )
-async def test_lost_publisher_stops_velocity_and_holds_position_and_effort(stand, kind, interface, after):
+async def test_lost_publisher_stops_velocity_and_holds_position_and_effort(stand, kind, interface, expected):
     stand.joint("hip", commands=(interface,))
-    more = {"interface_name": interface} if kind == FORWARD else {}
-    controller = stand.start(controller_class(kind), "hips", joints=["hip"], **more)
+    parameters = {"interface_name": interface} if kind == FORWARD else {}
+    controller = stand.start(controller_class(kind), "hips", joints=["hip"], **parameters)
     driver = RemotePublisher(RemoteTransport(stand.graph), "/hips/commands", msg_type="std_msgs/msg/Float64MultiArray")
     driver.send(Array(data=[0.5]))
     await stand.step(controller)
     assert stand.commands[f"hip/{interface}"].value == 0.5
-    driver.be_lost()
+    driver.disappear()
     await stand.step(controller)
-    assert stand.commands[f"hip/{interface}"].value == after
-    logged = [record.text for record in stand.log if "was lost" in record.text]
-    assert len(logged) == (after == 0.0)
+    assert stand.commands[f"hip/{interface}"].value == expected
+    texts = [record.text for record in stand.log if "was lost" in record.text]
+    assert len(texts) == (expected == 0.0)
 
 
 async def test_drive_stops_before_timeout_when_publisher_is_lost(stand):
@@ -49,11 +49,11 @@ async def test_drive_stops_before_timeout_when_publisher_is_lost(stand):
     driver.send(message)
     await stand.step(controller, count=3)
     assert [command.value for command in stand.commands.values()] == pytest.approx([10.0, 10.0])
-    driver.be_lost()
+    driver.disappear()
     await stand.step(controller)
     assert [command.value for command in stand.commands.values()] == [0.0, 0.0]
-    (logged,) = [record.text for record in stand.log if "was lost" in record.text]
-    assert logged.startswith("'/driver', which sent the commands on '/base/cmd_vel', was lost")
+    (text,) = [record.text for record in stand.log if "was lost" in record.text]
+    assert text.startswith("'/driver', which sent the commands on '/base/cmd_vel', was lost")
 
 
 async def test_drive_reports_two_simultaneous_publishers_once(stand, clock):
@@ -72,8 +72,8 @@ async def test_drive_reports_two_simultaneous_publishers_once(stand, clock):
         drivers[speed % 2].send(message)
         await clock.advance(0.1)
     await stand.step(controller)
-    (logged,) = [record.text for record in stand.log if record.level >= LogLevel.WARN]
-    assert logged.startswith("several nodes drive the robot: '/keys', '/planner' send commands on '/base/cmd_vel'")
+    (warning,) = [record.text for record in stand.log if record.level >= LogLevel.WARN]
+    assert warning.startswith("several nodes drive the robot: '/keys', '/planner' send commands on '/base/cmd_vel'")
 
 
 async def test_lost_publisher_of_expired_command_is_not_reported(stand):
@@ -86,6 +86,6 @@ async def test_lost_publisher_of_expired_command_is_not_reported(stand):
     message.twist.linear.x = 1.0
     driver.send(message)
     await stand.step(controller, count=20)
-    driver.be_lost()
+    driver.disappear()
     await stand.step(controller)
     assert not [record.text for record in stand.log if "was lost" in record.text]

@@ -7,7 +7,7 @@ import pytest
 from linkwright.control.controllers.controller import ControllerError
 from linkwright.control.controllers.mecanum_drive_controller import MecanumDriveController
 from linkwright.control.controllers.registry import controller_class
-from tests.control.controllers.driving import roll, stamped
+from tests.control.controllers.driving import roll, stamped_twist
 
 NAME = "base"
 CORNERS = ("front_left", "front_right", "rear_right", "rear_left")
@@ -18,17 +18,17 @@ ROBOT = {f"{corner}_wheel_command_joint_name": corner for corner in CORNERS} | {
 
 @pytest.fixture
 def wheels(stand):
-    """A stand with four wheels."""
+    """Return a stand with four wheels."""
     for joint in CORNERS:
         stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
     return stand
 
 
 def command(stand, forward: float, sideways: float, turning: float) -> None:
-    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped(0, forward, turning, sideways))
+    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped_twist(0, forward, turning, sideways))
 
 
-def commanded(stand) -> list[float]:
+def wheel_commands(stand) -> list[float]:
     return [stand.commands[f"{corner}/velocity"].value for corner in CORNERS]
 
 
@@ -48,7 +48,7 @@ async def test_wheel_speeds_match_motion(wheels, velocity, wheels_turn):
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT, reference_timeout=1.0)
     command(wheels, *velocity)
     await wheels.step(controller)
-    assert commanded(wheels) == pytest.approx(wheels_turn)
+    assert wheel_commands(wheels) == pytest.approx(wheels_turn)
 
 
 async def test_odometry_matches_driven_arc(wheels):
@@ -57,12 +57,12 @@ async def test_odometry_matches_driven_arc(wheels):
     transforms = wheels.record("tf2_msgs/msg/TFMessage", f"/{NAME}/tf_odometry")
     command(wheels, 0.3, 0.4, 0.5)
     await roll(wheels, controller, 501)
-    place, velocity, turn = odometry[-1].pose.pose, odometry[-1].twist.twist, 2.5
-    x = (0.3 * sin(turn) + 0.4 * (cos(turn) - 1.0)) / 0.5
-    y = (0.3 * (1.0 - cos(turn)) + 0.4 * sin(turn)) / 0.5
-    assert (place.position.x, place.position.y) == pytest.approx((x, y), abs=1e-9)
+    pose, velocity, yaw = odometry[-1].pose.pose, odometry[-1].twist.twist, 2.5
+    x = (0.3 * sin(yaw) + 0.4 * (cos(yaw) - 1.0)) / 0.5
+    y = (0.3 * (1.0 - cos(yaw)) + 0.4 * sin(yaw)) / 0.5
+    assert (pose.position.x, pose.position.y) == pytest.approx((x, y), abs=1e-9)
     assert (velocity.linear.x, velocity.linear.y, velocity.angular.z) == pytest.approx((0.3, 0.4, 0.5))
-    assert transforms[-1].transforms[0].transform.translation.x == place.position.x
+    assert transforms[-1].transforms[0].transform.translation.x == pose.position.x
 
 
 async def test_base_frame_offset_is_applied(wheels):
@@ -72,7 +72,7 @@ async def test_base_frame_offset_is_applied(wheels):
     odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
     command(wheels, 1.0, 0.0, 0.0)
     await wheels.step(controller)
-    assert commanded(wheels) == pytest.approx([-10.0, 10.0, -10.0, 10.0])
+    assert wheel_commands(wheels) == pytest.approx([-10.0, 10.0, -10.0, 10.0])
     command(wheels, 0.3, 0.4, 0.5)
     await roll(wheels, controller, 3)
     velocity = odometry[-1].twist.twist
@@ -83,12 +83,12 @@ async def test_command_expires_after_timeout_or_one_update(wheels):
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT)
     command(wheels, 1.0, 0.0, 0.0)
     await wheels.step(controller, 0.001)
-    assert commanded(wheels) == pytest.approx([10.0] * 4)
+    assert wheel_commands(wheels) == pytest.approx([10.0] * 4)
     await wheels.step(controller, 0.001)
-    assert commanded(wheels) == [0.0] * 4
+    assert wheel_commands(wheels) == [0.0] * 4
     command(wheels, nan, 0.0, 0.0)
     await wheels.step(controller, 0.001)
-    assert commanded(wheels) == [0.0] * 4
+    assert wheel_commands(wheels) == [0.0] * 4
 
 
 async def test_chained_mode_accepts_references_and_publishes_state(wheels):
@@ -105,13 +105,13 @@ async def test_chained_mode_accepts_references_and_publishes_state(wheels):
     await roll(wheels, controller)
     assert states[-1].reference_velocity.linear.y == 1.0
     await roll(wheels, controller)
-    assert commanded(wheels) == [0.0] * 4
+    assert wheel_commands(wheels) == [0.0] * 4
     assert (states[-1].front_left_wheel_velocity, states[-1].back_left_wheel_velocity) == pytest.approx((-10.0, 10.0))
     assert isnan(states[-1].reference_velocity.linear.y)
 
 
 @pytest.mark.parametrize(
-    ("parameters", "words"),
+    ("parameters", "message"),
     [
         ({"rear_left_wheel_command_joint_name": ""}, "'rear_left_wheel_command_joint_name' cannot be empty"),
         (
@@ -120,7 +120,7 @@ async def test_chained_mode_accepts_references_and_publishes_state(wheels):
         ),
     ],
 )
-def test_invalid_parameters_fail_configuration(wheels, parameters, words):
+def test_invalid_parameters_fail_configuration(wheels, parameters, message):
     with pytest.raises(ControllerError) as error:
         wheels.start(MecanumDriveController, NAME, **ROBOT | parameters)
-    assert words in str(error.value)
+    assert message in str(error.value)

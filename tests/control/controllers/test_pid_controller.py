@@ -18,7 +18,7 @@ BOTH = {**WHEEL, "reference_and_state_interfaces": ["position", "velocity"]}
 
 
 def wheel(stand: Any, position: float = 0.0, velocity: float = 0.0, **parameters: Any) -> Any:
-    """A controller of a wheel."""
+    """Return the controller of a wheel."""
     stand.joint("wheel", commands=("effort",), position=position, velocity=velocity)
     return stand.start(PidController, **parameters)
 
@@ -27,8 +27,10 @@ def command(names: list[str], values: list[float], rates: list[float]) -> Any:
     return get_message(COMMAND)(dof_names=names, values=values, values_dot=rates)
 
 
-def ask(stand: Any, *values: float, names: tuple[str, ...] = ("wheel",), rates: tuple[float, ...] = ()) -> None:
-    """Send a reference."""
+def publish_reference(
+    stand: Any, *values: float, names: tuple[str, ...] = ("wheel",), rates: tuple[float, ...] = ()
+) -> None:
+    """Publish a reference."""
     stand.publish(COMMAND, "/controller/reference", command(list(names), list(values), list(rates)))
 
 
@@ -36,21 +38,21 @@ async def test_command_follows_error(stand):
     controller = wheel(stand, velocity=1.0, **WHEEL, gains={"wheel": {"p": 2.0, "i": 1.0}})
     await stand.step(controller)
     assert isnan(stand.commands["wheel/effort"].value)
-    ask(stand, 4.0)
+    publish_reference(stand, 4.0)
     await stand.step(controller)
     assert stand.commands["wheel/effort"].value == pytest.approx(6.03)
 
 
 async def test_error_derivative_uses_second_interface(stand):
     controller = wheel(stand, position=1.0, velocity=0.5, **BOTH, gains={"wheel": {"p": 10.0, "d": 2.0}})
-    ask(stand, 2.0, rates=(1.0,))
+    publish_reference(stand, 2.0, rates=(1.0,))
     await stand.step(controller)
     assert stand.commands["wheel/effort"].value == pytest.approx(10.0 + 1.0)
 
 
 async def test_service_enables_feed_forward(stand):
     controller = wheel(stand, **WHEEL, gains={"wheel": {"p": 1.0, "feedforward_gain": 3.0}})
-    ask(stand, 2.0)
+    publish_reference(stand, 2.0)
     await stand.step(controller)
     assert stand.commands["wheel/effort"].value == pytest.approx(2.0)
     switch = get_service("std_srvs/srv/SetBool")
@@ -65,14 +67,14 @@ async def test_service_enables_feed_forward(stand):
 async def test_angle_wraparound_uses_shorter_way(stand):
     facts = {**WHEEL, "reference_and_state_interfaces": ["position"]}
     controller = wheel(stand, position=3.0, **facts, gains={"wheel": {"p": 1.0, "angle_wraparound": True}})
-    ask(stand, -3.0)
+    publish_reference(stand, -3.0)
     await stand.step(controller)
     assert stand.commands["wheel/effort"].value == pytest.approx(2.0 * pi - 6.0)
 
 
 async def test_measured_states_can_come_from_topic(stand):
     controller = wheel(stand, **WHEEL, use_external_measured_states=True, gains={"wheel": {"p": 1.0}})
-    ask(stand, 4.0)
+    publish_reference(stand, 4.0)
     stand.publish(COMMAND, "/controller/measured_state", command(["wheel"], [1.0], []))
     await stand.step(controller)
     assert stand.commands["wheel/effort"].value == pytest.approx(3.0)
@@ -86,7 +88,7 @@ async def test_chained_mode_accepts_reference_interfaces(stand):
     ]
     controller.is_chained = True
     controller.references[0].value = 0.5
-    ask(stand, 9.0)
+    publish_reference(stand, 9.0)
     await stand.step(controller)
     assert stand.commands["wheel/effort"].value == pytest.approx(0.5)
     assert [interface.value for interface in controller.exported] == [0.0, 0.0]
@@ -94,20 +96,20 @@ async def test_chained_mode_accepts_reference_interfaces(stand):
 
 async def test_reference_of_wrong_size_or_names_is_reported(stand):
     controller = wheel(stand, **WHEEL, gains={"wheel": {"p": 1.0}})
-    ask(stand, 1.0, 2.0)
+    publish_reference(stand, 1.0, 2.0)
     await stand.step(controller)
-    ask(stand, 1.0, names=("arm",))
+    publish_reference(stand, 1.0, names=("arm",))
     await stand.step(controller)
-    logged = [str(record.text) for record in stand.log]
-    assert "Size of input data names (1) and/or values (2) is not matching the expected size (1)." in logged
-    assert "DoF name 'wheel' is not in the message: it has arm." in logged
+    texts = [str(record.text) for record in stand.log]
+    assert "Size of input data names (1) and/or values (2) is not matching the expected size (1)." in texts
+    assert "DoF name 'wheel' is not in the message: it has arm." in texts
     assert isnan(stand.commands["wheel/effort"].value)
 
 
 async def test_controller_state_is_published(stand):
     controller = wheel(stand, velocity=1.0, **WHEEL, gains={"wheel": {"p": 2.0}})
     states = stand.record("control_msgs/msg/MultiDOFStateStamped", "/controller/controller_state")
-    ask(stand, 4.0)
+    publish_reference(stand, 4.0)
     await stand.step(controller)
     (state,) = states[-1].dof_states
     assert (state.name, state.reference, state.feedback, state.error, state.output) == ("wheel", 4.0, 1.0, 3.0, 6.0)
@@ -119,7 +121,7 @@ async def test_save_i_term_keeps_integral_on_reactivation(stand, saves_integral)
     controller = wheel(stand, **WHEEL, gains={"wheel": {"i": 1.0, "save_i_term": saves_integral}})
     for _ in range(2):
         controller.on_activate()
-        ask(stand, 1.0)
+        publish_reference(stand, 1.0)
         await stand.step(controller)
         controller.on_deactivate()
     controller.on_activate()
@@ -128,7 +130,7 @@ async def test_save_i_term_keeps_integral_on_reactivation(stand, saves_integral)
 
 async def test_deactivation_sets_effort_to_zero(stand):
     controller = wheel(stand, **WHEEL, gains={"wheel": {"p": 2.0}})
-    ask(stand, 4.0)
+    publish_reference(stand, 4.0)
     await stand.step(controller)
     controller.on_deactivate()
     assert stand.commands["wheel/effort"].value == 0.0

@@ -1,4 +1,4 @@
-"""The trajectory controller of Universal Robots: time on a trajectory goes on as fast as the robot says."""
+"""The trajectory controller of Universal Robots: the trajectory's time advances by the robot's speed scaling."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ SAID = {"joints": list(JOINTS), "command_interfaces": ["position"], "state_inter
 SUCCEEDED = 4
 
 
-async def position_after(stand, seconds, factor=None, **more):
-    """Where the first joint is, so many seconds after a goal 2 rad and 2 s away was given, and the goal."""
+async def position_after(stand, seconds, factor=None, **parameters):
+    """Return the first joint's position some seconds after a goal of 2 rad in 2 s, and the goal."""
     for joint in JOINTS:
         stand.joint(joint, commands=("position",), position=0.0, velocity=0.0)
     if factor is not None:
         stand.states[FACTOR] = StateInterface(*FACTOR.split("/"), factor)
-    controller = stand.start(controller_class(KIND), **SAID, **more)
+    controller = stand.start(controller_class(KIND), **SAID, **parameters)
 
-    def obey():
+    def follow_commands():
         for name, command in stand.commands.items():
             stand.states[name].value = command.value
 
     message = trajectory((2.0, [2.0] * len(JOINTS)))
     goal = SentGoal(stand, ACTION, "/controller/follow_joint_trajectory", get_action(ACTION).Goal(trajectory=message))
-    await run(stand, controller, seconds, obey)
+    await run(stand, controller, seconds, follow_commands)
     return stand.commands[f"{JOINTS[0]}/position"].value, goal
 
 
-@pytest.mark.parametrize(("factor", "reached"), [(1.0, 1.0), (0.5, 0.5), (0.0, 0.0)])
-async def test_trajectory_advances_at_robot_speed_scaling(stand, factor, reached):
+@pytest.mark.parametrize(("factor", "expected"), [(1.0, 1.0), (0.5, 0.5), (0.0, 0.0)])
+async def test_trajectory_advances_at_robot_speed_scaling(stand, factor, expected):
     position, _ = await position_after(stand, 1.0, factor)
-    assert position == pytest.approx(reached, abs=0.03)
+    assert position == pytest.approx(expected, abs=0.03)
 
 
 async def test_scaled_goal_takes_longer_and_succeeds(stand):

@@ -35,9 +35,9 @@ def test_broadcasters_are_found_by_type(name, kind):
 
 
 async def test_imu_is_published(stand):
-    kinds = [*(f"orientation.{axis}" for axis in "xyzw")]
-    kinds += [f"{kind}.{axis}" for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
-    stand.joint("imu", **{kind: float(number) for number, kind in enumerate(reversed(kinds))})
+    names = [*(f"orientation.{axis}" for axis in "xyzw")]
+    names += [f"{quantity}.{axis}" for quantity in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
+    stand.joint("imu", **{quantity: float(number) for number, quantity in enumerate(reversed(names))})
     covariance = [0.5, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.5]
     broadcaster = stand.start(
         ImuBroadcaster, sensor_name="imu", frame_id="imu_link", static_covariance_orientation=covariance
@@ -54,7 +54,7 @@ async def test_imu_is_published(stand):
 
 
 async def test_wrench_is_published(stand):
-    stand.joint("tcp", **{kind: float(number) for number, kind in enumerate(WRENCH)})
+    stand.joint("tcp", **{interface: float(number) for number, interface in enumerate(WRENCH)})
     broadcaster = stand.start(ForceTorqueBroadcaster, sensor_name="tcp", frame_id="tool0")
     wrenches = stand.record("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
     await stand.step(broadcaster)
@@ -149,8 +149,8 @@ async def test_missing_or_invalid_parameters_are_rejected(stand, kind, parameter
 
 
 def test_admittance_controller_is_rejected_with_hint():
-    with pytest.raises(LinkwrightError) as raised:
+    with pytest.raises(LinkwrightError) as error:
         controller_class("admittance_controller/AdmittanceController")
-    (diagnostic,) = raised.value.diagnostics
+    (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "CTL103"
     assert "does not support admittance control" in str(diagnostic.hint)

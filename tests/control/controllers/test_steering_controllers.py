@@ -1,4 +1,4 @@
-"""Controllers of steered vehicles, against the geometry of wheels that roll about one point."""
+"""Controllers of steered vehicles, compared with the geometry of wheels that roll around one point."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.control.controllers.bicycle_steering_controller import BicycleSt
 from linkwright.control.controllers.controller import ControllerError
 from linkwright.control.controllers.registry import controller_class
 from linkwright.control.controllers.tricycle_steering_controller import TricycleSteeringController
-from tests.control.controllers.driving import roll, stamped, twist, warnings
+from tests.control.controllers.driving import roll, stamped_twist, twist, warnings
 
 NAME = "car"
 BASE, TRACK, RADIUS = 1.2, 0.8, 0.1
@@ -34,20 +34,20 @@ ALL = [
 EACH = pytest.mark.parametrize(("kind", "sizes"), ALL, ids=["ackermann", "tricycle", "bicycle"])
 
 
-def vehicle(stand, kind, sizes, **more) -> Any:
-    """A controller, with joints that are where they are told to be."""
+def vehicle(stand, kind, sizes, **parameters) -> Any:
+    """Return a controller whose joints follow their commands."""
     for joint in sizes["traction_joints_names"]:
         stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
     for joint in sizes["steering_joints_names"]:
         stand.joint(joint, commands=("position",), position=0.0)
-    return stand.start(kind, NAME, **sizes | more)
+    return stand.start(kind, NAME, **sizes | parameters)
 
 
-def command(stand, *velocity: float, at: int = 0) -> None:
-    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped(at, *velocity))
+def command(stand, *velocity: float, time_ns: int = 0) -> None:
+    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped_twist(time_ns, *velocity))
 
 
-def commanded(stand, *joints: str) -> list[float]:
+def joint_commands(stand, *joints: str) -> list[float]:
     return [
         next(interface.value for name, interface in stand.commands.items() if name.startswith(f"{joint}/"))
         for joint in joints
@@ -66,9 +66,9 @@ async def test_ackermann_wheels_roll_about_one_point(stand):
         command(stand, 1.0, 0.5)
         await roll(stand, controller)
     circle = 1.0 / 0.5
-    left, right = commanded(stand, "steer_left", "steer_right")
+    left, right = joint_commands(stand, "steer_left", "steer_right")
     assert (left, right) == pytest.approx((atan(BASE / (circle - TRACK / 2)), atan(BASE / (circle + TRACK / 2))))
-    left, right = commanded(stand, "left", "right")
+    left, right = joint_commands(stand, "left", "right")
     assert (left, right) == pytest.approx((0.5 * (circle - TRACK / 2) / RADIUS, 0.5 * (circle + TRACK / 2) / RADIUS))
 
 
@@ -76,21 +76,21 @@ async def test_steering_track_width_can_differ(stand):
     controller = vehicle(stand, AckermannSteeringController, ACKERMANN, steering_track_width=0.4)
     command(stand, 1.0, 0.5)
     await stand.step(controller)
-    assert commanded(stand, "steer_left") == pytest.approx([atan(BASE / (2.0 - 0.2))])
+    assert joint_commands(stand, "steer_left") == pytest.approx([atan(BASE / (2.0 - 0.2))])
 
 
 async def test_tricycle_wheel_commands(stand):
     controller = vehicle(stand, TricycleSteeringController, TRICYCLE, open_loop=True)
     command(stand, 1.0, 0.5)
     await stand.step(controller)
-    assert commanded(stand, "right", "left", "steer") == pytest.approx([12.0, 8.0, atan(0.6)])
+    assert joint_commands(stand, "right", "left", "steer") == pytest.approx([12.0, 8.0, atan(0.6)])
 
 
 async def test_bicycle_wheel_commands(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE)
     command(stand, 1.0, 0.5)
     await stand.step(controller)
-    assert commanded(stand, "wheel", "steer") == pytest.approx([10.0, atan(0.6)])
+    assert joint_commands(stand, "wheel", "steer") == pytest.approx([10.0, atan(0.6)])
 
 
 @EACH
@@ -119,27 +119,27 @@ async def test_command_expires_after_timeout(stand, kind, sizes):
     controller = vehicle(stand, kind, sizes, reference_timeout=0.1)
     command(stand, 1.0, 0.5)
     await stand.step(controller, 0.001, count=101)
-    angle = commanded(stand, sizes["steering_joints_names"][0])
-    assert commanded(stand, sizes["traction_joints_names"][0])[0] > 0.0
+    angle = joint_commands(stand, sizes["steering_joints_names"][0])
+    assert joint_commands(stand, sizes["traction_joints_names"][0])[0] > 0.0
     await stand.step(controller, 0.001)
-    assert commanded(stand, *sizes["traction_joints_names"]) == [0.0] * len(sizes["traction_joints_names"])
-    assert commanded(stand, sizes["steering_joints_names"][0]) == angle
+    assert joint_commands(stand, *sizes["traction_joints_names"]) == [0.0] * len(sizes["traction_joints_names"])
+    assert joint_commands(stand, sizes["steering_joints_names"][0]) == angle
 
 
 async def test_command_holds_for_one_update_without_timeout(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE, reference_timeout=0.0)
     command(stand, 1.0)
     await stand.step(controller)
-    assert commanded(stand, "wheel") == [10.0]
+    assert joint_commands(stand, "wheel") == [10.0]
     await stand.step(controller)
-    assert commanded(stand, "wheel") == [0.0]
+    assert joint_commands(stand, "wheel") == [0.0]
 
 
 async def test_humble_accepts_unstamped_commands(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE, use_stamped_vel=False)
     stand.publish("geometry_msgs/msg/Twist", f"/{NAME}/reference_unstamped", twist(1.0))
     await stand.step(controller)
-    assert commanded(stand, "wheel") == [10.0]
+    assert joint_commands(stand, "wheel") == [10.0]
 
 
 async def test_humble_accepts_older_parameter_names(stand):
@@ -159,7 +159,7 @@ async def test_humble_accepts_older_parameter_names(stand):
     controller = stand.start(AckermannSteeringController, NAME, **older)
     command(stand, 1.0, 0.5)
     await stand.step(controller)
-    assert commanded(stand, "left", "steer_left") == pytest.approx([10.0, atan(BASE / 1.8)])
+    assert joint_commands(stand, "left", "steer_left") == pytest.approx([10.0, atan(BASE / 1.8)])
     assert not [warning for warning in warnings(stand) if "not a parameter" in warning]
 
 
@@ -167,10 +167,10 @@ async def test_wheel_speed_can_be_reduced_until_steering_is_reached(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE, reduce_wheel_speed_until_steering_reached=True)
     command(stand, 1.0, tan(1.0) / BASE)
     await stand.step(controller)
-    assert commanded(stand, "wheel") == pytest.approx([10.0 * cos(1.0) / cos(0.5235987755982988)])
+    assert joint_commands(stand, "wheel") == pytest.approx([10.0 * cos(1.0) / cos(0.5235987755982988)])
     stand.states["steer/position"].value = 1.0
     await stand.step(controller)
-    assert commanded(stand, "wheel") == pytest.approx([10.0])
+    assert joint_commands(stand, "wheel") == pytest.approx([10.0])
 
 
 async def test_chained_mode_accepts_reference_interfaces(stand):
@@ -179,10 +179,10 @@ async def test_chained_mode_accepts_reference_interfaces(stand):
     controller.is_chained = True
     controller.references[0].value, controller.references[1].value = 1.0, 0.0
     await stand.step(controller)
-    assert commanded(stand, "wheel") == [10.0]
+    assert joint_commands(stand, "wheel") == [10.0]
     assert all(isnan(reference.value) for reference in controller.references)
     await stand.step(controller)
-    assert commanded(stand, "wheel") == [0.0]
+    assert joint_commands(stand, "wheel") == [0.0]
 
 
 async def test_controller_state_is_published(stand):
@@ -201,15 +201,15 @@ async def test_deactivation_or_nan_command_stops_vehicle(stand):
     await stand.step(controller)
     command(stand, nan)
     await stand.step(controller)
-    assert commanded(stand, "wheel") == [0.0]
+    assert joint_commands(stand, "wheel") == [0.0]
     command(stand, 1.0)
     await stand.step(controller)
     controller.on_deactivate()
-    assert commanded(stand, "wheel") == [0.0]
+    assert joint_commands(stand, "wheel") == [0.0]
 
 
 @pytest.mark.parametrize(
-    ("kind", "sizes", "words"),
+    ("kind", "sizes", "message"),
     [
         (
             AckermannSteeringController,
@@ -220,7 +220,7 @@ async def test_deactivation_or_nan_command_stops_vehicle(stand):
         (BicycleSteeringController, BICYCLE | {"wheelbase": 0.0}, "'wheelbase' with the value 0 must be above 0"),
     ],
 )
-def test_invalid_parameters_fail_configuration(stand, kind, sizes, words):
+def test_invalid_parameters_fail_configuration(stand, kind, sizes, message):
     with pytest.raises(ControllerError) as error:
         stand.start(kind, NAME, **sizes)
-    assert words in str(error.value)
+    assert message in str(error.value)

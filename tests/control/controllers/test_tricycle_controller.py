@@ -8,7 +8,7 @@ import pytest
 from linkwright.control.controllers.controller import ControllerError
 from linkwright.control.controllers.registry import controller_class
 from linkwright.control.controllers.tricycle_controller import TricycleController
-from tests.control.controllers.driving import STEP, roll, stamped, twist
+from tests.control.controllers.driving import STEP, roll, stamped_twist, twist
 
 NAME = "fork"
 ROBOT = {"traction_joint_name": "wheel", "steering_joint_name": "steer", "wheelbase": 1.2, "wheel_radius": 0.1}
@@ -16,17 +16,17 @@ ROBOT = {"traction_joint_name": "wheel", "steering_joint_name": "steer", "wheelb
 
 @pytest.fixture
 def wheel(stand):
-    """A stand with a wheel that drives and is steered."""
+    """Return a stand with a driven and steered wheel."""
     stand.joint("wheel", commands=("velocity",), position=0.0, velocity=0.0)
     stand.joint("steer", commands=("position",), position=0.0)
     return stand
 
 
 def command(stand, *velocity: float) -> None:
-    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(0, *velocity))
+    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped_twist(0, *velocity))
 
 
-def commanded(stand) -> list[float]:
+def wheel_command(stand) -> list[float]:
     return [command.value for command in stand.commands.values()]
 
 
@@ -39,7 +39,7 @@ async def test_wheel_speed_matches_command_once_steered(wheel):
     command(wheel, 1.0, 0.8)
     await roll(wheel, controller, 2)
     angle = atan(0.96)
-    assert commanded(wheel) == pytest.approx([10.0 / cos(angle), angle])
+    assert wheel_command(wheel) == pytest.approx([10.0 / cos(angle), angle])
 
 
 async def test_wheel_is_slow_while_steering_angle_is_off(wheel):
@@ -47,10 +47,10 @@ async def test_wheel_is_slow_while_steering_angle_is_off(wheel):
     wheel.states["steer/position"].value = -0.2
     command(wheel, 0.0, 1.0)
     await wheel.step(controller)
-    assert commanded(wheel) == pytest.approx([12.0 * 0.01, pi / 2.0])
+    assert wheel_command(wheel) == pytest.approx([12.0 * 0.01, pi / 2.0])
     wheel.states["steer/position"].value = pi / 2.0 - 1.0
     await wheel.step(controller)
-    assert commanded(wheel)[0] == pytest.approx(12.0 * cos(1.0))
+    assert wheel_command(wheel)[0] == pytest.approx(12.0 * cos(1.0))
 
 
 @pytest.mark.parametrize("open_loop", [True, False])
@@ -96,16 +96,16 @@ async def test_command_expires_after_timeout_in_milliseconds(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT, cmd_vel_timeout=100)
     command(wheel, 1.0)
     await wheel.step(controller, 0.001, count=101)
-    assert commanded(wheel)[0] == pytest.approx(10.0)
+    assert wheel_command(wheel)[0] == pytest.approx(10.0)
     await wheel.step(controller, 0.001)
-    assert commanded(wheel) == [0.0, 0.0]
+    assert wheel_command(wheel) == [0.0, 0.0]
 
 
 async def test_humble_accepts_unstamped_commands(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT, use_stamped_vel=False)
     wheel.publish("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel", twist(1.0))
     await wheel.step(controller)
-    assert commanded(wheel)[0] == pytest.approx(10.0)
+    assert wheel_command(wheel)[0] == pytest.approx(10.0)
 
 
 async def test_limits_are_respected_and_ackermann_command_published(wheel):
@@ -119,15 +119,15 @@ async def test_limits_are_respected_and_ackermann_command_published(wheel):
     for number in range(300):
         command(wheel, *((1.0, 2.0), (-1.0, 1.0), (0.2, 0.0))[number // 50 % 3])
         await roll(wheel, controller)
-        speed, angle = commanded(wheel)
+        speed, angle = wheel_command(wheel)
         speeds.append(speed)
         angles.append(angle)
     assert max(map(abs, speeds)) == 8.0
     assert max(map(abs, angles)) == 0.5
-    for before, after in pairwise(speeds):
-        bound = 20.0 if abs(after) >= abs(before) else 40.0
-        assert abs(after - before) / STEP <= bound + 1e-9
-    assert all(abs(after - before) / STEP <= 1.0 + 1e-9 for before, after in pairwise(angles))
+    for old, new in pairwise(speeds):
+        bound = 20.0 if abs(new) >= abs(old) else 40.0
+        assert abs(new - old) / STEP <= bound + 1e-9
+    assert all(abs(new - old) / STEP <= 1.0 + 1e-9 for old, new in pairwise(angles))
     assert (commands[-1].speed, commands[-1].steering_angle) == pytest.approx((speeds[-1], angles[-1]))
 
 
@@ -136,7 +136,7 @@ async def test_deactivation_stops_wheel(wheel):
     command(wheel, 1.0, 0.2)
     await roll(wheel, controller)
     controller.on_deactivate()
-    assert commanded(wheel) == [0.0, 0.0]
+    assert wheel_command(wheel) == [0.0, 0.0]
 
 
 async def test_wheel_state_that_is_not_a_number_raises_error(wheel):
@@ -147,7 +147,7 @@ async def test_wheel_state_that_is_not_a_number_raises_error(wheel):
 
 
 @pytest.mark.parametrize(
-    ("parameters", "words"),
+    ("parameters", "message"),
     [
         ({"traction_joint_name": ""}, "Parameter 'traction_joint_name' cannot be empty"),
         ({"wheelbase": 0.0}, "Parameter 'wheelbase' with the value 0 must be above 0"),
@@ -162,7 +162,7 @@ async def test_wheel_state_that_is_not_a_number_raises_error(wheel):
         ),
     ],
 )
-def test_invalid_parameters_fail_configuration(wheel, parameters, words):
+def test_invalid_parameters_fail_configuration(wheel, parameters, message):
     with pytest.raises(ControllerError) as error:
         wheel.start(TricycleController, NAME, **ROBOT | parameters)
-    assert words in str(error.value)
+    assert message in str(error.value)

@@ -1,4 +1,4 @@
-"""Commands are kept within the limits of their joints."""
+"""Limits of joints, applied to their commands."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FORWARD = "forward_command_controller/ForwardCommandController"
 
 
 class Joint:
-    """A joint with one command; the states that are given do not follow it."""
+    """A joint with one command; its states do not follow the command."""
 
     def __init__(self, kind: str, states: dict[str, float] | None = None, **limits) -> None:
         self.command = CommandInterface("hip", kind)
@@ -34,7 +34,7 @@ class Joint:
         self.limiter = JointLimiter("hip", JointLimits(kinds=KINDS, **limits), {kind: self.command}, self.states)
 
     def send(self, value: float, period_s: float = 0.1) -> float:
-        """What becomes of a command."""
+        """Return the limited command."""
         self.command.value = value
         self.limiter.enforce(period_s, {self.command.name})
         return self.command.value
@@ -83,8 +83,8 @@ def test_soft_limits_reduce_velocity():
     assert hip.send(2.0) == pytest.approx(0.5)
     hip.states[POSITION].value = 0.9
     assert hip.send(2.0) == pytest.approx(-0.5)
-    pushed = Joint(EFFORT, {POSITION: 0.7, VELOCITY: 0.4}, effort=10.0, velocity=2.0, safety=safety)
-    assert pushed.send(9.0) == pytest.approx(1.0)
+    joint_near_limit = Joint(EFFORT, {POSITION: 0.7, VELOCITY: 0.4}, effort=10.0, velocity=2.0, safety=safety)
+    assert joint_near_limit.send(9.0) == pytest.approx(1.0)
 
 
 def test_nan_and_unclaimed_commands_are_not_limited():
@@ -123,5 +123,5 @@ async def test_manager_enforces_command_limits_if_enabled(graph, log, monkeypatc
         controller_manager.cycle(cycle * 10_000_000, 0.01)
     hip, knee = controller_manager.resources.commands(["hip/position", "knee/position"])
     assert (hip.value, knee.value) == ((3.0 if limited else 9.0), 9.0)
-    logged = [record.text for record in log if "is outside its limits" in record.text]
-    assert len(logged) == limited
+    texts = [record.text for record in log if "is outside its limits" in record.text]
+    assert len(texts) == limited

@@ -5,13 +5,13 @@ import pytest
 from linkwright.control.hardware.component import HardwareError
 from linkwright.control.hardware.mock import GenericSystem
 from linkwright.graph import Graph
-from tests.control.robots import described, joint, robot
+from tests.control.robots import joint, read_hardware, robot
 
 
 @pytest.fixture
 def load_hardware(graph: Graph):
     def make(text: str) -> GenericSystem:
-        (hardware,), _ = described(text)
+        (hardware,), _ = read_hardware(text)
         return GenericSystem(hardware, graph.get_logger("mock"))
 
     return make

@@ -1,4 +1,4 @@
-"""An arm with mock hardware behind a manager: trajectories by the action, from request to result."""
+"""An arm with mock hardware and a controller manager: trajectories by the action, from goal to result."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SUCCEEDED, CANCELED = 4, 5
 
 
 class Robot:
-    """A robot with an active controller of trajectories."""
+    """A robot with an active trajectory controller."""
 
     def __init__(self, graph: Any) -> None:
         self.graph, self.node, self.time_ns = graph, graph.create_node("audience"), 0
@@ -63,10 +63,10 @@ async def test_goal_can_be_canceled_on_event_loop(graph):
     goal.cancel()
     await arm.advance(0.1)
     assert goal.status == CANCELED
-    held = arm.positions()
+    stop_positions = arm.positions()
     await arm.advance(0.5)
-    assert arm.positions() == pytest.approx(held)
-    assert held[0] == pytest.approx(0.7, abs=0.03)
+    assert arm.positions() == pytest.approx(stop_positions)
+    assert stop_positions[0] == pytest.approx(0.7, abs=0.03)
 
 
 async def test_deactivation_ends_goal_and_allows_new_one(graph):
@@ -76,9 +76,9 @@ async def test_deactivation_ends_goal_and_allows_new_one(graph):
     assert arm.manager.switch([], ["arm"], STRICT)[0]
     await arm.advance(0.1)
     assert first.status == CANCELED
-    late = arm.send_goal((1.0, [0.0, 0.0]))
+    new_goal = arm.send_goal((1.0, [0.0, 0.0]))
     await arm.advance(0.1)
-    assert late.accepted is False
+    assert new_goal.accepted is False
     assert arm.manager.switch(["arm"], [], STRICT)[0]
     second = arm.send_goal((0.5, [0.0, 0.0]))
     await arm.advance(0.7)

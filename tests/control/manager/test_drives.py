@@ -1,4 +1,4 @@
-"""A drive with mock hardware behind a manager: through PID controllers in chained mode, and what stops it."""
+"""A drive with mock hardware and a controller manager: PID controllers in chained mode, and stops."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.control.manager.switching import STRICT
 from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE
-from tests.control.controllers.driving import stamped
+from tests.control.controllers.driving import stamped_twist
 from tests.control.robots import joint, manager, robot
 
 WHEELS = robot(joint("left", "velocity") + joint("right", "velocity"), joints=("left", "right"))
@@ -24,7 +24,9 @@ class Base:
 
     def __init__(self, graph: Any, types: dict[str, str], **parameters: dict[str, Any]) -> None:
         self.graph, self.node, self.time_ns = graph, graph.create_node("audience"), 0
-        self.manager = manager(graph, WHEELS, {name: {"type": kind} for name, kind in types.items()}, **parameters)
+        self.manager = manager(
+            graph, WHEELS, {name: {"type": controller_type} for name, controller_type in types.items()}, **parameters
+        )
         for name in types:
             assert self.manager.load(name)
             assert self.manager.configure(name)
@@ -32,9 +34,9 @@ class Base:
         self.odometry: list[Any] = []
         self.node.create_subscription("nav_msgs/msg/Odometry", "/base/odom", self.odometry.append, 1000)
 
-    async def drive(self, forward: float, turning: float, updates: int) -> None:
+    async def drive(self, forward: float, yaw_rate: float, updates: int) -> None:
         publisher = self.node.create_publisher("geometry_msgs/msg/TwistStamped", "/base/cmd_vel", 10)
-        publisher.publish(stamped(self.time_ns, forward, turning))
+        publisher.publish(stamped_twist(self.time_ns, forward, yaw_rate))
         for _ in range(updates):
             await self.graph.settle()
             self.time_ns += 10_000_000
@@ -66,8 +68,8 @@ async def test_drive_commands_pid_controllers_in_chained_mode(graph):
     await base.drive(0.0, 0.0, 2)
     await base.drive(1.0, 0.5, 301)
     assert base.wheels() == pytest.approx([9.0, 11.0])
-    place, turn = base.odometry[-1].pose.pose.position, 0.5 * 3.0
-    assert (place.x, place.y) == pytest.approx((2.0 * sin(turn), 2.0 * (1.0 - cos(turn))), abs=0.05)
+    position, yaw = base.odometry[-1].pose.pose.position, 0.5 * 3.0
+    assert (position.x, position.y) == pytest.approx((2.0 * sin(yaw), 2.0 * (1.0 - cos(yaw))), abs=0.05)
     assert base.manager.controllers["pid_left"].controller.is_chained
 
 

@@ -1,4 +1,4 @@
-"""A user's hardware that stops while controllers run: what it takes along, what goes on, and how it comes back."""
+"""A user's hardware that fails while controllers run: which controllers stop, which continue, and the recovery."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.loading import extensions
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions
-from tests.control.manager.test_ros2_control_node import advance, ask
+from tests.control.manager.test_ros2_control_node import advance, call_service
 from tests.control.robots import joint, robot
 
 State = get_message("lifecycle_msgs/msg/State")
@@ -37,9 +37,9 @@ TWO = (
 
 
 class Arm(Hardware):
-    """An arm as a user's package has it, whose cable may be out."""
+    """An arm as in a user's package; its cable can be unplugged."""
 
-    wrong: Exception | None = None
+    fault: Exception | None = None
     life: tuple[str, ...] = ()
     sent: float = 0.0
 
@@ -50,8 +50,8 @@ class Arm(Hardware):
         type(self).life += ("error",)
 
     def read(self, time_ns: int, period_s: float) -> None:
-        if self.wrong is not None:
-            raise self.wrong
+        if self.fault is not None:
+            raise self.fault
 
     def write(self, time_ns: int, period_s: float) -> None:
         type(self).sent = self.commands[0].value
@@ -59,21 +59,21 @@ class Arm(Hardware):
 
 @pytest.fixture
 def arm(tmp_path, monkeypatch) -> Iterator[type[Arm]]:
-    """The hardware of an installed package."""
+    """Install the hardware's package."""
     metadata = tmp_path / "my_robot-1.0.dist-info"
     metadata.mkdir()
     (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: my_robot\nVersion: 1.0\n")
     (metadata / "entry_points.txt").write_text(f"[linkwright.hardware]\nmy_robot/Arm = {__name__}:Arm\n")
     monkeypatch.syspath_prepend(tmp_path)
-    for name in ("wrong", "life", "sent"):
+    for name in ("fault", "life", "sent"):
         monkeypatch.setattr(Arm, name, getattr(Arm, name))
     extensions._all_groups.cache_clear()
     yield Arm
     extensions._all_groups.cache_clear()
 
 
-@pytest.mark.parametrize("wrong", [HardwareError("the cable is out"), OSError("the cable is out")])
-async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(graph, clock, tmp_path, logged, arm, wrong):
+@pytest.mark.parametrize("fault", [HardwareError("the cable is out"), OSError("the cable is out")])
+async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(graph, clock, tmp_path, logged, arm, fault):
     path = tmp_path / "controllers.yaml"
     path.write_text(FILE)
     words = ["--ros-args", "--params-file", str(path)]
@@ -81,9 +81,11 @@ async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(grap
     running = Ros2ControlNode(graph, options)
     node = graph.create_node("audience")
     for name in ("hips", "knees"):
-        assert (await ask(graph, node, "load_controller", name=name)).ok
-        assert (await ask(graph, node, "configure_controller", name=name)).ok
-    assert (await ask(graph, node, "switch_controller", activate_controllers=["hips", "knees"], strictness=2)).ok
+        assert (await call_service(graph, node, "load_controller", name=name)).ok
+        assert (await call_service(graph, node, "configure_controller", name=name)).ok
+    assert (
+        await call_service(graph, node, "switch_controller", activate_controllers=["hips", "knees"], strictness=2)
+    ).ok
     array = get_message("std_msgs/msg/Float64MultiArray")
     publishers = {name: node.create_publisher(array, f"/{name}/commands", 10) for name in ("hips", "knees")}
     for publisher in publishers.values():
@@ -91,11 +93,11 @@ async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(grap
     await advance(graph, clock, 3)
     assert arm.sent == 2.0
 
-    arm.wrong = wrong
+    arm.fault = fault
     await advance(graph, clock, 3)
-    controllers = (await ask(graph, node, "list_controllers")).controller
+    controllers = (await call_service(graph, node, "list_controllers")).controller
     assert {controller.name: controller.state for controller in controllers} == {"hips": "inactive", "knees": "active"}
-    components = (await ask(graph, node, "list_hardware_components")).component
+    components = (await call_service(graph, node, "list_hardware_components")).component
     assert {component.name: component.state.label for component in components} == {
         "arm": "unconfigured",
         "leg": "active",
@@ -110,12 +112,12 @@ async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(grap
     leg = running._manager.resources.components["leg"]
     assert [command.value for command in leg.commands] == [3.0]
 
-    response = await ask(graph, node, "switch_controller", activate_controllers=["hips"], strictness=2)
+    response = await call_service(graph, node, "switch_controller", activate_controllers=["hips"], strictness=2)
     assert not response.ok
-    arm.wrong = None
+    arm.fault = None
     set_state = {"name": "arm", "target_state": State(id=0, label="active")}
-    assert (await ask(graph, node, "set_hardware_component_state", **set_state)).ok
-    assert (await ask(graph, node, "switch_controller", activate_controllers=["hips"], strictness=2)).ok
+    assert (await call_service(graph, node, "set_hardware_component_state", **set_state)).ok
+    assert (await call_service(graph, node, "switch_controller", activate_controllers=["hips"], strictness=2)).ok
     publishers["hips"].publish(array(data=[1.0]))
     await advance(graph, clock, 3)
     assert (arm.sent, arm.life) == (1.0, ("on", "error", "on"))

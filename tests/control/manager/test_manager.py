@@ -15,8 +15,8 @@ FORWARD = "forward_command_controller/ForwardCommandController"
 POSITIONS = {"type": FORWARD, "joints": ["hip", "knee"], "interface_name": "position"}
 
 
-class Low(Controller):
-    """Moves the hip as its reference says."""
+class LowController(Controller):
+    """A controller that moves the hip by its reference."""
 
     fault: BaseException | None = None
     value = 0.5
@@ -36,8 +36,8 @@ class Low(Controller):
         self.commands[0].value = self.references[0].value
 
 
-class High(Controller):
-    """Commands the reference of ``low``."""
+class HighController(Controller):
+    """A controller that commands the reference of ``low``."""
 
     def command_interfaces(self):
         return ["low/speed"]
@@ -46,35 +46,42 @@ class High(Controller):
         self.commands[0].value = 2.0
 
 
-class Reluctant(Controller):
+class ReluctantController(Controller):
     def on_configure(self):
         raise ControllerError("it does not like it here")
 
 
-class Broken(Controller):
+class BrokenController(Controller):
     def __init__(self, place):
         raise ZeroDivisionError("in the beginning")
 
 
 @pytest.fixture
 def create_manager(graph, monkeypatch):
-    """A manager with controllers of this file, too."""
-    ours = {"t/Low": Low, "t/High": High, "t/Reluctant": Reluctant, "t/Broken": Broken}
+    """Return a function that creates a manager with the controllers of this file."""
+    ours = {
+        "t/Low": LowController,
+        "t/High": HighController,
+        "t/Reluctant": ReluctantController,
+        "t/Broken": BrokenController,
+    }
     original = registry.controller_class
 
-    def found(name):
+    def find_class(name):
         return ours.get(name) or original(name)
 
-    monkeypatch.setattr("linkwright.control.manager.manager.controller_class", found)
+    monkeypatch.setattr("linkwright.control.manager.manager.controller_class", find_class)
 
     def make(types=None, text=CONTROL, **parameters):
         types = {"low": "t/Low", "high": "t/High"} if types is None else types
-        return manager(graph, text, {name: {"type": kind} for name, kind in types.items()}, **parameters)
+        return manager(
+            graph, text, {name: {"type": controller_type} for name, controller_type in types.items()}, **parameters
+        )
 
     return make
 
 
-def started(manager, *names):
+def start_controllers(manager, *names):
     for name in names:
         assert manager.load(name)
         assert manager.configure(name)
@@ -86,7 +93,7 @@ def value(manager, name):
 
 async def test_controller_lifecycle(create_manager, logged):
     controller_manager = create_manager({"forward": FORWARD}, forward={"joints": ["hip"], "interface_name": "position"})
-    started(controller_manager, "forward")
+    start_controllers(controller_manager, "forward")
     assert controller_manager.switch(["forward"], [], STRICT) == (True, "Successfully switched controllers!")
     assert controller_manager.resources.claims == {"hip/position": "forward"}
     controller_manager.controllers["forward"].controller._command = [0.7]
@@ -128,7 +135,7 @@ async def test_controller_can_refuse_transitions(create_manager, logged):
 
 async def test_command_interface_has_one_owner(create_manager, logged):
     controller_manager = create_manager({"one": FORWARD, "two": FORWARD}, one=POSITIONS, two=POSITIONS)
-    started(controller_manager, "one", "two")
+    start_controllers(controller_manager, "one", "two")
     assert controller_manager.switch(["one"], [], STRICT)[0]
     text = "Resource conflict for controller 'two'. Command interface 'hip/position' is already claimed."
     assert controller_manager.switch(["two"], [], STRICT) == (False, text)
@@ -141,14 +148,14 @@ async def test_command_interface_has_one_owner(create_manager, logged):
 
 async def test_unknown_interface_is_reported(create_manager, logged):
     controller_manager = create_manager({"one": FORWARD}, one={**POSITIONS, "interface_name": "effort"})
-    started(controller_manager, "one")
+    start_controllers(controller_manager, "one")
     text = "Can't activate controller 'one': Command interface with key 'hip/effort' does not exist"
     assert controller_manager.switch(["one"], [], STRICT) == (False, text)
 
 
 async def test_strict_switch_fails_where_best_effort_continues(create_manager, logged):
     controller_manager = create_manager()
-    started(controller_manager, "low")
+    start_controllers(controller_manager, "low")
     assert not controller_manager.switch(["low", "nobody"], [], STRICT)[0]
     assert controller_manager.controllers["low"].is_inactive
     assert controller_manager.switch(["low", "nobody"], [], BEST_EFFORT)[0]
@@ -162,7 +169,7 @@ async def test_strict_switch_fails_where_best_effort_continues(create_manager, l
 
 async def test_chained_controllers_are_ordered_and_activated(create_manager):
     controller_manager = create_manager()
-    started(controller_manager, "low", "high")
+    start_controllers(controller_manager, "low", "high")
     assert list(controller_manager.controllers) == ["high", "low"]
     assert not controller_manager.switch(["high"], [], STRICT)[0]
     assert controller_manager.switch(["low"], [], STRICT)[0]
@@ -181,7 +188,7 @@ async def test_chained_controllers_are_ordered_and_activated(create_manager):
 
 async def test_chain_is_activated_together_or_separately(create_manager):
     controller_manager = create_manager()
-    started(controller_manager, "low", "high")
+    start_controllers(controller_manager, "low", "high")
     assert controller_manager.switch(["high", "low"], [], STRICT)[0]
     assert controller_manager.controllers["low"].controller.is_chained
     assert controller_manager.switch([], ["high", "low"], STRICT)[0]
@@ -191,7 +198,7 @@ async def test_chain_is_activated_together_or_separately(create_manager):
 
 async def test_controller_that_raises_is_deactivated_and_joints_stop(create_manager, logged):
     controller_manager = create_manager()
-    started(controller_manager, "low", "high")
+    start_controllers(controller_manager, "low", "high")
     controller_manager.switch(["high", "low"], [], STRICT)
     controller_manager.cycle(1, 0.01)
     controller_manager.controllers["low"].controller.fault = RuntimeError("out of luck")
@@ -207,7 +214,7 @@ async def test_controller_that_raises_is_deactivated_and_joints_stop(create_mana
 @pytest.mark.parametrize("wrong", [nan, inf])
 async def test_nan_commands_do_not_reach_hardware(create_manager, logged, wrong):
     controller_manager = create_manager()
-    started(controller_manager, "low")
+    start_controllers(controller_manager, "low")
     controller_manager.switch(["low"], [], STRICT)
     controller_manager.cycle(1, 0.01)
     controller_manager.controllers["low"].controller.value = wrong
@@ -218,7 +225,7 @@ async def test_nan_commands_do_not_reach_hardware(create_manager, logged, wrong)
 
 async def test_commands_with_overflowing_sum_reach_hardware(create_manager, logged):
     controller_manager = create_manager()
-    started(controller_manager, "low")
+    start_controllers(controller_manager, "low")
     controller_manager.switch(["low"], [], STRICT)
     loaded = controller_manager.controllers["low"]
     loaded.controller.commands *= 2  # the sum of both is not a number
@@ -230,7 +237,7 @@ async def test_commands_with_overflowing_sum_reach_hardware(create_manager, logg
 
 async def test_failing_hardware_stops_its_controllers(create_manager, logged):
     controller_manager = create_manager()
-    started(controller_manager, "low", "high")
+    start_controllers(controller_manager, "low", "high")
     controller_manager.switch(["high", "low"], [], STRICT)
     command = controller_manager.resources.commands(["hip/velocity"])[0]
     controller_manager.cycle(1, 0.01)
@@ -250,7 +257,7 @@ async def test_failing_hardware_stops_its_controllers(create_manager, logged):
 
 async def test_hardware_lifecycle(create_manager):
     controller_manager = create_manager()
-    started(controller_manager, "low")
+    start_controllers(controller_manager, "low")
     controller_manager.switch(["low"], [], STRICT)
     assert controller_manager.set_hardware_state("arm", INACTIVE)
     assert controller_manager.controllers["low"].is_inactive
@@ -260,7 +267,7 @@ async def test_hardware_lifecycle(create_manager):
 
 async def test_slower_controller_is_updated_at_its_own_rate(create_manager):
     controller_manager = create_manager({"low": "t/Low"}, low={"update_rate": 50})
-    started(controller_manager, "low")
+    start_controllers(controller_manager, "low")
     times = []
     controller_manager.controllers["low"].controller.update = lambda time_ns, period_s: times.append(
         (time_ns, period_s)
@@ -291,13 +298,12 @@ async def test_async_controllers_and_hardware_run_synchronously_with_notice(
     monkeypatch.setenv("ROS_DISTRO", distribution)
     text = CONTROL.replace("type='system'", "type='system' is_async='true'")
     controller_manager = create_manager({"low": "t/Low"}, text, low={"is_async": True})
-    started(controller_manager, "low")
+    start_controllers(controller_manager, "low")
     assert controller_manager.switch(["low"], [], STRICT)[0]
     controller_manager.cycle(1, 0.01)
     assert value(controller_manager, "hip/velocity") == 0.5
-    logged = [line for line in logged("INFO") if "is_async" in line]
+    lines = [line for line in logged("INFO") if "is_async" in line]
     assert (
-        logged[0]
-        == "hardware 'arm': is_async is not supported, so the hardware is read and written in the control loop"
+        lines[0] == "hardware 'arm': is_async is not supported, so the hardware is read and written in the control loop"
     )
-    assert len(logged) == (1 if distribution == "humble" else 2)
+    assert len(lines) == (1 if distribution == "humble" else 2)

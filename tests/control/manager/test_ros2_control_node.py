@@ -33,10 +33,12 @@ def start(graph, tmp_path, text=None, **parameters):
     return Ros2ControlNode(graph, NodeOptions(parameters=parameters, arguments=words, library=DescriptionLibrary()))
 
 
-async def ask(graph, node, service, **fields):
-    kind = get_service("controller_manager_msgs/srv/" + "".join(word.capitalize() for word in service.split("_")))
-    client = node.create_client(kind, f"/controller_manager/{service}")
-    future = client.call_async(kind.Request(**fields))
+async def call_service(graph, node, service, **fields):
+    service_type = get_service(
+        "controller_manager_msgs/srv/" + "".join(part.capitalize() for part in service.split("_"))
+    )
+    client = node.create_client(service_type, f"/controller_manager/{service}")
+    future = client.call_async(service_type.Request(**fields))
     await graph.settle()
     return future.result()
 
@@ -48,7 +50,7 @@ async def advance(graph, clock, count):
 
 
 async def test_controllers_are_managed_by_services_and_topics(graph, clock, tmp_path, logged):
-    running = start(graph, tmp_path, CONTROL)
+    node_under_test = start(graph, tmp_path, CONTROL)
     node = graph.create_node("audience")
     states, activity = [], []
     node.create_subscription("sensor_msgs/msg/JointState", "/joint_states", states.append, 10)
@@ -61,88 +63,90 @@ async def test_controllers_are_managed_by_services_and_topics(graph, clock, tmp_
     )
     await graph.settle()
     for name in ("broadcaster", "positions"):
-        assert (await ask(graph, node, "load_controller", name=name)).ok
-        assert (await ask(graph, node, "configure_controller", name=name)).ok
-    switched = await ask(
+        assert (await call_service(graph, node, "load_controller", name=name)).ok
+        assert (await call_service(graph, node, "configure_controller", name=name)).ok
+    response = await call_service(
         graph, node, "switch_controller", activate_controllers=["broadcaster", "positions"], strictness=2
     )
-    assert switched.ok, switched.message
+    assert response.ok, response.message
     await advance(graph, clock, 2)
     assert list(states[-1].position) == [0.5, 0.0]
-    controllers = (await ask(graph, node, "list_controllers")).controller
+    controllers = (await call_service(graph, node, "list_controllers")).controller
     assert [(controller.name, controller.state, list(controller.claimed_interfaces)) for controller in controllers] == [
         ("broadcaster", "active", []),
         ("positions", "active", ["hip/position", "knee/position"]),
     ]
     assert [controller.state.label for controller in activity[-1].controllers] == ["active", "active"]
-    components = (await ask(graph, node, "list_hardware_components")).component
+    components = (await call_service(graph, node, "list_hardware_components")).component
     assert [(component.name, component.plugin_name, component.state.label) for component in components] == [
         ("arm", "mock_components/GenericSystem", "active")
     ]
-    interfaces = await ask(graph, node, "list_hardware_interfaces")
+    interfaces = await call_service(graph, node, "list_hardware_interfaces")
     assert [
         (command_interface.name, command_interface.is_claimed) for command_interface in interfaces.command_interfaces
     ] == [
         ("hip/position", True),
         ("knee/position", True),
     ]
-    assert len((await ask(graph, node, "list_controller_types")).types) >= 6
-    assert (await ask(graph, node, "reload_controller_libraries", force_kill=True)).ok
-    assert (await ask(graph, node, "list_controllers")).controller == []
-    running.close()
+    assert len((await call_service(graph, node, "list_controller_types")).types) >= 6
+    assert (await call_service(graph, node, "reload_controller_libraries", force_kill=True)).ok
+    assert (await call_service(graph, node, "list_controllers")).controller == []
+    node_under_test.close()
 
 
 async def test_process_remappings_apply_to_controllers(graph, clock, tmp_path):
-    running = start(graph, tmp_path, CONTROL)
+    node_under_test = start(graph, tmp_path, CONTROL)
     node = graph.create_node("audience")
     states = []
     node.create_subscription("sensor_msgs/msg/JointState", "/joint_states", states.append, 10)
-    wanted = node.create_publisher("std_msgs/msg/Float64MultiArray", "/wanted", 10)
+    publisher = node.create_publisher("std_msgs/msg/Float64MultiArray", "/wanted", 10)
     for name in ("broadcaster", "positions"):
-        await ask(graph, node, "load_controller", name=name)
-        await ask(graph, node, "configure_controller", name=name)
-    await ask(graph, node, "switch_controller", activate_controllers=["broadcaster", "positions"], strictness=2)
-    wanted.publish(wanted.msg_type(data=[1.0, -1.0]))
+        await call_service(graph, node, "load_controller", name=name)
+        await call_service(graph, node, "configure_controller", name=name)
+    await call_service(
+        graph, node, "switch_controller", activate_controllers=["broadcaster", "positions"], strictness=2
+    )
+    publisher.publish(publisher.msg_type(data=[1.0, -1.0]))
     await advance(graph, clock, 3)
     assert list(states[-1].position) == [1.0, -1.0]
-    running.close()
+    node_under_test.close()
 
 
 async def test_description_is_received_from_topic(graph, clock, tmp_path, logged):
-    running = start(graph, tmp_path)
+    node_under_test = start(graph, tmp_path)
     node = graph.create_node("audience")
     node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String(data=CONTROL))
     await graph.settle()
-    components = (await ask(graph, node, "list_hardware_components")).component
+    components = (await call_service(graph, node, "list_hardware_components")).component
     assert [component.name for component in components] == ["arm"]
-    set_state = await ask(graph, node, "set_hardware_component_state", name="nobody")
+    set_state = await call_service(graph, node, "set_hardware_component_state", name="nobody")
     assert not set_state.ok
     assert logged("ERROR") == ["hardware component with name 'nobody' does not exist"]
-    running.close()
+    node_under_test.close()
 
 
 async def test_malformed_description_is_reported_and_next_one_used(graph, clock, tmp_path, logged):
-    running = start(graph, tmp_path)
+    node_under_test = start(graph, tmp_path)
     publisher = graph.create_node("audience").create_publisher(String, "/robot_description", DESCRIPTION_QOS)
     publisher.publish(String(data="<robot"))
     await graph.settle()
     assert logged("ERROR")[0].startswith("The published robot description file (urdf) seems not to be genuine")
     publisher.publish(String(data=CONTROL))
     await graph.settle()
-    assert list(running._manager.resources.components) == ["arm"]
-    running.close()
+    assert list(node_under_test._manager.resources.components) == ["arm"]
+    node_under_test.close()
 
 
-def cycles_of(running, during=lambda: None):
-    """The periods in seconds that the manager's cycles are told, from now on; something may happen during each."""
-    periods, cycle = [], running._manager.cycle
+def cycles_of(node_under_test, during_cycle=lambda: None):
+    """Return the periods in seconds of the manager's next cycles; `during` is called in each."""
+    periods, cycle = [], node_under_test._manager.cycle
 
-    def counted(time_ns, period_s):
+    def count_cycle(time_ns, period_s):
         periods.append(period_s)
         cycle(time_ns, period_s)
-        during()
+        during_cycle()
 
-    running._manager.cycle = counted
+    node_under_test._manager.cycle = count_cycle
     return periods
 
 
@@ -163,34 +167,34 @@ OVERRUN = (
 async def test_missed_updates_are_skipped_with_warning_or_caught_up(
     graph, clock, tmp_path, logged, parameters, then, message
 ):
-    running = start(graph, tmp_path, CONTROL, **parameters)
+    node_under_test = start(graph, tmp_path, CONTROL, **parameters)
     await graph.settle()
-    before = logged("WARN")
+    warnings_before = logged("WARN")
     slow = iter([0.0, 0.025])
-    periods = cycles_of(running, lambda: clock._move_to(clock.steady_ns() + round(next(slow, 0.0) * 1e9)))
+    periods = cycles_of(node_under_test, lambda: clock._move_to(clock.steady_ns() + round(next(slow, 0.0) * 1e9)))
     await clock.advance(0.06)
     assert periods == [0.01, 0.01, *then]
-    assert logged("WARN") == before + message
-    running.close()
+    assert logged("WARN") == warnings_before + message
+    node_under_test.close()
 
 
 async def test_simulated_time_jump_is_not_an_overrun(graph, clock, tmp_path, logged):
-    running = start(graph, tmp_path, CONTROL, use_sim_time=True)
+    node_under_test = start(graph, tmp_path, CONTROL, use_sim_time=True)
     await graph.settle()
-    time = running._node.get_clock()
+    time = node_under_test._node.get_clock()
     time.override(1_000_000_000)
     await graph.settle()
-    periods = cycles_of(running)
-    before = len(logged("WARN"))
+    periods = cycles_of(node_under_test)
+    count_before = len(logged("WARN"))
     for now_ns in (1_010_000_000, 1_050_000_000, 20_000_000, 30_000_000, 40_000_000):
         time.override(now_ns)
         await graph.settle()
     assert periods == [0.01, 0.04, 0.01, 0.01]
-    assert logged("WARN")[before:] == []
+    assert logged("WARN")[count_before:] == []
     time.set_ros_time_is_active(False)
     await clock.advance(0.01)
     assert periods[4:] == [0.01]
-    running.close()
+    node_under_test.close()
 
 
 @pytest.mark.parametrize(

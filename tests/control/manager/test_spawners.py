@@ -18,33 +18,33 @@ positions:
 
 
 async def run(graph, program, *words):
-    """The status of a program."""
-    running = program(graph, NodeOptions(arguments=list(words)))
+    """Run a program, and return its exit status."""
+    program_node = program(graph, NodeOptions(arguments=list(words)))
     await graph.settle()
-    status = running.finished.result() if running.finished.done() else None
-    running.close()
+    status = program_node.finished.result() if program_node.finished.done() else None
+    program_node.close()
     return status
 
 
-def states(running):
-    return {name: loaded.controller.state.label for name, loaded in running._manager.controllers.items()}
+def states(manager_node):
+    return {name: loaded.controller.state.label for name, loaded in manager_node._manager.controllers.items()}
 
 
 async def test_controllers_are_spawned_and_unspawned(graph, tmp_path, logged):
-    running = start(graph, tmp_path, CONTROL)
+    manager_node = start(graph, tmp_path, CONTROL)
     assert await run(graph, Spawner, "broadcaster", "positions", "-c", "controller_manager") == 0
-    assert states(running) == {"broadcaster": "active", "positions": "active"}
-    logged = [line for line in logged("INFO") if line.startswith(("Loaded", "Configured and"))]
-    assert logged == [
+    assert states(manager_node) == {"broadcaster": "active", "positions": "active"}
+    lines = [line for line in logged("INFO") if line.startswith(("Loaded", "Configured and"))]
+    assert lines == [
         "Loaded broadcaster",
         "Configured and activated broadcaster",
         "Loaded positions",
         "Configured and activated positions",
     ]
     assert await run(graph, Unspawner, "positions") == 0
-    assert states(running) == {"broadcaster": "active"}
+    assert states(manager_node) == {"broadcaster": "active"}
     assert await run(graph, Unspawner, "positions") == 1
-    running.close()
+    manager_node.close()
 
 
 @pytest.mark.parametrize(
@@ -52,40 +52,42 @@ async def test_controllers_are_spawned_and_unspawned(graph, tmp_path, logged):
     [("--load-only", "unconfigured"), ("--inactive", "inactive"), ("--activate-as-group", "active")],
 )
 async def test_spawner_options_select_final_state(graph, tmp_path, option, state):
-    running = start(graph, tmp_path, CONTROL)
+    manager_node = start(graph, tmp_path, CONTROL)
     assert await run(graph, Spawner, "broadcaster", option) == 0
-    assert states(running) == {"broadcaster": state}
-    running.close()
+    assert states(manager_node) == {"broadcaster": state}
+    manager_node.close()
 
 
 async def test_spawner_accepts_parameter_file_and_remappings(graph, tmp_path, logged):
-    running = start(graph, tmp_path, CONTROL)
+    manager_node = start(graph, tmp_path, CONTROL)
     path = tmp_path / "own.yaml"
     path.write_text(OWN)
-    words = ("--param-file", str(path), "--controller-ros-args", "-r ~/commands:=/other")
-    assert await run(graph, Spawner, "positions", *words) == 0
-    assert running._manager.resources.claims == {"knee/position": "positions"}
+    arguments = ("--param-file", str(path), "--controller-ros-args", "-r ~/commands:=/other")
+    assert await run(graph, Spawner, "positions", *arguments) == 0
+    assert manager_node._manager.resources.claims == {"knee/position": "positions"}
     assert "/other" in graph.topics()
-    running.close()
+    manager_node.close()
 
 
-@pytest.mark.parametrize("words", [("", "broadcaster"), ("broadcaster", "--namespace", "", "-c", "controller_manager")])
-async def test_spawner_ignores_empty_arguments(graph, tmp_path, words):
-    running = start(graph, tmp_path, CONTROL)
-    assert await run(graph, Spawner, *words) == 0
-    assert states(running) == {"broadcaster": "active"}
-    running.close()
+@pytest.mark.parametrize(
+    "arguments", [("", "broadcaster"), ("broadcaster", "--namespace", "", "-c", "controller_manager")]
+)
+async def test_spawner_ignores_empty_arguments(graph, tmp_path, arguments):
+    manager_node = start(graph, tmp_path, CONTROL)
+    assert await run(graph, Spawner, *arguments) == 0
+    assert states(manager_node) == {"broadcaster": "active"}
+    manager_node.close()
 
 
 async def test_spawner_failures_are_reported(graph, tmp_path, logged):
-    running = start(graph, tmp_path, CONTROL)
+    manager_node = start(graph, tmp_path, CONTROL)
     assert await run(graph, Spawner, "nobody") == 1
     assert logged("FATAL") == ["Failed loading controller nobody"]
     with pytest.raises(LinkwrightError, match=r"'/no/file\.yaml' does not exist"):
         Spawner(graph, NodeOptions(arguments=["broadcaster", "-p", "/no/file.yaml"]))
     with pytest.raises(LinkwrightError, match="--no-option"):
         Spawner(graph, NodeOptions(arguments=["broadcaster", "--no-option"]))
-    running.close()
+    manager_node.close()
 
 
 async def test_spawner_waits_for_controller_manager(graph, clock, tmp_path, logged):
@@ -94,11 +96,11 @@ async def test_spawner_waits_for_controller_manager(graph, clock, tmp_path, logg
     assert logged("INFO") == ["waiting for service /controller_manager/list_controllers to become available..."]
     await clock.advance(11.0)
     assert logged("WARN") == ["Could not contact service /controller_manager/list_controllers"]
-    running = start(graph, tmp_path, CONTROL)
+    manager_node = start(graph, tmp_path, CONTROL)
     await graph.settle()
     assert spawner.finished.result() == 0
     spawner.close()
-    running.close()
+    manager_node.close()
 
 
 async def test_controller_manager_timeout_ends_waiting(graph, clock, logged):
@@ -111,21 +113,21 @@ async def test_controller_manager_timeout_ends_waiting(graph, clock, logged):
 
 
 async def test_unload_on_kill_removes_controllers(graph, tmp_path):
-    running = start(graph, tmp_path, CONTROL)
+    manager_node = start(graph, tmp_path, CONTROL)
     spawner = Spawner(graph, NodeOptions(arguments=["broadcaster", "-u"]))
     await graph.settle()
-    assert states(running) == {"broadcaster": "active"}
+    assert states(manager_node) == {"broadcaster": "active"}
     spawner.close()
     await graph.settle()
-    assert states(running) == {}
-    running.close()
+    assert states(manager_node) == {}
+    manager_node.close()
 
 
 async def test_hardware_is_spawned(graph, tmp_path, logged):
-    running = start(graph, tmp_path, CONTROL, hardware_components_initial_state={"unconfigured": ["arm"]})
+    manager_node = start(graph, tmp_path, CONTROL, hardware_components_initial_state={"unconfigured": ["arm"]})
     assert await run(graph, HardwareSpawner, "arm", "--configure") == 0
-    assert running._manager.resources.components["arm"].state.label == "inactive"
+    assert manager_node._manager.resources.components["arm"].state.label == "inactive"
     assert await run(graph, HardwareSpawner, "arm", "leg", "--activate") == 1
-    assert running._manager.resources.components["arm"].state.label == "active"
+    assert manager_node._manager.resources.components["arm"].state.label == "active"
     assert logged("WARN")[1:] == ["Hardware Component is not loaded - state can not be changed."]
-    running.close()
+    manager_node.close()

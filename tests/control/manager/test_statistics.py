@@ -1,4 +1,4 @@
-"""~/statistics of the manager: how long controllers and hardware take, for whom it may concern."""
+"""The manager's ~/statistics: the durations of controllers and hardware, for subscribers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.control.hardware.timing import Timing
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
-from tests.control.manager.test_ros2_control_node import CONTROL, advance, ask, start
+from tests.control.manager.test_ros2_control_node import CONTROL, advance, call_service, start
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -29,21 +29,23 @@ def test_timing_statistics():
 
 async def test_statistics_are_published_each_second_to_subscribers(graph, clock, tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
-    running = start(graph, tmp_path, CONTROL)
+    node_under_test = start(graph, tmp_path, CONTROL)
     node = graph.create_node("audience")
-    assert (await ask(graph, node, "load_controller", name="broadcaster")).ok
-    assert (await ask(graph, node, "configure_controller", name="broadcaster")).ok
-    assert (await ask(graph, node, "switch_controller", activate_controllers=["broadcaster"], strictness=2)).ok
+    assert (await call_service(graph, node, "load_controller", name="broadcaster")).ok
+    assert (await call_service(graph, node, "configure_controller", name="broadcaster")).ok
+    assert (await call_service(graph, node, "switch_controller", activate_controllers=["broadcaster"], strictness=2)).ok
     await advance(graph, clock, 150)
-    loaded = running._manager.controllers["broadcaster"]
-    assert loaded.timing is None
+    controller = node_under_test._manager.controllers["broadcaster"]
+    assert controller.timing is None
     values, full, names = [], [], []
-    kind = "pal_statistics_msgs/msg/Statistics"
-    subscription = node.create_subscription(f"{kind}Values", "/controller_manager/statistics/values", values.append, 10)
-    node.create_subscription(f"{kind}Names", "/controller_manager/statistics/names", names.append, LATCHED)
-    listening = node.create_subscription(kind, "/controller_manager/statistics/full", full.append, 10)
+    message_type = "pal_statistics_msgs/msg/Statistics"
+    subscription = node.create_subscription(
+        f"{message_type}Values", "/controller_manager/statistics/values", values.append, 10
+    )
+    node.create_subscription(f"{message_type}Names", "/controller_manager/statistics/names", names.append, LATCHED)
+    listening = node.create_subscription(message_type, "/controller_manager/statistics/full", full.append, 10)
     await advance(graph, clock, 250)
-    assert loaded.timing is not None
+    assert controller.timing is not None
     assert len(names) == 1
     assert len(names[0].names) == len(values[-1].values)
     assert names[0].names_version == values[-1].names_version == 1
@@ -55,7 +57,7 @@ async def test_statistics_are_published_each_second_to_subscribers(graph, clock,
     node.destroy_subscription(subscription)
     node.destroy_subscription(listening)
     await advance(graph, clock, 150)
-    assert loaded.timing is None
+    assert controller.timing is None
 
 
 async def test_humble_has_no_statistics_topics(graph, tmp_path, monkeypatch):

@@ -1,4 +1,4 @@
-"""A chain: a drive commands PID controllers, and these the wheels."""
+"""A chain in which a drive commands PID controllers, and these command the wheels."""
 
 from __future__ import annotations
 

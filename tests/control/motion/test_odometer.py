@@ -1,4 +1,4 @@
-"""Adding up velocities, against closed formulas."""
+"""The integration of velocities, compared with closed formulas."""
 
 from __future__ import annotations
 

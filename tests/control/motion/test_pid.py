@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.control.motion.pid import BACK_CALCULATION, CLAMPED, CONDITIONAL, STRATEGIES, Pid, PidGains
-from linkwright.control.motion.tolerances import StateTolerance, Tolerances, resolved
+from linkwright.control.motion.tolerances import StateTolerance, Tolerances, effective_tolerance
 
 
 def test_command_is_sum_of_p_i_and_d_terms():
@@ -20,12 +20,12 @@ def test_command_is_sum_of_p_i_and_d_terms():
 
 
 def test_integral_term_is_bounded_with_and_without_clamping():
-    loose, clamped = (
+    unclamped, clamped = (
         Pid(PidGains(i=1.0, i_min=-1.0, i_max=1.0, antiwindup=antiwindup)) for antiwindup in ("none", CLAMPED)
     )
-    for pid in (loose, clamped):
+    for pid in (unclamped, clamped):
         assert [pid.command(1.0, 1.0) for _ in range(5)] == [1.0] * 5
-    assert [loose.command(-1.0, 1.0) for _ in range(5)] == [1.0, 1.0, 1.0, 1.0, 0.0]
+    assert [unclamped.command(-1.0, 1.0) for _ in range(5)] == [1.0, 1.0, 1.0, 1.0, 0.0]
     assert [clamped.command(-1.0, 1.0) for _ in range(3)] == [0.0, -1.0, -1.0]
 
 
@@ -35,8 +35,8 @@ def test_antiwindup_bounds_integral(strategy: str):
     for _ in range(1000):
         assert pid.command(1.5, 0.1) <= 2.0
     assert pid.integral < 3.0
-    back = [pid.command(-1.5, 0.1) for _ in range(3)]
-    assert max(back) < 2.0
+    commands = [pid.command(-1.5, 0.1) for _ in range(3)]
+    assert max(commands) < 2.0
 
 
 @given(st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=30), st.sampled_from(STRATEGIES))
@@ -75,10 +75,10 @@ def test_tolerances_bound_errors_unless_zero():
 
 
 def test_goal_tolerances_replace_erase_or_keep_defaults():
-    assert [resolved(0.5, given) for given in (0.2, 0.0, -1.0)] == [0.2, 0.5, 0.0]
+    assert [effective_tolerance(0.5, value) for value in (0.2, 0.0, -1.0)] == [0.2, 0.5, 0.0]
     with pytest.raises(ValueError, match="-2"):
-        resolved(0.5, -2.0)
+        effective_tolerance(0.5, -2.0)
     assert StateTolerance(0.1, 0.2, 0.3).overridden(0.0, -1.0, 1.0) == StateTolerance(0.1, 0.0, 1.0)
-    both = Tolerances((StateTolerance(), StateTolerance()), (StateTolerance(), StateTolerance()))
-    assert both.with_path(1, StateTolerance(1.0)).path == (StateTolerance(), StateTolerance(1.0))
-    assert both.with_goal(0, StateTolerance(2.0)).goal == (StateTolerance(2.0), StateTolerance())
+    tolerances = Tolerances((StateTolerance(), StateTolerance()), (StateTolerance(), StateTolerance()))
+    assert tolerances.with_path(1, StateTolerance(1.0)).path == (StateTolerance(), StateTolerance(1.0))
+    assert tolerances.with_goal(0, StateTolerance(2.0)).goal == (StateTolerance(2.0), StateTolerance())

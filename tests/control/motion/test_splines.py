@@ -1,4 +1,4 @@
-"""Segments of trajectories against the theory of polynomials, and trajectories in time."""
+"""Segments of trajectories, compared with polynomials, and sampling of trajectories."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ durations = st.floats(0.1, 10.0)
 
 
 def point(seconds: float, *lists: list[float]) -> TrajectoryPoint:
-    """A point with as many lists as there are."""
+    """Return a point with some of positions, velocities and accelerations."""
     return TrajectoryPoint(round(seconds * SECOND), MotionState(*lists))
 
 
-def sampled(trajectory: Trajectory, seconds: float) -> Sample:
-    """The sample at so many seconds."""
+def sample_at(trajectory: Trajectory, seconds: float) -> Sample:
+    """Return the sample at a time in seconds."""
     sample = trajectory.sample(round(seconds * SECOND))
     assert sample is not None
     return sample
 
 
 def solution(start: list[float], end: list[float], duration: float) -> np.ndarray:
-    """The polynomial with given derivatives at both ends, by solving the linear system: least power first."""
+    """Return the polynomial with given derivatives at both ends, by solving the linear system; lowest power first."""
     order = len(start) + len(end)
     rows = []
     for time in (0.0, duration):
@@ -51,8 +51,8 @@ def test_segment_of_positions_is_linear(p0: float, p1: float, duration: float):
 
 
 @given(*[numbers] * 6, durations, st.sampled_from([2, 3]))
-def test_segment_is_polynomial_through_both_points(p0, v0, a0, p1, v1, a1, duration, known):
-    start, end = [p0, v0, a0][:known], [p1, v1, a1][:known]
+def test_segment_is_polynomial_through_both_points(p0, v0, a0, p1, v1, a1, duration, derivative_count):
+    start, end = [p0, v0, a0][:derivative_count], [p1, v1, a1][:derivative_count]
     segment = Segment(MotionState(*([value] for value in start)), MotionState(*([value] for value in end)), duration)
     theory = np.polynomial.Polynomial(solution(start, end, duration))
     scale = 1.0 + max(map(abs, (p0, p1, v0, v1, a0, a1))) * max(1.0, duration, duration**-2)
@@ -76,32 +76,34 @@ def test_trajectory_starts_at_joint_state_and_ends_at_last_point():
     trajectory = Trajectory([point(1.0, [1.0]), point(3.0, [2.0])])
     trajectory.begin(10 * SECOND, MotionState([0.0]))
     assert trajectory.sample(9 * SECOND) is None
-    assert [sampled(trajectory, time).state.positions[0] for time in (10.0, 10.5, 11.0, 12.0, 13.0, 99.0)] == (
+    assert [sample_at(trajectory, time).state.positions[0] for time in (10.0, 10.5, 11.0, 12.0, 13.0, 99.0)] == (
         pytest.approx([0.0, 0.5, 1.0, 1.5, 2.0, 2.0])
     )
-    assert [sampled(trajectory, time).index for time in (10.0, 11.0, 12.9, 13.0)] == [0, 0, 0, 1]
-    assert [sampled(trajectory, time).has_ended for time in (12.9, 13.0)] == [False, True]
-    assert sampled(trajectory, 99.0).point_ns == 13 * SECOND
-    assert sampled(trajectory, 99.0).state == MotionState([2.0], [0.0], [0.0])
+    assert [sample_at(trajectory, time).index for time in (10.0, 11.0, 12.9, 13.0)] == [0, 0, 0, 1]
+    assert [sample_at(trajectory, time).has_ended for time in (12.9, 13.0)] == [False, True]
+    assert sample_at(trajectory, 99.0).point_ns == 13 * SECOND
+    assert sample_at(trajectory, 99.0).state == MotionState([2.0], [0.0], [0.0])
 
 
 def test_trajectory_can_be_sampled_backwards():
     trajectory = Trajectory([point(float(seconds), [float(seconds)]) for seconds in range(1, 6)])
     trajectory.begin(SECOND, MotionState([0.0]))
-    assert [sampled(trajectory, time).state.positions[0] for time in (5.5, 1.5, 3.5)] == pytest.approx([4.5, 0.5, 2.5])
+    assert [sample_at(trajectory, time).state.positions[0] for time in (5.5, 1.5, 3.5)] == pytest.approx(
+        [4.5, 0.5, 2.5]
+    )
 
 
 def test_trajectory_with_future_start_moves_to_first_point_from_now():
     trajectory = Trajectory([point(0.0, [1.0])], start_ns=4 * SECOND)
     trajectory.begin(2 * SECOND, MotionState([0.0]))
-    assert sampled(trajectory, 3.0).state.positions == pytest.approx([0.5])
-    assert sampled(trajectory, 4.0).has_ended
+    assert sample_at(trajectory, 3.0).state.positions == pytest.approx([0.5])
+    assert sample_at(trajectory, 4.0).has_ended
 
 
 def test_trajectory_with_past_start_continues_at_current_segment():
     trajectory = Trajectory([point(1.0, [1.0]), point(5.0, [5.0])], start_ns=SECOND)
     trajectory.begin(4 * SECOND, MotionState([0.0]))
-    assert sampled(trajectory, 4.0).state.positions == pytest.approx([3.0])
+    assert sample_at(trajectory, 4.0).state.positions == pytest.approx([3.0])
 
 
 def test_missing_positions_and_velocities_are_integrated():
@@ -116,41 +118,41 @@ def test_missing_positions_and_velocities_are_integrated():
     numbers,
     st.sampled_from([1, 2, 3]),
 )
-def test_trajectory_is_continuous_through_its_points(points, begin, known):
+def test_trajectory_is_continuous_through_its_points(points, begin, derivative_count):
     times = np.cumsum([point[0] for point in points])
     trajectory_points = [
-        point(float(time), *([value] for value in values[:known]))
+        point(float(time), *([value] for value in values[:derivative_count]))
         for time, (_, *values) in zip(times, points, strict=True)
     ]
     trajectory = Trajectory(trajectory_points)
     trajectory.begin(0, MotionState([begin], [0.0], [0.0]))
-    assert sampled(trajectory, 0.0).state.positions == pytest.approx([begin])
+    assert sample_at(trajectory, 0.0).state.positions == pytest.approx([begin])
     for time, (_, position, *_rest) in zip(times, points, strict=True):
         ns = round(float(time) * SECOND)
-        just_before, then = trajectory.sample(ns - 1), trajectory.sample(ns)
-        assert just_before is not None
-        assert then is not None
-        assert just_before.state.positions == pytest.approx([position], abs=1e-5)
-        assert then.state.positions == pytest.approx([position], abs=1e-9)
-    assert sampled(trajectory, float(times[-1])).has_ended
+        earlier, later = trajectory.sample(ns - 1), trajectory.sample(ns)
+        assert earlier is not None
+        assert later is not None
+        assert earlier.state.positions == pytest.approx([position], abs=1e-5)
+        assert later.state.positions == pytest.approx([position], abs=1e-9)
+    assert sample_at(trajectory, float(times[-1])).has_ended
 
 
 def test_points_are_sampled_when_due_without_interpolation():
     trajectory = Trajectory([point(1.0, [1.0]), point(2.0, [2.0])], interpolated=False)
     trajectory.begin(SECOND, MotionState([0.0]))
-    assert [sampled(trajectory, time).state.positions for time in (1.5, 2.0, 3.0)] == [[0.0], [2.0], [2.0]]
+    assert [sample_at(trajectory, time).state.positions for time in (1.5, 2.0, 3.0)] == [[0.0], [2.0], [2.0]]
 
 
 @given(st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
 def test_shortest_turn_is_at_most_half_a_turn(start: float, end: float):
-    turn = shortest_turn(start, end)
-    assert -pi <= turn <= pi
-    assert np.cos(start + turn) == pytest.approx(np.cos(end), abs=1e-9)
-    assert np.sin(start + turn) == pytest.approx(np.sin(end), abs=1e-9)
+    angle = shortest_turn(start, end)
+    assert -pi <= angle <= pi
+    assert np.cos(start + angle) == pytest.approx(np.cos(end), abs=1e-9)
+    assert np.sin(start + angle) == pytest.approx(np.sin(end), abs=1e-9)
 
 
 def test_continuous_joint_turns_shorter_way():
     trajectory = Trajectory([point(1.0, [-3.0, -3.0])])
     trajectory.begin(0, MotionState([3.0, 3.0]), (True, False))
-    middle = sampled(trajectory, 0.5).state.positions
+    middle = sample_at(trajectory, 0.5).state.positions
     assert middle == pytest.approx([-pi, 0.0])

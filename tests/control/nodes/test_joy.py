@@ -1,4 +1,4 @@
-"""Joysticks: a pipe that says what the kernel would, and what the nodes make of it."""
+"""Joysticks: a pipe with the kernel's events, and the messages of the nodes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a device is pla
 
 
 class Joystick:
-    """A device at a path of the test."""
+    """A fake device at a path of the test."""
 
     def __init__(self, path):
         self.path = path
@@ -38,7 +38,7 @@ class Joystick:
         self.file = os.close(self.file)
 
     def send(self, *events):
-        """Tell changes, each as kind, number and value."""
+        """Send events, each as kind, number and value."""
         for kind, number, value in events:
             os.write(self.file, struct.pack("=IhBB", 0, value, kind, number))
 
@@ -61,14 +61,14 @@ def joy_messages(stage):
 
 @pytest.fixture
 async def start(stage):
-    running = []
+    nodes = []
 
     def node(kind=JoyNode, **parameters):
-        running.append(kind(stage.graph, NodeOptions(parameters=parameters)))
-        return running[-1]
+        nodes.append(kind(stage.graph, NodeOptions(parameters=parameters)))
+        return nodes[-1]
 
     yield node
-    for joy_node in running:
+    for joy_node in nodes:
         joy_node.close()
 
 
@@ -89,7 +89,7 @@ async def test_axes_and_buttons_match_ros(joystick, stage, joy_messages, start):
     await eventually(lambda: node._axes[0] != 0)
     await stage.clock.advance(0.01)
     assert list(joy_messages[-1].axes) == pytest.approx([-0.5, 1.0], abs=1e-4)
-    assert len(joy_messages) == 3, "what comes within a millisecond is one message"
+    assert len(joy_messages) == 3, "events within a millisecond are one message"
 
 
 def test_deadzone_is_continuous():
@@ -168,17 +168,17 @@ async def test_joy_linux_accepts_device_path(tmp_path, stage, joy_messages, star
 
 @pytest.mark.parametrize("wrong", [{"deadzone": 1.5}, {"autorepeat_rate": -1.0}, {"coalesce_interval_ms": -1}])
 async def test_out_of_range_parameters_are_rejected(stage, wrong):
-    with pytest.raises(LinkwrightError) as raised:
+    with pytest.raises(LinkwrightError) as error:
         JoyNode(stage.graph, NodeOptions(parameters=wrong))
-    assert raised.value.diagnostics[0].code == "NODE903"
-    assert next(iter(wrong)) in raised.value.diagnostics[0].message
+    assert error.value.diagnostics[0].code == "NODE903"
+    assert next(iter(wrong)) in error.value.diagnostics[0].message
 
 
 # --- teleop_twist_joy -----------------------------------------------------------------------------------------------
 
 
 class Pilot:
-    """Says what a joystick says, and hears the velocities."""
+    """Publisher of Joy messages, with the velocities of the teleop node."""
 
     def __init__(self, stage, kind="geometry_msgs/msg/Twist"):
         self.stage = stage
@@ -188,7 +188,7 @@ class Pilot:
         stage.node.create_subscription(kind, "/cmd_vel", self.velocities.append, 10)
 
     async def hold(self, axes, *buttons):
-        """Deflect axes and press buttons; gives the velocity that follows, None for none."""
+        """Deflect axes and press buttons; return the following velocity, or None."""
         self.velocities.clear()
         self.publisher.publish(JOY(axes=axes, buttons=[int(number in buttons) for number in range(8)]))
         await self.stage.graph.settle()
@@ -249,7 +249,7 @@ async def test_lost_joy_publisher_stops_robot(stage, start, logged):
     pilot.node.destroy_node()
     await stage.clock.advance(1.0)
     assert [twist.linear.x for twist in pilot.velocities] == [0.0]
-    assert logged("WARN") == ["no node publishes '/joy' any more, so the robot is stopped"]
+    assert logged("WARN") == ["'/joy' no longer has a publisher, so the robot is stopped"]
 
 
 async def test_closing_node_stops_robot(stage):

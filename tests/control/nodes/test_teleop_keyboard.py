@@ -31,7 +31,7 @@ def echoes(descriptor: int) -> bool:
 
 @pytest.fixture
 def terminal() -> Iterator[tuple[int, int]]:
-    """The side that types, and the side of the program."""
+    """Return both ends of a pseudo-terminal: the typing side, and the program's side."""
     sides = os.openpty()
     yield sides
     for side in sides:
@@ -40,22 +40,22 @@ def terminal() -> Iterator[tuple[int, int]]:
 
 
 class Driver:
-    """Who types."""
+    """A typing user, with the published velocities and the printed text."""
 
-    def __init__(self, stage, typing, own, kind=TWIST, **parameters):
-        self.stage, self.typing, self.own = stage, typing, own
-        self.heard, self.printed = [], []
+    def __init__(self, stage, typing_end, program_end, kind=TWIST, **parameters):
+        self.stage, self.typing_end, self.program_end = stage, typing_end, program_end
+        self.messages, self.printed = [], []
         self.closed = False
         if kind:
-            stage.node.create_subscription(kind, "/cmd_vel", self.heard.append, 10)
-        options = NodeOptions(parameters=parameters, output=self.printed.append, terminal=own)
+            stage.node.create_subscription(kind, "/cmd_vel", self.messages.append, 10)
+        options = NodeOptions(parameters=parameters, output=self.printed.append, terminal=program_end)
         self.node = TeleopTwistKeyboard(stage.graph, options)
 
     async def type(self, text, messages):
-        """Press keys and wait until as many messages have come; gives the last as x, y, z, turn."""
-        os.write(self.typing, text.encode())
-        await eventually(lambda: len(self.heard) >= messages, what=lambda: self.heard)
-        assert len(self.heard) == messages
+        """Press keys, wait for a number of messages, and return the last as x, y, z, yaw rate."""
+        os.write(self.typing_end, text.encode())
+        await eventually(lambda: len(self.messages) >= messages, what=lambda: self.messages)
+        assert len(self.messages) == messages
         return self.last()
 
     def close(self):
@@ -63,7 +63,7 @@ class Driver:
         self.node.close()
 
     def last(self):
-        twist = getattr(self.heard[-1], "twist", self.heard[-1])
+        twist = getattr(self.messages[-1], "twist", self.messages[-1])
         return twist.linear.x, twist.linear.y, twist.linear.z, twist.angular.z
 
 
@@ -86,9 +86,9 @@ async def test_keys_match_teleop_twist_keyboard(start):
     forwards = {"i": (0.5, 0, 0, 0), "o": (0.5, 0, 0, -1), "u": (0.5, 0, 0, 1), "j": (0, 0, 0, 1), "l": (0, 0, 0, -1)}
     backwards = {",": (-0.5, 0, 0, 0), ".": (-0.5, 0, 0, 1), "m": (-0.5, 0, 0, -1), "k": (0, 0, 0, 0)}
     sideways = {"I": (0.5, 0, 0, 0), "O": (0.5, -0.5, 0, 0), "U": (0.5, 0.5, 0, 0), "J": (0, 0.5, 0, 0)}
-    more = {"L": (0, -0.5, 0, 0), "<": (-0.5, 0, 0, 0), ">": (-0.5, -0.5, 0, 0), "M": (-0.5, 0.5, 0, 0)}
+    shifted_keys = {"L": (0, -0.5, 0, 0), "<": (-0.5, 0, 0, 0), ">": (-0.5, -0.5, 0, 0), "M": (-0.5, 0.5, 0, 0)}
     heights = {"t": (0, 0, 0.5, 0), "b": (0, 0, -0.5, 0), "K": (0, 0, 0, 0)}
-    expected = forwards | backwards | sideways | more | heights
+    expected = forwards | backwards | sideways | shifted_keys | heights
     for count, (key, velocity) in enumerate(expected.items(), 1):
         assert await driver.type(key, count) == velocity, key
 
@@ -117,13 +117,13 @@ async def test_arrow_keys_stop_robot(start):
 async def test_message_type_matches_subscriber(start, stage):
     driver = start(kind=TWIST_STAMPED, frame_id="base_link")
     await driver.type("i", 1)
-    assert driver.heard[0].header.frame_id == "base_link"
-    assert driver.heard[0].header.stamp.sec == stage.clock.now_ns() // 10**9
+    assert driver.messages[0].header.frame_id == "base_link"
+    assert driver.messages[0].header.stamp.sec == stage.clock.now_ns() // 10**9
 
 
 async def test_message_type_follows_late_subscriber(start, stage):
     driver = start(kind=None)
-    stage.node.create_subscription(TWIST_STAMPED, "/cmd_vel", driver.heard.append, 10)
+    stage.node.create_subscription(TWIST_STAMPED, "/cmd_vel", driver.messages.append, 10)
     await stage.clock.advance(0.6)
     await driver.type("i", 1)
 
@@ -140,24 +140,24 @@ async def test_key_timeout_stops_robot(start, stage):
     await stage.clock.advance(0.5)
     await driver.type("i", 2)
     await stage.clock.advance(0.5)
-    assert len(driver.heard) == 2
+    assert len(driver.messages) == 2
     await stage.clock.advance(0.2)
     assert driver.last() == (0, 0, 0, 0)
     await stage.clock.advance(5.0)
-    assert len(driver.heard) == 3, "it stops once"
+    assert len(driver.messages) == 3, "it stops once"
 
 
 async def test_repeat_rate_republishes_velocity(start, stage):
     driver = start(repeat_rate=10.0)
     await driver.type("u", 1)
     await stage.clock.advance(1.05)
-    assert len(driver.heard) == 11
+    assert len(driver.messages) == 11
     assert driver.last() == (0.5, 0, 0, 1)
 
 
 async def test_missing_subscriber_is_reported_once(start, stage, logged):
     driver = start(kind=None)
-    os.write(driver.typing, b"i")
+    os.write(driver.typing_end, b"i")
     await eventually(lambda: driver.node._direction.x == 1.0)
     await stage.clock.advance(3.0)
     assert logged("WARN") == ["no node subscribes to /cmd_vel; run `linkwright doctor` for details"]
@@ -166,20 +166,20 @@ async def test_missing_subscriber_is_reported_once(start, stage, logged):
 @pytest.mark.parametrize("end", ["\x03", "closed"])
 async def test_exit_stops_robot_and_restores_terminal(start, end):
     driver = start()
-    assert not echoes(driver.own)
+    assert not echoes(driver.program_end)
     await driver.type("i", 1)
     if end == "closed":
-        os.close(driver.typing)
+        os.close(driver.typing_end)
     else:
-        settings = termios.tcgetattr(driver.own)
+        settings = termios.tcgetattr(driver.program_end)
         settings[3] &= ~termios.ISIG
-        termios.tcsetattr(driver.own, termios.TCSANOW, settings)
-        os.write(driver.typing, end.encode())
+        termios.tcsetattr(driver.program_end, termios.TCSANOW, settings)
+        os.write(driver.typing_end, end.encode())
     await eventually(driver.node.finished.done)
     assert driver.node.finished.result() == 0
     await driver.stage.graph.settle()
     assert driver.last() == (0, 0, 0, 0)
-    assert end == "closed" or echoes(driver.own)
+    assert end == "closed" or echoes(driver.program_end)
 
 
 async def test_closing_node_stops_robot(start):
@@ -188,45 +188,45 @@ async def test_closing_node_stops_robot(start):
     driver.close()
     await driver.stage.graph.settle()
     assert driver.last() == (0, 0, 0, 0)
-    assert echoes(driver.own)
+    assert echoes(driver.program_end)
 
 
 async def test_missing_terminal_is_reported(stage):
-    with pytest.raises(LinkwrightError) as raised:
+    with pytest.raises(LinkwrightError) as error:
         TeleopTwistKeyboard(stage.graph, NodeOptions())
-    assert [diagnostic.code for diagnostic in raised.value.diagnostics] == ["NODE901"]
+    assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["NODE901"]
     assert stage.graph.topics().get("/cmd_vel") is None
 
 
 async def test_negative_speed_is_rejected(stage):
-    with pytest.raises(LinkwrightError) as raised:
+    with pytest.raises(LinkwrightError) as error:
         TeleopTwistKeyboard(stage.graph, NodeOptions(parameters={"speed": -1.0}))
-    assert [diagnostic.code for diagnostic in raised.value.diagnostics] == ["NODE902"]
+    assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["NODE902"]
 
 
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, None], ids=str)
 def test_process_restores_terminal(terminal, tmp_path, end):
-    typing, own = terminal
+    typing_end, program_end = terminal
     process = subprocess.Popen(
         [sys.executable, "-m", "linkwright.node_program", "teleop_twist_keyboard", "teleop_twist_keyboard"],
         env={**os.environ, "LINKWRIGHT_DDS": "0", "ROS_LOG_DIR": str(tmp_path)},
-        stdin=own,
-        stdout=own,
+        stdin=program_end,
+        stdout=program_end,
         stderr=subprocess.PIPE,
     )
     try:
-        printed = b""
-        while b"currently:" not in printed or not printed.endswith(b"\n"):
-            printed += os.read(typing, 4096)
-        assert not echoes(own)
+        output = b""
+        while b"currently:" not in output or not output.endswith(b"\n"):
+            output += os.read(typing_end, 4096)
+        assert not echoes(program_end)
         if end is None:
-            os.close(typing)
+            os.close(typing_end)
         else:
             process.send_signal(end)
         assert process.stderr is not None
         assert process.stderr.read() == b""
         assert process.wait(SECONDS) == 0
-        assert end is None or echoes(own)
+        assert end is None or echoes(program_end)
     finally:
         if process.poll() is None:
             process.kill()

@@ -46,7 +46,7 @@ class Stage:
         return self.server
 
     def defer(self, **options):
-        """A server that leaves goals to the test."""
+        """Return a server that leaves goals to the test."""
         return self.serve(handle_accepted_callback=self.handles.append, **options)
 
     async def send(self, order=4, **options):
@@ -171,7 +171,7 @@ async def test_cancel_request_can_match_many_goals(stage, clock):
 
 
 async def test_newer_goal_preempts_older_goal(stage, clock):
-    """The pattern of the public example: one goal at a time, begun by handle_accepted_callback."""
+    """The pattern of the public example: one goal at a time, started by handle_accepted_callback."""
     current = None
     beat = stage.server_node.create_rate(10.0)
 

@@ -1,4 +1,4 @@
-"""Several publishers that command at once: which sequences of commands are a dispute, and how it is told."""
+"""Several simultaneous commanders: sequences of commands that are a dispute, and its report."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ Sent = tuple[float, str, float]
 
 
 def stream(sender: str, begin: float, end: float, rate: float, speed: float) -> list[Sent]:
-    """Commands that come regularly."""
+    """Return periodic commands."""
     return [(begin + number / rate, sender, speed) for number in range(round((end - begin) * rate))]
 
 
 def disputes(*streams: Iterable[Sent], dispute: DisputeDetector | None = None) -> list[tuple[float, set[object]]]:
-    """When a dispute is told of, and who disputes."""
+    """Return the times of reports, and the disputing publishers."""
     dispute = dispute or DisputeDetector()
     reports = []
     for now, sender, speed in sorted(command for stream in streams for command in stream):
@@ -94,7 +94,7 @@ def test_time_jump_back_resets_dispute():
     assert disputes(stream("a", 2, 4, 10, 0.1), stream("b", 2.01, 4, 10, 0.2), dispute=dispute)
 
 
-class Known:
+class KnownPublishers:
     """A graph with publishers of named nodes."""
 
     def __init__(self, nodes: dict[bytes, str | None], twice: str = "") -> None:
@@ -112,8 +112,8 @@ class Known:
         return [NodeIdentity(name, "/") for name in self._names]
 
 
-def warned(graph: Known, message_type: type = Twist) -> list[str]:
-    """What is warned of, of publishers that drive for five seconds."""
+def warnings_about(graph: KnownPublishers, message_type: type = Twist) -> list[str]:
+    """Return the warnings about publishers that drive for five seconds."""
     log: list[str] = []
     now = 0
     watch = DriverWatch(Logger("drive", lambda record: log.append(record.text), lambda: 0), graph, lambda: now)
@@ -132,7 +132,7 @@ def warned(graph: Known, message_type: type = Twist) -> list[str]:
 
 @pytest.mark.parametrize("message_type", [Twist, Stamped])
 def test_warning_names_nodes_and_suggests_fixes(message_type):
-    (text,) = warned(Known({b"1": "keys", b"2": "planner", b"3": "keys"}), message_type)
+    (text,) = warnings_about(KnownPublishers({b"1": "keys", b"2": "planner", b"3": "keys"}), message_type)
     assert text == (
         "several nodes drive the robot: '/keys', '/planner' send commands on '/cmd_vel', and the robot jerks because "
         "it follows each message in turn. Stop all but one of them, remap their topics (-r /cmd_vel:=...), or let "
@@ -141,10 +141,10 @@ def test_warning_names_nodes_and_suggests_fixes(message_type):
 
 
 def test_dispute_compares_nodes_instead_of_publishers():
-    assert warned(Known({b"1": "keys", b"2": "keys"})) == []
-    (text,) = warned(Known({b"1": "keys", b"2": "keys"}, twice="keys"))
+    assert warnings_about(KnownPublishers({b"1": "keys", b"2": "keys"})) == []
+    (text,) = warnings_about(KnownPublishers({b"1": "keys", b"2": "keys"}, twice="keys"))
     assert text.startswith("several nodes drive the robot: '/keys', '/keys' send commands on")
 
 
 def test_unknown_publishers_are_not_reported():
-    assert warned(Known({b"1": "keys", b"2": None})) == []
+    assert warnings_about(KnownPublishers({b"1": "keys", b"2": None})) == []

@@ -96,7 +96,7 @@ async def test_order_holds_across_topics_and_subscriptions(graph):
 
 
 async def test_self_publishing_node_does_not_block_event_loop(graph):
-    """A node that answers its own messages for ever starves nobody."""
+    """A node that answers its own messages endlessly does not starve other nodes."""
     node = graph.create_node("node")
     publisher = node.create_publisher(String, "loop", 1)
     node.create_subscription(String, "loop", publisher.publish, 1)

@@ -1,4 +1,4 @@
-"""What the graph asks of a transport, and what it does with what that brings."""
+"""The graph's requests to a transport, and the handling of its results."""
 
 import pytest
 
@@ -47,7 +47,7 @@ class FakeTransport:
     open_publisher = open_subscription = open_service = open_client = _open
     close_publisher = close_subscription = close_service = close_client = _close
 
-    def look_around(self):
+    def start_discovery(self):
         self.looked += 1
 
     def remote_nodes(self):

@@ -1,4 +1,4 @@
-"""Executors: which thread runs what, when waits end, what becomes of faults."""
+"""Executors: the threads of callbacks, the ends of waits, and errors."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def executor(node):
 
 
 def spun(executor):
-    """Threads are daemons so that a test that fails does not hang the others."""
+    """Spin executors in daemon threads, so that a failing test does not hang the others."""
     thread = threading.Thread(target=executor.spin, daemon=True)
     thread.start()
     return thread

@@ -1,4 +1,4 @@
-"""Callbacks that block until something comes which only their own callback group could let in."""
+"""Callbacks that block for a result that only their own callback group could process."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class Asking:
 
 @pytest.fixture
 def make_scene(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Makes an `Asking`."""
+    """Return a function that creates an `Asking`."""
     monkeypatch.setattr(self_waits, "_reported", set())
     scenes: list[Asking] = []
 

@@ -49,7 +49,7 @@ class InterruptedAt:
 
 @cache
 def behind_looks_for_signals(code: CodeType) -> frozenset[int]:
-    """Where the instructions are before which Python looks for signals: behind calls and jumps back, and the first."""
+    """Return the offsets at which Python checks for signals: the first, and those after calls and backward jumps."""
     instructions = list(dis.get_instructions(code))
     return frozenset(
         later.offset

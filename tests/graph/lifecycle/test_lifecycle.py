@@ -13,7 +13,7 @@ SUCCESS, FAILURE, ERROR = TransitionCallbackReturn
 
 
 class ManagedNode(LifecycleNodeMixin):
-    """A managed node around one of the graph, whose callbacks answer as they are told."""
+    """A managed node around a node of the graph; the test sets the results of its callbacks."""
 
     def __init__(self, node: Node, answers: dict[str, object]) -> None:
         self.node = node

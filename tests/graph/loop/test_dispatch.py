@@ -63,7 +63,7 @@ async def test_self_publishing_topic_does_not_starve_others(graph):
 
 
 def run_of(seed):
-    """What happens, and when, in a graph of nodes that answer each other, made up from a seed."""
+    """Return the events and their times in a graph of nodes that answer each other, generated from a seed."""
     chance = random.Random(seed)
     happened = []
 
@@ -109,7 +109,7 @@ def test_dispatch_order_is_reproducible(seed):
 
 
 async def test_coroutines_of_node_run_one_at_a_time(graph):
-    """The default group: one at a time, as rclpy's mutually exclusive one."""
+    """The default group, which runs one at a time like rclpy's mutually exclusive one."""
     node, other = graph.create_node("node"), graph.create_node("other")
     gates, order = deque(asyncio.Event() for _ in range(3)), []
 
@@ -173,7 +173,7 @@ async def test_callback_groups_apply_across_nodes(graph, make):
 
 
 async def test_coroutine_can_call_service_of_same_node(graph):
-    """With rclpy's groups this would wait for ever."""
+    """With rclpy's groups this would wait forever."""
     node = graph.create_node("node")
     node.create_service(Trigger, "inner", lambda _request, response: response, callback_group=FREE_GROUP)
     client = node.create_client(Trigger, "inner")

@@ -100,7 +100,7 @@ async def _value(future):
 
 
 async def test_executor_steps_coroutine_inside_event_loop():
-    """A coroutine that rclpy's executors step gives them the future it waits for."""
+    """A coroutine in rclpy's executors yields the future that it awaits."""
     future = Future()
     coroutine = _value(future)
     with StepsByExecutor():

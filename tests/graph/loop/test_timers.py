@@ -102,7 +102,7 @@ async def test_timer_can_cancel_itself_and_fail(graph, clock, log):
 
 
 async def test_missed_timer_calls_are_skipped():
-    """A loop that was busy for several periods gets one call, and the beat stays where it was."""
+    """After several busy periods, a loop gets one call, and the phase stays."""
     clock = JumpClock()
     graph = Graph(clock=clock, on_log=print)
     calls = []

@@ -1,4 +1,4 @@
-"""Regular expressions that cannot take forever: what they find, and that they give up."""
+"""Regular expressions with a time limit: their matches, and their interruption."""
 
 from __future__ import annotations
 

@@ -130,11 +130,11 @@ def test_patterns_apply_in_order_of_appearance():
     ],
 )
 def test_unsupported_list_is_skipped_and_rest_is_read(value, message):
-    """As in the example of gpio_controllers: lists of mappings, which rcl has no type for."""
+    """As in the example of gpio_controllers: rcl has no type for lists of mappings."""
     any_node = f"/**:\n  ros__parameters:\n    first: 1\n    a:\n      b: {value}\n      c: [2]\n"
     rules = read(f"{any_node}x:\n  ros__parameters: {{y: 3}}\n")
     assert rules.for_node("/x") == {"first": 1, "a.c": [2], "y": 3}
-    (finding,) = rules.left_out_for("/x")
+    (finding,) = rules.skipped_findings_for("/x")
     assert (finding.message, finding.severity) == (message, Severity.WARNING)
     assert str(finding.span).startswith("params.yaml:5:")
 
@@ -151,7 +151,7 @@ def test_empty_files_and_sections_are_accepted(text):
             "node:\n  ros__parameters:\n    a: [1, 2.5]",
             "3:12",
             "the list of parameter 'a' begins with a value of type integer but contains one of type double",
-            "write 1.0 as the first value, or integers only",
+            "write the first value as 1.0, or make all values integers",
         ),
         (
             "node:\n  ros__parameters:\n    a: [1.5, 2]",

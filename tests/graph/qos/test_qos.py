@@ -17,7 +17,7 @@ from linkwright.graph import (
     ReliabilityPolicy,
     qos_check_compatible,
 )
-from linkwright.graph.qos.compatibility import best_available, incompatible_policies, resolved
+from linkwright.graph.qos.compatibility import best_available, incompatible_policies, resolve_defaults
 from linkwright.graph.qos.profile import BEST_AVAILABLE_QOS, SYSTEM_DEFAULT_QOS, qos_policy_name_from_kind
 from linkwright.graph.time.values import INFINITE
 
@@ -87,7 +87,7 @@ class TestProfiles:
         )
 
     def test_system_defaults_are_resolved(self):
-        chosen = resolved(SYSTEM_DEFAULT_QOS)
+        chosen = resolve_defaults(SYSTEM_DEFAULT_QOS)
         assert (chosen.history, chosen.depth) == (HistoryPolicy.KEEP_LAST, 1)
         assert (chosen.reliability, chosen.durability) == (RELIABLE, VOLATILE)
         assert chosen.liveliness is LivelinessPolicy.AUTOMATIC

@@ -190,7 +190,7 @@ class TestClocks:
 
 @pytest.fixture
 def simulated(graph):
-    """A node under simulated time, and what sets that time."""
+    """Return a node with simulated time, and a function that sets that time."""
     node = graph.create_node("simulated", parameters={"use_sim_time": True})
     publisher = graph.create_node("simulator").create_publisher(ClockMessage, "/clock", 10)
     return node, lambda seconds: publisher.publish(at(seconds))

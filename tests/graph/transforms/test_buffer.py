@@ -20,7 +20,7 @@ SECOND = 1_000_000_000
 
 
 def message(*transforms):
-    """Transforms (parent, child, pose), or (parent, child, x) for a shift along x."""
+    """Return transforms (parent, child, pose), or (parent, child, x) for a translation along x."""
     rows = [[pose, 0, 0, 0, 0, 0, 1] if np.isscalar(pose) else pose for _, _, pose in transforms]
     parents, children = tuple(parent for parent, _, _ in transforms), tuple(child for _, child, _ in transforms)
     return TFMessage(batch=TransformBatch(parents, children, 0, np.array(rows, dtype=float).reshape(-1, 7)))
@@ -46,7 +46,7 @@ poses = st.builds(
 
 @st.composite
 def forests(draw):
-    """Parents (an earlier frame, or -1) and local poses of up to 24 frames, in some order of arrival."""
+    """Draw parents (an earlier frame, or -1) and local poses of up to 24 frames, in any order of arrival."""
     count = draw(st.integers(1, 24))
     parents = [draw(st.integers(-1, number - 1)) for number in range(count)]
     local = [draw(poses) for _ in range(count)]
@@ -241,7 +241,7 @@ def test_invalid_transforms_are_ignored_and_reported_once():
 
 
 def test_frame_is_connected_after_invalid_transform_becomes_valid():
-    """The parents of a list of frames count only once its transforms were taken in."""
+    """The parents in a message count only after its transforms were accepted."""
     buffer = TransformBuffer()
     children, parents = ("base",), ("world",)
     for x in (np.nan, 1.0):

@@ -1,4 +1,4 @@
-"""A user's program that builds and runs a launch description."""
+"""A user's program that creates and runs a launch description."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ def finder(tmp_path: Path) -> PackageFinder:
 
 @pytest.fixture
 def arm(write: Write) -> Path:
-    """A package in its sources with three entry points."""
+    """Write a source package with three entry points."""
     write("ws/src/arm/package.xml", "<package><name>arm</name></package>")
     write("ws/src/arm/setup.py", SETUP)
     write("ws/src/arm/arm/__init__.py", "")

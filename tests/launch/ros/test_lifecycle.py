@@ -21,7 +21,7 @@ CONFIGURE, DEACTIVATE = 1, 4
 
 
 class Managed(LifecycleNodeMixin):
-    """A lifecycle node of this process, whose configuring fails if a parameter says so."""
+    """A lifecycle node of this process; a parameter makes its configuration fail."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self.node = graph.create_node(options.name or "managed", namespace=options.namespace)

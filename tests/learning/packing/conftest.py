@@ -1,4 +1,4 @@
-"""An index of tiny packages, of which packs are made without a network."""
+"""An index of tiny packages, from which packs are created without a network."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SCRIPTS = "[console_scripts]\nlinkwright = linkwright.program:main\n"
 
 @dataclass
 class FakeIndex:
-    """A folder of packages, and what Linkwright needs of them."""
+    """A folder of packages, with the settings for Linkwright."""
 
     folder: Path
     own: list[Path]
@@ -42,7 +42,12 @@ class FakeIndex:
 
 @pytest.fixture
 def index(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> FakeIndex:
-    folder = tmp_path / "index"
+    return create_index(tmp_path, monkeypatch)
+
+
+def create_index(parent: Path, monkeypatch: pytest.MonkeyPatch) -> FakeIndex:
+    """Create an index below a folder, and make pip and packs use it."""
+    folder = parent / "index"
     wheel = {
         name: write_wheel(folder, *name.split(" "))
         for name in (
@@ -58,7 +63,7 @@ def index(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> FakeIndex:
     }
     wheel["windows_only 1.0"] = write_wheel(folder, "windows-only", requires=["pure"])
     source = write_source(folder, "source")
-    own = tmp_path / "own"
+    own = parent / "own"
     needs = ["native>=1", "source", 'windows-only; sys_platform == "win32"']
     table = {
         "linkwright": {

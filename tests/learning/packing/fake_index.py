@@ -1,4 +1,4 @@
-"""A folder of tiny wheels and source distributions that stands for a package index."""
+"""A folder of tiny wheels and source distributions that replaces a package index."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether each system and Python has a wheel of everything that the extra ``learn`` needs, by ``uv.lock``."""
+"""The wheels in `uv.lock`: each system and Python has one for every package of the extra ``learn``."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ import pytest
 
 from linkwright.cli import main
 from tests.full_disk import full_disk, needs_limits
-from tests.learning.packing.conftest import FakeIndex
+from tests.learning.packing.conftest import FakeIndex, create_index
 from tests.learning.packing.fake_index import package, write_source, write_wheel
 
 ALL_OF = ("--systems", "windows,linux-x86_64", "--python", "3.12,3.13")
@@ -21,11 +21,19 @@ LINUX = ("--systems", "linux-x86_64", "--python", "3.13")
 pytestmark = pytest.mark.extra("learn")
 
 
+@pytest.fixture(scope="module")
+def complete_pack(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A pack for all targets, made once, because pip is started for each of them."""
+    parent = tmp_path_factory.mktemp("complete")
+    with pytest.MonkeyPatch.context() as patch:
+        assert create_index(parent, patch).pack(parent / "pack", *ALL_OF) == 0
+    return parent / "pack"
+
+
 @pytest.fixture
-def pack(index: FakeIndex, tmp_path: Path) -> Path:
-    folder = tmp_path / "pack"
-    assert index.pack(folder, *ALL_OF) == 0
-    return folder
+def pack(complete_pack: Path, index: FakeIndex, tmp_path: Path) -> Path:
+    """A copy of the complete pack, with an index that has the same packages."""
+    return shutil.copytree(complete_pack, tmp_path / "pack", symlinks=True)
 
 
 def wheels(folder: Path) -> set[str]:
@@ -232,7 +240,7 @@ def test_documentation_is_copied_into_pack(index: FakeIndex, tmp_path: Path) -> 
 
 @pytest.fixture
 def installable(index: FakeIndex, tmp_path: Path) -> Path:
-    """A pack for this system with the pip of this Python."""
+    """Create a pack for this system with the pip of this Python."""
     bundled = sorted((Path(ensurepip.__file__).parent / "_bundled").glob("pip-*.whl"))
     if not bundled or sys.platform != "linux" or sys.version_info >= (3, 15):
         pytest.skip("this Python has no pip of its own")

@@ -1,4 +1,4 @@
-"""What a malicious or mistaken student's program does. Each text is a program in Python."""
+"""The actions of malicious or mistaken students' programs; each text is a Python program."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ import pytest
 
 @pytest.fixture
 def class_folder() -> Iterator[Path]:
-    """A folder that every user may pass through, unlike those of pytest."""
+    """Return a folder that every user may traverse, unlike pytest's folders."""
     folder = Path(tempfile.mkdtemp(prefix="linkwright-class-"))
     folder.chmod(0o755)
     yield folder
@@ -22,14 +22,14 @@ def class_folder() -> Iterator[Path]:
 
 @pytest.fixture
 def student(class_folder: Path) -> Path:
-    """A student's folder."""
+    """Return a student's folder."""
     folder = class_folder / "student"
     folder.mkdir()
     return folder
 
 
 def processes_with(word: str) -> list[int]:
-    """The numbers of the processes that have a word among their arguments."""
+    """Return the process IDs that have a word among their arguments."""
     process_numbers = []
     for process in Path("/proc").iterdir():
         if process.name.isdecimal():

@@ -29,7 +29,7 @@ from linkwright.learning.sandbox.plan import outcome_from_json, outcome_to_json
 ROOT = Path(__file__).resolve().parents[3]
 
 _DOCKER_CAPABILITIES = 0xA80425FB
-"""Those of a container without options: CHOWN, DAC_OVERRIDE, SETUID, SETGID, KILL and others, not SYS_ADMIN."""
+"""Capabilities of a plain container: CHOWN, DAC_OVERRIDE, SETUID, SETGID, KILL and others, not SYS_ADMIN."""
 _NUMBERS = {
     "x86_64": {"audit": 0xC000003E, "unshare": 272, "mount": 165},
     "aarch64": {"audit": 0xC00000B7, "unshare": 97, "mount": 40},

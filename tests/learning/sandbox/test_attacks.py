@@ -1,4 +1,4 @@
-"""Malicious and mistaken programs hurt nobody, on every kind of system."""
+"""Malicious and mistaken programs are contained on all systems."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ LIMITS = Limits(
     output_bytes=100_000,
 )
 MOST_OVERSHOOT = 400 * MEBIBYTE
-"""What a run may occupy beyond its limit until the watchdog sees it, on a slow machine."""
+"""The space that a run may occupy beyond its limit before the watchdog sees it, on a slow machine."""
 
 
 @pytest.fixture(params=list(SITUATIONS))
@@ -176,7 +176,7 @@ def test_run_cannot_leave_sandbox(situation: str, student: Path) -> None:
 
 
 def _possible(protections: frozenset[Protection]) -> set[str]:
-    """What a program may do that the protections do not forbid."""
+    """Return the actions that the protections do not forbid."""
     possible = {"write above its folder"}  # which may be a folder of the sandbox
     if Protection.READ not in protections:
         possible |= {"read a neighbor's file", "list a neighbor's folder", "read by /proc/self/root"}

@@ -1,4 +1,4 @@
-"""What a run in the sandbox is given, and what its grader gets back."""
+"""The inputs of a run in the sandbox, and the results for its grader."""
 
 from __future__ import annotations
 

@@ -58,9 +58,9 @@ def test_moved_findings_stay_inside_text(before: str, after: str, bounds: tuple[
     text.set_findings("ty", [finding(before, start, end)])
     text.change(2, [{"text": after}])
     [moved] = text.findings()
-    assert text.written(moved["range"]) in after
+    assert text.text_in(moved["range"]) in after
     if before[start:end] and before == after:
-        assert text.written(moved["range"]) == before[start:end]
+        assert text.text_in(moved["range"]) == before[start:end]
 
 
 def test_word_before_position_is_part_of_name() -> None:

@@ -21,10 +21,10 @@ from tests.waiting import SECONDS, wait_until
 
 SERVER = """
 import json, sys
-from linkwright.process.framing import framed, read_content
+from linkwright.process.framing import add_header, read_content
 
 def send(message):
-    sys.stdout.buffer.write(framed(json.dumps(message).encode()))
+    sys.stdout.buffer.write(add_header(json.dumps(message).encode()))
     sys.stdout.buffer.flush()
 
 while content := read_content(sys.stdin.buffer):

@@ -1,4 +1,4 @@
-"""Behaviors: how far they turn and drive, obstacles, and the time that is allowed."""
+"""Behaviors: angles and distances, obstacles, and time allowances."""
 
 from __future__ import annotations
 

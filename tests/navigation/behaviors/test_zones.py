@@ -1,4 +1,4 @@
-"""Zones around a robot: what they leave of its velocity."""
+"""Zones around a robot, and the velocities that they allow."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_slowdown_zone_applies_ratio():
 
 
 @pytest.mark.parametrize(
-    ("velocity", "left"),
+    ("velocity", "remaining_share"),
     [
         (Velocity(0.4, 0.0, 0.2), (0.2, 0.0, 0.1)),
         (Velocity(0.3, 0.4, 0.0), (0.12, 0.16, 0.0)),
@@ -48,9 +48,9 @@ def test_slowdown_zone_applies_ratio():
         (Velocity(0.1, 0.0, 0.1), (0.1, 0.0, 0.1)),
     ],
 )
-def test_limit_zone_keeps_curvature(velocity, left):
+def test_limit_zone_keeps_curvature(velocity, remaining_share):
     rule = ZoneRule(ZoneAction.LIMIT, 1, linear_limit=0.2, angular_limit=0.5)
-    assert rule.limit_velocity(AHEAD, points(1, 0.5), velocity) == pytest.approx(left)
+    assert rule.limit_velocity(AHEAD, points(1, 0.5), velocity) == pytest.approx(remaining_share)
 
 
 def test_approach_zone_keeps_time_before_collision():
@@ -78,12 +78,12 @@ def test_most_restrictive_zone_applies():
         ZoneRule(ZoneAction.SLOWDOWN, 1, slowdown_ratio=0.5),
         ZoneRule(ZoneAction.SLOWDOWN, 1, slowdown_ratio=0.1),
     )
-    seen = points(1, 0.5)
-    zones = [("slow", slow, AHEAD, seen), ("slower", slower, AHEAD, seen), ("again", slow, AHEAD, seen)]
+    observed = points(1, 0.5)
+    zones = [("slow", slow, AHEAD, observed), ("slower", slower, AHEAD, observed), ("again", slow, AHEAD, observed)]
     assert limit_by_zones(FORWARD, zones).zone == "slower"
-    stop = ("stop", ZoneRule(ZoneAction.STOP, 1), AHEAD, seen)
+    stop = ("stop", ZoneRule(ZoneAction.STOP, 1), AHEAD, observed)
     assert limit_by_zones(FORWARD, [stop, *zones]) == Verdict(Velocity(0.0, 0.0, 0.0), ZoneAction.STOP, "stop")
-    assert limit_by_zones(FORWARD, [("off", ZoneRule(ZoneAction.NOTHING, 1), AHEAD, seen)]) == Verdict(FORWARD)
+    assert limit_by_zones(FORWARD, [("off", ZoneRule(ZoneAction.NOTHING, 1), AHEAD, observed)]) == Verdict(FORWARD)
 
 
 def test_stop_zone_is_reported_for_standing_robot():
@@ -93,7 +93,7 @@ def test_stop_zone_is_reported_for_standing_robot():
 
 
 @pytest.mark.parametrize(
-    ("velocity", "direction", "covered"),
+    ("velocity", "direction", "is_covered"),
     [
         (Velocity(0.2, 0.0, 0.0), None, True),
         (Velocity(-0.2, 0.0, 0.0), None, False),
@@ -104,5 +104,5 @@ def test_stop_zone_is_reported_for_standing_robot():
         (Velocity(0.2, 0.0, 0.0), (3 * pi / 4, -3 * pi / 4), False),
     ],
 )
-def test_speed_range_covers_velocities_and_directions(velocity, direction, covered):
-    assert SpeedRange(AHEAD, (0.0, 0.5), (-1.0, 1.0), direction).covers(velocity) is covered
+def test_speed_range_covers_velocities_and_directions(velocity, direction, is_covered):
+    assert SpeedRange(AHEAD, (0.0, 0.5), (-1.0, 1.0), direction).covers(velocity) is is_covered

@@ -1,4 +1,4 @@
-"""Costs of places and footprints."""
+"""Costs of points and footprints."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from linkwright.navigation.grids.grid import Grid
 SQUARE = np.array([[0.2, 0.2], [-0.2, 0.2], [-0.2, -0.2], [0.2, -0.2]])
 
 
-def empty(rows: int = 40, columns: int = 60, resolution: float = 0.1) -> Costmap:
+def empty_costmap(rows: int = 40, columns: int = 60, resolution: float = 0.1) -> Costmap:
     return Costmap(Grid(cells=np.zeros((rows, columns), np.uint8), resolution=resolution, x=-3.0, y=-2.0))
 
 
@@ -37,21 +37,21 @@ def test_costmap_requires_uint8_cells_without_rotation():
 
 
 def test_cost_at_point_inside_and_outside_grid():
-    costmap = empty()
+    costmap = empty_costmap()
     costmap.grid.cells[20, 30] = 77
     assert costmap.cost_at(np.array([[0.05, 0.05], [0.15, 0.05], [9.0, 0.0]])).tolist() == [77, 0, UNKNOWN]
     assert costmap.cost_at(np.array([-3.01, 0.0]), outside_cost=LETHAL) == LETHAL
 
 
 def test_footprint_cost_uses_only_outline():
-    costmap = empty()
+    costmap = empty_costmap()
     costmap.grid.cells[20, 30] = 200
     assert costmap.footprint_cost((0.05, 0.05, 0.0), SQUARE) == 0
     assert costmap.footprint_cost((0.25, 0.05, 0.0), SQUARE) == 200
 
 
 def test_footprint_cost_accepts_arrays_of_poses():
-    costmap = empty()
+    costmap = empty_costmap()
     costmap.grid.cells[20, 32] = LETHAL
     poses = np.array([[[0.0, 0.05, 0.0], [-0.03, 0.05, pi / 4]], [[1.0, 1.0, 0.0], [2.95, 0.0, 0.0]]])
     costs = costmap.footprint_cost(poses, SQUARE)
@@ -72,11 +72,11 @@ def test_inscribed_and_circumscribed_radius_of_footprint():
 
 @given(x=st.floats(-0.5, 0.5), y=st.floats(-0.5, 0.5))
 def test_within_polygon_finds_points_in_footprint(x, y):
-    inside = bool(within_polygon(np.array([x, y]), circle(0.3)))
+    is_inside = bool(within_polygon(np.array([x, y]), circle(0.3)))
     if hypot(x, y) < radii(circle(0.3))[0]:
-        assert inside
+        assert is_inside
     elif hypot(x, y) > 0.3:
-        assert not inside
+        assert not is_inside
 
 
 def test_place_footprint_applies_pose():
@@ -91,11 +91,11 @@ def test_outline_has_no_gaps():
 
 def test_footprint_text_is_parsed_or_rejected():
     assert parse_footprint("[[0.2, 0.2], [-0.2, 0.2], [-0.2,-0.2], [0.2, -0.2] ]").tolist() == SQUARE.tolist()
-    for text, why in (
+    for text, reason in (
         ("[]", "not a list"),
         ("[[1, 2], [3, 4]]", "has 2"),
         ("[[1, 2], 3, 4]", "not a list"),
         ("x", "not a list"),
     ):
-        with pytest.raises(BadFootprintError, match=why):
+        with pytest.raises(BadFootprintError, match=reason):
             parse_footprint(text)

@@ -6,7 +6,7 @@ import pytest
 from linkwright.navigation.estimation.estimator import Estimator, Timing
 from linkwright.navigation.estimation.kalman import ExtendedKalmanFilter, Settings
 from linkwright.navigation.estimation.motion_model import SIZE, State
-from tests.navigation.estimation.test_kalman import SECOND, measured
+from tests.navigation.estimation.test_kalman import SECOND, measurement_of
 
 
 def estimator(**timing):
@@ -21,7 +21,7 @@ def advance(estimator, seconds):
 
 def test_measurements_are_processed_in_order_of_stamps():
     forwards, backwards = estimator(), estimator()
-    measurements = [measured(0.1 * step, x=0.3 * step**2, vyaw=0.1 * step) for step in range(10)]
+    measurements = [measurement_of(0.1 * step, x=0.3 * step**2, vyaw=0.1 * step) for step in range(10)]
     for measurement in measurements:
         forwards.add(measurement)
     for measurement in reversed(measurements):
@@ -30,21 +30,21 @@ def test_measurements_are_processed_in_order_of_stamps():
 
 
 def test_future_measurement_is_delayed():
-    running = estimator()
-    running.add(measured(0.0, x=1.0))
-    running.add(measured(2.0, x=9.0))
-    assert advance(running, 1.0).state[State.X] == 1.0
-    assert advance(running, 2.0).state[State.X] > 1.0
+    active = estimator()
+    active.add(measurement_of(0.0, x=1.0))
+    active.add(measurement_of(2.0, x=9.0))
+    assert advance(active, 1.0).state[State.X] == 1.0
+    assert advance(active, 2.0).state[State.X] > 1.0
 
 
 def test_state_is_predicted_only_after_sensor_timeout():
-    running = estimator(sensor_timeout_ns=SECOND // 2)
-    running.add(measured(0.0, vx=1.0))
-    assert advance(running, 0.0).time_ns == 0
-    assert advance(running, 0.4).time_ns == 0
-    assert advance(running, 0.6).state[State.X] == pytest.approx(0.6)
+    active = estimator(sensor_timeout_ns=SECOND // 2)
+    active.add(measurement_of(0.0, vx=1.0))
+    assert advance(active, 0.0).time_ns == 0
+    assert advance(active, 0.4).time_ns == 0
+    assert advance(active, 0.6).state[State.X] == pytest.approx(0.6)
     always = estimator(predict_to_now=True)
-    always.add(measured(0.0, vx=1.0))
+    always.add(measurement_of(0.0, vx=1.0))
     assert advance(always, 0.1).state[State.X] == pytest.approx(0.1)
 
 
@@ -53,33 +53,33 @@ def test_no_prediction_before_first_measurement():
 
 
 def test_late_measurement_is_processed_at_its_stamp():
-    measurements = [measured(0.1 * step, x=np.sin(0.1 * step), vx=np.cos(0.1 * step)) for step in range(20)]
-    in_order, late = estimator(history_ns=10 * SECOND), estimator(history_ns=10 * SECOND)
+    measurements = [measurement_of(0.1 * step, x=np.sin(0.1 * step), vx=np.cos(0.1 * step)) for step in range(20)]
+    in_order, out_of_order = estimator(history_ns=10 * SECOND), estimator(history_ns=10 * SECOND)
     for measurement in measurements:
         in_order.add(measurement)
         advance(in_order, 5.0)
     for index, measurement in enumerate(measurements):
         if index != 7:
-            late.add(measurement)
-            advance(late, 5.0)
-    late.add(measurements[7])
-    np.testing.assert_allclose(advance(late, 5.0).state, in_order.filter.state, atol=1e-12)
-    np.testing.assert_allclose(late.filter.covariance, in_order.filter.covariance, atol=1e-12)
+            out_of_order.add(measurement)
+            advance(out_of_order, 5.0)
+    out_of_order.add(measurements[7])
+    np.testing.assert_allclose(advance(out_of_order, 5.0).state, in_order.filter.state, atol=1e-12)
+    np.testing.assert_allclose(out_of_order.filter.covariance, in_order.filter.covariance, atol=1e-12)
 
 
 def test_measurement_older_than_history_is_applied_at_history_start():
-    running = estimator(history_ns=SECOND)
+    active = estimator(history_ns=SECOND)
     for step in range(50):
-        running.add(measured(0.1 * step, x=0.0))
-        advance(running, 0.1 * step)
-    running.add(measured(1.0, x=1.0))
-    state = advance(running, 5.0)
+        active.add(measurement_of(0.1 * step, x=0.0))
+        advance(active, 0.1 * step)
+    active.add(measurement_of(1.0, x=1.0))
+    state = advance(active, 5.0)
     assert state.time_ns == round(4.9 * SECOND)
     assert state.state[State.X] != 0.0
 
 
 def test_clear_discards_queued_measurements():
-    running = estimator()
-    running.add(measured(0.0, x=1.0))
-    running.clear()
-    assert not advance(running, 1.0).is_initialized
+    active = estimator()
+    active.add(measurement_of(0.0, x=1.0))
+    active.clear()
+    assert not advance(active, 1.0).is_initialized

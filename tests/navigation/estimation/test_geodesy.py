@@ -20,12 +20,12 @@ latitudes, longitudes = st.floats(-80.0, 84.0), st.floats(-180.0, 179.999)
 
 def meridian_arc(latitude):
     """Return the length of a meridian arc from the equator by Simpson's rule, independently of the projection."""
-    squared = (2.0 - 1.0 / 298.257223563) / 298.257223563
+    squared_eccentricity = (2.0 - 1.0 / 298.257223563) / 298.257223563
 
     def radius(phi):
         from math import sin
 
-        return 6378137.0 * (1.0 - squared) / (1.0 - squared * sin(phi) ** 2) ** 1.5
+        return 6378137.0 * (1.0 - squared_eccentricity) / (1.0 - squared_eccentricity * sin(phi) ** 2) ** 1.5
 
     steps, end = 2000, radians(latitude)
     step = end / steps

@@ -15,10 +15,10 @@ from linkwright.navigation.estimation.kalman import (
 from linkwright.navigation.estimation.motion_model import SIZE, State, state_jacobian, wrap_angle
 
 SECOND = 1_000_000_000
-FILTERS = pytest.mark.parametrize("kind", [ExtendedKalmanFilter, UnscentedKalmanFilter])
+FILTERS = pytest.mark.parametrize("filter_type", [ExtendedKalmanFilter, UnscentedKalmanFilter])
 
 
-def measured(time_s, variance=0.01, threshold=inf, **values):
+def measurement_of(time_s, variance=0.01, threshold=inf, **values):
     vector, covariance, used = np.zeros(SIZE), np.zeros((SIZE, SIZE)), [False] * SIZE
     for name, value in values.items():
         index = State[name.upper()]
@@ -34,9 +34,9 @@ def diagonal(**values):
 
 
 @FILTERS
-def test_first_measurement_initializes_state(kind):
-    kalman = kind()
-    assert kalman.process(measured(5.0, 0.3, x=2.0, yaw=1.0))
+def test_first_measurement_initializes_state(filter_type):
+    kalman = filter_type()
+    assert kalman.process(measurement_of(5.0, 0.3, x=2.0, yaw=1.0))
     assert kalman.is_initialized
     assert kalman.time_ns == 5 * SECOND
     assert (kalman.state[State.X], kalman.state[State.YAW], kalman.state[State.Y]) == (2.0, 1.0, 0.0)
@@ -45,20 +45,20 @@ def test_first_measurement_initializes_state(kind):
 
 
 @FILTERS
-def test_correction_is_weighted_mean(kind):
-    kalman = kind(Settings(initial_covariance=diagonal(x=0.3)))
+def test_correction_is_weighted_mean(filter_type):
+    kalman = filter_type(Settings(initial_covariance=diagonal(x=0.3)))
     kalman.is_initialized = True
     kalman.state[State.X] = 1.0
-    kalman.correct(measured(0.0, 0.1, x=2.0))
+    kalman.correct(measurement_of(0.0, 0.1, x=2.0))
     weight = 0.3 / (0.3 + 0.1)
     assert kalman.state[State.X] == pytest.approx(1.0 + weight)
     assert kalman.covariance[State.X, State.X] == pytest.approx((1 - weight) * 0.3)
 
 
 def batch_solution(settings, measurements, steps):
-    """The most likely states of all times at once, by least squares: the last one and its covariance.
+    """Return the most likely last state by least squares over all times, with its covariance.
 
-    It knows nothing of filters. The motion is taken for linear, so nothing may turn.
+    It is independent of filters. The motion is assumed to be linear, so nothing may turn.
     """
     count = len(measurements)
     free = np.flatnonzero(np.diag(settings.initial_covariance))
@@ -79,11 +79,11 @@ def batch_solution(settings, measurements, steps):
         noise = settings.noise[np.ix_(free, free)] * step
         add({time: -motion, time + 1: np.eye(size)}, np.zeros(size), noise)
     for time, measurement in enumerate(measurements):
-        used = [index for index, here in enumerate(measurement.used) if here]
-        seen = np.zeros((len(used), size))
-        for row, index in enumerate(used):
-            seen[row, list(free).index(index)] = 1.0
-        add({time: seen}, measurement.values[used], measurement.covariance[np.ix_(used, used)])
+        indices = [index for index, is_used in enumerate(measurement.used) if is_used]
+        observation_matrix = np.zeros((len(indices), size))
+        for row, index in enumerate(indices):
+            observation_matrix[row, list(free).index(index)] = 1.0
+        add({time: observation_matrix}, measurement.values[indices], measurement.covariance[np.ix_(indices, indices)])
     matrix, target = np.vstack(rows), np.concatenate(targets)
     information = matrix.T @ matrix
     solution = np.linalg.solve(information, matrix.T @ target)
@@ -91,12 +91,12 @@ def batch_solution(settings, measurements, steps):
 
 
 @FILTERS
-def test_filter_matches_batch_least_squares(kind):
+def test_filter_matches_batch_least_squares(filter_type):
     noise = diagonal(x=0.02, vx=0.1, ax=0.3, y=0.03, vy=0.2, ay=0.1)
     start = diagonal(x=1.0, vx=2.0, ax=1.0, y=1.0, vy=1.0, ay=0.5)
     # Sigma points near the state lose digits to rounding; far ones do not, and the motion is linear here.
     settings = Settings(noise=noise, initial_covariance=start)
-    kalman = kind(settings) if kind is ExtendedKalmanFilter else kind(settings, alpha=1.0)
+    kalman = filter_type(settings) if filter_type is ExtendedKalmanFilter else filter_type(settings, alpha=1.0)
     kalman.is_initialized = True
     random = np.random.default_rng(7)
     steps = list(random.uniform(0.05, 0.5, 29))
@@ -104,11 +104,11 @@ def test_filter_matches_batch_least_squares(kind):
     measurements = []
     for index, time in enumerate(times):
         if index % 3 == 0:
-            measurements.append(measured(time, 0.05, x=time + random.normal(0, 0.2), y=random.normal(0, 0.2)))
+            measurements.append(measurement_of(time, 0.05, x=time + random.normal(0, 0.2), y=random.normal(0, 0.2)))
         elif index % 3 == 1:
-            measurements.append(measured(time, 0.02, vx=1.0 + random.normal(0, 0.1)))
+            measurements.append(measurement_of(time, 0.02, vx=1.0 + random.normal(0, 0.1)))
         else:
-            measurements.append(measured(time, 0.3, ax=random.normal(0, 0.5), vy=random.normal(0, 0.5)))
+            measurements.append(measurement_of(time, 0.3, ax=random.normal(0, 0.5), vy=random.normal(0, 0.5)))
     steps = list(np.diff([measurement.time_ns for measurement in measurements]) / SECOND)
     for measurement in measurements:
         kalman.process(measurement)
@@ -118,46 +118,46 @@ def test_filter_matches_batch_least_squares(kind):
 
 
 @FILTERS
-def test_velocity_is_estimated_from_positions(kind):
-    kalman = kind(Settings(initial_covariance=np.eye(SIZE)))
+def test_velocity_is_estimated_from_positions(filter_type):
+    kalman = filter_type(Settings(initial_covariance=np.eye(SIZE)))
     for step in range(200):
-        kalman.process(measured(0.1 * step, 1e-4, x=0.5 * 0.1 * step, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0))
+        kalman.process(measurement_of(0.1 * step, 1e-4, x=0.5 * 0.1 * step, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0))
     assert kalman.state[State.VX] == pytest.approx(0.5, abs=1e-3)
     assert kalman.state[State.X] == pytest.approx(0.5 * 19.9, abs=1e-3)
 
 
 @FILTERS
-def test_constant_turn_is_tracked(kind):
+def test_constant_turn_is_tracked(filter_type):
     # The less sure a heading is, the shorter is the mean way of all headings: it is sure here.
-    kalman = kind(Settings(noise=np.eye(SIZE) * 1e-6))
+    kalman = filter_type(Settings(noise=np.eye(SIZE) * 1e-6))
     for step in range(1, 301):
-        kalman.process(measured(0.01 * step, 1e-6, vx=1.0, vy=0.0, vz=0.0, vroll=0.0, vpitch=0.0, vyaw=0.5))
-    turned = 0.5 * 2.99
-    assert wrap_angle(kalman.state[State.YAW] - turned) == pytest.approx(0.0, abs=1e-3)
-    assert kalman.state[State.X] == pytest.approx(2.0 * np.sin(turned), abs=2e-2)
-    assert kalman.state[State.Y] == pytest.approx(2.0 * (1.0 - np.cos(turned)), abs=2e-2)
+        kalman.process(measurement_of(0.01 * step, 1e-6, vx=1.0, vy=0.0, vz=0.0, vroll=0.0, vpitch=0.0, vyaw=0.5))
+    yaw = 0.5 * 2.99
+    assert wrap_angle(kalman.state[State.YAW] - yaw) == pytest.approx(0.0, abs=1e-3)
+    assert kalman.state[State.X] == pytest.approx(2.0 * np.sin(yaw), abs=2e-2)
+    assert kalman.state[State.Y] == pytest.approx(2.0 * (1.0 - np.cos(yaw)), abs=2e-2)
 
 
 @FILTERS
-def test_compass_bounds_drift_of_biased_gyroscope(kind):
+def test_compass_bounds_drift_of_biased_gyroscope(filter_type):
     bias = 0.05
-    kalman = kind()
+    kalman = filter_type()
     for step in range(200):
-        kalman.process(measured(0.1 * step, 0.1, vyaw=bias))
-        kalman.correct(measured(0.1 * step, 1e-3, yaw=0.0))
-    free = kind()
+        kalman.process(measurement_of(0.1 * step, 0.1, vyaw=bias))
+        kalman.correct(measurement_of(0.1 * step, 1e-3, yaw=0.0))
+    free = filter_type()
     for step in range(200):
-        free.process(measured(0.1 * step, 0.1, roll=0.0, pitch=0.0, vroll=0.0, vpitch=0.0, vyaw=bias))
+        free.process(measurement_of(0.1 * step, 0.1, roll=0.0, pitch=0.0, vroll=0.0, vpitch=0.0, vyaw=bias))
     assert free.state[State.YAW] == pytest.approx(bias * 19.9, rel=0.1)
     assert abs(kalman.state[State.YAW]) < 0.02
 
 
 @FILTERS
-def test_yaw_correction_wraps_around_pi(kind):
-    kalman = kind(Settings(initial_covariance=diagonal(yaw=0.1)))
+def test_yaw_correction_wraps_around_pi(filter_type):
+    kalman = filter_type(Settings(initial_covariance=diagonal(yaw=0.1)))
     kalman.is_initialized = True
     kalman.state[State.YAW] = pi - 0.1
-    kalman.correct(measured(0.0, 0.1, yaw=-pi + 0.1))
+    kalman.correct(measurement_of(0.0, 0.1, yaw=-pi + 0.1))
     assert abs(kalman.state[State.YAW]) == pytest.approx(pi)
 
 
@@ -165,35 +165,35 @@ def test_outliers_are_rejected():
     kalman = ExtendedKalmanFilter(Settings(initial_covariance=diagonal(x=0.03)))
     kalman.is_initialized = True
     deviation = sqrt(0.03 + 0.01)
-    assert not kalman.correct(measured(0.0, 0.01, threshold=3.0, x=3.01 * deviation))
+    assert not kalman.correct(measurement_of(0.0, 0.01, threshold=3.0, x=3.01 * deviation))
     assert kalman.state[State.X] == 0.0
-    assert kalman.correct(measured(0.0, 0.01, threshold=3.0, x=2.99 * deviation))
+    assert kalman.correct(measurement_of(0.0, 0.01, threshold=3.0, x=2.99 * deviation))
     assert kalman.state[State.X] > 0.0
 
 
 def test_nonfinite_values_are_ignored_and_others_are_used():
     kalman = ExtendedKalmanFilter(Settings(initial_covariance=diagonal(x=1.0, y=1.0)))
     kalman.is_initialized = True
-    assert kalman.correct(measured(0.0, 1.0, x=nan, y=1.0))
+    assert kalman.correct(measurement_of(0.0, 1.0, x=nan, y=1.0))
     assert kalman.state[:2] == pytest.approx([0.0, 0.5])
-    assert not kalman.correct(measured(0.0, 1.0, x=inf))
-    assert not kalman.correct(measured(0.0, nan, x=1.0))
+    assert not kalman.correct(measurement_of(0.0, 1.0, x=inf))
+    assert not kalman.correct(measurement_of(0.0, nan, x=1.0))
     assert kalman.state[:2] == pytest.approx([0.0, 0.5])
 
 
 def test_zero_and_negative_variances_are_replaced():
     kalman = ExtendedKalmanFilter(Settings(initial_covariance=diagonal(x=1.0, y=1.0)))
     kalman.is_initialized = True
-    assert kalman.correct(measured(0.0, 0.0, x=1.0))
+    assert kalman.correct(measurement_of(0.0, 0.0, x=1.0))
     assert kalman.state[State.X] == pytest.approx(1.0)
-    assert kalman.correct(measured(0.0, -1.0, y=1.0))
+    assert kalman.correct(measurement_of(0.0, -1.0, y=1.0))
     assert kalman.state[State.Y] == pytest.approx(0.5)
 
 
 def test_past_measurement_corrects_without_moving_time_back():
     kalman = ExtendedKalmanFilter()
-    kalman.process(measured(2.0, x=0.0))
-    kalman.process(measured(1.0, x=1.0))
+    kalman.process(measurement_of(2.0, x=0.0))
+    kalman.process(measurement_of(1.0, x=1.0))
     assert kalman.time_ns == 2 * SECOND
     assert 0.0 < kalman.state[State.X] < 1.0
 
@@ -213,9 +213,9 @@ def test_dynamic_process_noise_grows_with_velocity():
 
 def test_commands_accelerate_within_limits_and_time_out():
     ones, limits = (1.0,) * 6, (0.5,) * 6
-    used = (True, False, False, False, False, True)
-    kalman = ExtendedKalmanFilter(Settings(control=Control(used, SECOND, limits, ones, limits, ones)))
-    kalman.process(measured(0.0, vx=0.0, vyaw=0.0))
+    is_controlled = (True, False, False, False, False, True)
+    kalman = ExtendedKalmanFilter(Settings(control=Control(is_controlled, SECOND, limits, ones, limits, ones)))
+    kalman.process(measurement_of(0.0, vx=0.0, vyaw=0.0))
     kalman.command = (np.array([2.0, 0.0, 0.0, 0.0, 0.0, 0.1]), 0)
     kalman.predict(SECOND // 2)
     assert kalman.state[State.AX] == 0.5
@@ -226,10 +226,10 @@ def test_commands_accelerate_within_limits_and_time_out():
 
 
 @FILTERS
-def test_reset_restores_initial_state(kind):
+def test_reset_restores_initial_state(filter_type):
     start = np.arange(SIZE) / 100.0
-    kalman = kind(Settings(initial_state=start))
-    kalman.process(measured(0.0, x=3.0))
+    kalman = filter_type(Settings(initial_state=start))
+    kalman.process(measurement_of(0.0, x=3.0))
     kalman.reset()
     assert not kalman.is_initialized
     np.testing.assert_array_equal(kalman.state, start)

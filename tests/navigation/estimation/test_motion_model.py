@@ -21,7 +21,7 @@ numbers = st.floats(-2.0, 2.0)
 states = st.tuples(*([numbers] * 3), numbers, st.floats(-1.0, 1.0), numbers, *([numbers] * 9)).map(np.array)
 
 
-def moving(**values):
+def moving_state(**values):
     state = np.zeros(SIZE)
     for name, value in values.items():
         state[State[name.upper()]] = value
@@ -29,19 +29,19 @@ def moving(**values):
 
 
 def test_constant_velocity_moves_along_line():
-    later = predict_state(moving(x=1.0, yaw=pi / 2, vx=2.0, vy=1.0), 0.5)
-    assert later[:3] == pytest.approx([0.5, 1.0, 0.0])
+    predicted = predict_state(moving_state(x=1.0, yaw=pi / 2, vx=2.0, vy=1.0), 0.5)
+    assert predicted[:3] == pytest.approx([0.5, 1.0, 0.0])
 
 
 def test_constant_acceleration_changes_position_and_velocity():
-    later = predict_state(moving(vx=1.0, ax=2.0), 3.0)
-    assert later[State.X] == pytest.approx(1.0 * 3.0 + 0.5 * 2.0 * 9.0)
-    assert later[State.VX] == pytest.approx(7.0)
+    predicted = predict_state(moving_state(vx=1.0, ax=2.0), 3.0)
+    assert predicted[State.X] == pytest.approx(1.0 * 3.0 + 0.5 * 2.0 * 9.0)
+    assert predicted[State.VX] == pytest.approx(7.0)
 
 
 def test_constant_turn_converges_to_circle_with_small_steps():
     def end(steps):
-        state = moving(vx=1.0, vyaw=0.5)
+        state = moving_state(vx=1.0, vyaw=0.5)
         for _ in range(steps):
             state = predict_state(state, 2.0 / steps)
         return state
@@ -54,14 +54,14 @@ def test_constant_turn_converges_to_circle_with_small_steps():
 
 
 def test_angles_are_wrapped_to_pi():
-    assert predict_state(moving(yaw=3.0, vyaw=1.0), 1.0)[State.YAW] == pytest.approx(4.0 - 2.0 * pi)
+    assert predict_state(moving_state(yaw=3.0, vyaw=1.0), 1.0)[State.YAW] == pytest.approx(4.0 - 2.0 * pi)
     assert wrap_angle(-pi - 0.1) == pytest.approx(pi - 0.1)
 
 
 def test_yaw_rate_of_rolled_body_changes_pitch():
-    later = predict_state(moving(roll=pi / 2, vyaw=1.0), 0.1)
-    assert later[State.PITCH] == pytest.approx(-0.1)
-    assert later[State.YAW] == pytest.approx(0.0)
+    predicted = predict_state(moving_state(roll=pi / 2, vyaw=1.0), 0.1)
+    assert predicted[State.PITCH] == pytest.approx(-0.1)
+    assert predicted[State.YAW] == pytest.approx(0.0)
 
 
 @settings(max_examples=40)
@@ -80,10 +80,10 @@ def test_jacobian_matches_finite_differences(state, seconds):
     step = 1e-6
     columns = []
     for index in range(SIZE):
-        up, down = state.copy(), state.copy()
-        up[index] += step
-        down[index] -= step
-        difference = predict_state(up, seconds) - predict_state(down, seconds)
+        higher, lower = state.copy(), state.copy()
+        higher[index] += step
+        lower[index] -= step
+        difference = predict_state(higher, seconds) - predict_state(lower, seconds)
         difference[3:6] = [wrap_angle(float(angle)) for angle in difference[3:6]]
         columns.append(difference / (2.0 * step))
     np.testing.assert_allclose(state_jacobian(state, seconds), np.array(columns).T, atol=1e-7)

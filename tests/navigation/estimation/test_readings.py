@@ -24,7 +24,7 @@ def pose(x=0.0, y=0.0, z=0.0, rpy=(0.0, 0.0, 0.0)):
     return (x, y, z, *quaternion_from_rpy(rpy))
 
 
-def only(*names):
+def axes(*names):
     return tuple(State(index).name in names for index in range(SIZE))
 
 
@@ -33,7 +33,7 @@ def names_of(used):
 
 
 def test_pose_and_covariance_are_transformed_to_world():
-    reader = PoseReader(only("X", "YAW"))
+    reader = PoseReader(axes("X", "YAW"))
     reading = reader.read(pose(1.0, 2.0, rpy=(0, 0, 0.3)), SIX, pose(10.0, rpy=(0, 0, pi / 2)), 0)
     assert reading.values[POSITION] == pytest.approx([8.0, 1.0, 0.0])
     assert reading.values[State.YAW] == pytest.approx(0.3 + pi / 2)
@@ -52,7 +52,7 @@ def test_relative_poses_start_at_first_pose():
 
 
 def test_differential_poses_give_velocities():
-    reader = PoseReader(only("X", "Y", "YAW"), differential=True)
+    reader = PoseReader(axes("X", "Y", "YAW"), differential=True)
     assert reader.read(pose(1.0, rpy=(0, 0, pi / 2)), SIX, IDENTITY, 0) is None
     reading = reader.read(pose(1.0, 1.0, rpy=(0, 0, pi / 2 + 0.1)), SIX, IDENTITY, SECOND // 2)
     assert reading.values[VELOCITY] == pytest.approx([2.0, 0.0, 0.0])
@@ -63,7 +63,7 @@ def test_differential_poses_give_velocities():
 
 
 def test_two_d_mode_fixes_remaining_states_to_zero():
-    reading = PoseReader(only("X"), two_d=True).read(pose(1.0, 2.0, 3.0, (0.1, 0.2, 0.3)), SIX, IDENTITY, 0)
+    reading = PoseReader(axes("X"), two_d=True).read(pose(1.0, 2.0, 3.0, (0.1, 0.2, 0.3)), SIX, IDENTITY, 0)
     assert names_of(reading.used) == {"X", "Z", "ROLL", "PITCH", "VZ", "VROLL", "VPITCH", "AZ"}
     assert reading.values[State.Z] == reading.values[State.ROLL] == 0.0
     assert reading.covariance[State.AZ, State.AZ] == 1e-6
@@ -71,16 +71,16 @@ def test_two_d_mode_fixes_remaining_states_to_zero():
 
 @pytest.mark.parametrize("mounting", [(pi, 0, 0), (0, 0, pi / 2), (0.2, -0.7, 2.0)])
 def test_orientation_of_rotated_imu_gives_body_attitude(mounting):
-    body, turned = quaternion_from_rpy((0.1, 0.2, 0.3)), quaternion_from_rpy(mounting)
-    imu = quaternion_multiply(body, turned)
-    reading = PoseReader(only("ROLL", "PITCH", "YAW")).read_orientation(imu, SIX, (0.5, 0, 0, *turned), 0)
+    body, mounted = quaternion_from_rpy((0.1, 0.2, 0.3)), quaternion_from_rpy(mounting)
+    imu = quaternion_multiply(body, mounted)
+    reading = PoseReader(axes("ROLL", "PITCH", "YAW")).read_orientation(imu, SIX, (0.5, 0, 0, *mounted), 0)
     assert reading.values[ANGLES] == pytest.approx([0.1, 0.2, 0.3])
     assert reading.values[POSITION] == pytest.approx([0.0, 0.0, 0.0])
 
 
 def test_roll_of_rotated_imu_is_pitch_of_body():
     mounting = pose(rpy=(0, 0, pi / 2))
-    reading = PoseReader(only("ROLL")).read_orientation(mounting[3:], SIX, mounting, 0)
+    reading = PoseReader(axes("ROLL")).read_orientation(mounting[3:], SIX, mounting, 0)
     assert names_of(reading.used) == {"PITCH"}
     assert reading.covariance[State.PITCH, State.PITCH] == pytest.approx(4.0)
 
@@ -96,20 +96,20 @@ def test_twist_is_corrected_for_lever_arm_of_sensor():
 
 
 def test_gravity_is_subtracted_from_resting_accelerometer():
-    tilted = quaternion_from_rpy((0.3, -0.4, 1.0))
-    upwards = compose((0.0, 0.0, 0.0, *_inverse(tilted)), (0.0, 0.0, GRAVITY, 0.0, 0.0, 0.0, 1.0))[:3]
-    assert subtract_gravity(np.array(upwards), tilted) == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
+    orientation = quaternion_from_rpy((0.3, -0.4, 1.0))
+    upwards = compose((0.0, 0.0, 0.0, *_inverse(orientation)), (0.0, 0.0, GRAVITY, 0.0, 0.0, 0.0, 1.0))[:3]
+    assert subtract_gravity(np.array(upwards), orientation) == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
 
 
 def test_acceleration_is_rotated_into_body_frame():
     mounting = pose(rpy=(0, 0, pi / 2))
-    reading = read_acceleration(np.array([1.0, 0.0, 0.0]), np.eye(3), mounting, only("AX"), two_d=False)
+    reading = read_acceleration(np.array([1.0, 0.0, 0.0]), np.eye(3), mounting, axes("AX"), two_d=False)
     assert reading.values[12:] == pytest.approx([0.0, 1.0, 0.0])
     assert names_of(reading.used) == {"AY"}
 
 
 def test_nonfinite_values_are_ignored_and_others_are_used():
-    reading = PoseReader(only("X", "Y", "YAW")).read((1.0, nan, nan, nan, 0.0, 0.0, 1.0), SIX, IDENTITY, 0)
+    reading = PoseReader(axes("X", "Y", "YAW")).read((1.0, nan, nan, nan, 0.0, 0.0, 1.0), SIX, IDENTITY, 0)
     assert names_of(reading.used) == {"X"}
     assert reading.values[State.X] == 1.0
     assert np.isfinite(reading.values).all()
@@ -117,14 +117,16 @@ def test_nonfinite_values_are_ignored_and_others_are_used():
         np.array([1.0, nan, 0.0]), np.array([inf, 0.0, 2.0]), SIX, IDENTITY, np.zeros(3), ALL, two_d=False
     )
     assert names_of(twist.used) == {"VX", "VZ", "VPITCH", "VYAW"}
-    felt = read_acceleration(np.array([nan, 2.0, 3.0]), np.eye(3), IDENTITY, ALL, two_d=False)
-    assert names_of(felt.used) == {"AY", "AZ"}
-    slanting = read_acceleration(np.array([nan, 2.0, 3.0]), np.eye(3), pose(rpy=(0, 0, 0.7)), ALL, two_d=False)
-    assert names_of(slanting.used) == {"AZ"}
+    acceleration = read_acceleration(np.array([nan, 2.0, 3.0]), np.eye(3), IDENTITY, ALL, two_d=False)
+    assert names_of(acceleration.used) == {"AY", "AZ"}
+    rotated_acceleration = read_acceleration(
+        np.array([nan, 2.0, 3.0]), np.eye(3), pose(rpy=(0, 0, 0.7)), ALL, two_d=False
+    )
+    assert names_of(rotated_acceleration.used) == {"AZ"}
 
 
 def test_relative_poses_start_at_first_finite_pose():
-    reader = PoseReader(only("X"), relative=True)
+    reader = PoseReader(axes("X"), relative=True)
     assert reader.read((nan, nan, nan, nan, nan, nan, nan), SIX, IDENTITY, 0) is None
     assert reader.read(pose(5.0), SIX, IDENTITY, 1).values[State.X] == 0.0
     assert reader.read(pose(7.0), SIX, IDENTITY, 2).values[State.X] == 2.0

@@ -1,4 +1,4 @@
-"""A robot that drives along a path in a costmap, without ROS: it has exactly the velocity that it is told."""
+"""A simulated robot that drives along a path in a costmap, without ROS; it has exactly the commanded velocity."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ PERIOD = 0.05
 
 
 def floor(size=10.0, resolution=0.05):
-    """An empty costmap about the origin."""
+    """Return an empty costmap around the origin."""
     cells = round(size / resolution)
     return Costmap(Grid(cells=np.zeros((cells, cells), np.uint8), resolution=resolution, x=-size / 2.0, y=-size / 2.0))
 
 
 def put_box(costmap, x, y, width, depth, grow=0.0):
-    """A lethal box with its middle at x, y; `grow` is inscribed around it."""
+    """Mark a lethal box with its center at x, y, and inscribed cells around it up to `grow`."""
     grid = costmap.grid
     for margin, cost in ((grow, 253), (0.0, LETHAL)):
         corners = np.array(
@@ -33,13 +33,13 @@ def put_box(costmap, x, y, width, depth, grow=0.0):
 
 
 def line(*points, spacing=0.05):
-    """A path through points, its headings along it."""
-    parts = []
+    """Return a path through some points; the headings follow the path."""
+    segments = []
     for (x0, y0), (x1, y1) in itertools.pairwise(points):
         count = max(2, round(np.hypot(x1 - x0, y1 - y0) / spacing) + 1)
         heading = np.full(count, np.arctan2(y1 - y0, x1 - x0))
-        parts.append(np.stack((np.linspace(x0, x1, count), np.linspace(y0, y1, count), heading), axis=-1))
-    return np.concatenate(parts)
+        segments.append(np.stack((np.linspace(x0, x1, count), np.linspace(y0, y1, count), heading), axis=-1))
+    return np.concatenate(segments)
 
 
 def control_input(path, pose=(0.0, 0.0, 0.0), velocity=ZERO_VELOCITY, costmap=None, footprint=None, xy_tolerance=0.25):
@@ -55,9 +55,9 @@ def control_input(path, pose=(0.0, 0.0, 0.0), velocity=ZERO_VELOCITY, costmap=No
 
 
 def drive(follower, path, checker, *, pose=(0.0, 0.0, 0.0), costmap=None, cycles=2000, footprint=None):
-    """Drive until the goal is reached; poses and velocities of all cycles."""
+    """Drive until the goal is reached, and return the poses and velocities of all cycles."""
     costmap = costmap or floor()
-    followed = FollowedPath(path, 2.0)
+    followed_path = FollowedPath(path, 2.0)
     velocity = ZERO_VELOCITY
     poses, velocities = [pose], [velocity]
     follower.reset()
@@ -65,9 +65,11 @@ def drive(follower, path, checker, *, pose=(0.0, 0.0, 0.0), costmap=None, cycles
     for _ in range(cycles):
         if checker.is_reached(pose, tuple(path[-1]), velocity):
             break
-        followed.update_progress(pose[0], pose[1])
-        now = control_input(followed.poses_ahead(3.0), pose, velocity, costmap, footprint, checker.xy_tolerance)
-        velocity = follower.compute_velocity(now)
+        followed_path.update_progress(pose[0], pose[1])
+        cycle_input = control_input(
+            followed_path.poses_ahead(3.0), pose, velocity, costmap, footprint, checker.xy_tolerance
+        )
+        velocity = follower.compute_velocity(cycle_input)
         pose = tuple(predict_poses(pose, np.array([velocity]), np.array([PERIOD]))[0, 0])
         poses.append(pose)
         velocities.append(velocity)

@@ -1,4 +1,4 @@
-"""Followers: what pure pursuit's formulas say, limits, obstacles, and whole paths."""
+"""Path followers: the formulas of pure pursuit, limits, obstacles, and whole paths."""
 
 from __future__ import annotations
 
@@ -59,17 +59,17 @@ class TestPurePursuit:
     @given(x=st.floats(0.05, 2.0), y=st.floats(-1.0, 1.0))
     def test_curvature_leads_to_carrot(self, x, y):
         curvature = curvature_to(np.array([x, y]))
-        turned = 2.0 * np.arctan2(y, x)
-        length = turned / curvature if abs(curvature) > 1e-9 else x
+        turn_angle = 2.0 * np.arctan2(y, x)
+        length = turn_angle / curvature if abs(curvature) > 1e-9 else x
         end = predict_poses((0, 0, 0), np.array([[1.0, 0.0, curvature]]), np.array([length]))[0, 0]
         assert end[:2] == pytest.approx([x, y], abs=1e-6)
 
     def test_carrot_is_intersection_of_lookahead_circle_and_path(self):
-        seen = np.array([[0.0, 0.3], [0.4, 0.3], [1.0, 0.3]])
-        carrot = find_carrot(seen, 0.5)
+        poses_ahead = np.array([[0.0, 0.3], [0.4, 0.3], [1.0, 0.3]])
+        carrot = find_carrot(poses_ahead, 0.5)
         assert carrot == pytest.approx([0.4, 0.3])
-        assert hypot(*find_carrot(seen, 0.8)) == pytest.approx(0.8)
-        assert find_carrot(seen, 5.0) == pytest.approx([1.0, 0.3])
+        assert hypot(*find_carrot(poses_ahead, 0.8)) == pytest.approx(0.8)
+        assert find_carrot(poses_ahead, 5.0) == pytest.approx([1.0, 0.3])
 
     def test_curve_reduces_speed_in_proportion_to_radius(self):
         assert speed_in_curve(0.5, 1.0 / 0.45, 0.9) == pytest.approx(0.25)
@@ -86,8 +86,8 @@ class TestPurePursuit:
         assert command.yaw == pytest.approx(3.2 * PERIOD)
 
     def test_speed_is_reduced_near_goal_and_obstacles(self):
-        near = RegulatedPurePursuit().compute_velocity(control_input(line((0.0, 0.0), (0.3, 0.0))))
-        assert near.x == pytest.approx(0.5 * 0.3 / 0.6)
+        near_goal = RegulatedPurePursuit().compute_velocity(control_input(line((0.0, 0.0), (0.3, 0.0))))
+        assert near_goal.x == pytest.approx(0.5 * 0.3 / 0.6)
         costly = floor()
         costly.grid.cells[:] = 200
         assert (
@@ -107,10 +107,10 @@ class TestPurePursuit:
         with pytest.raises(FollowingError, match="obstacle"):
             RegulatedPurePursuit().compute_velocity(control_input(line((0.0, 0.0), (3.0, 0.0)), costmap=costmap))
 
-    @given(angle=st.floats(-pi, pi), now=st.floats(-1.8, 1.8))
-    def test_rotation_speed_respects_acceleration(self, angle, now):
-        speed = rotation_speed(angle, now, PERIOD, 1.8, 3.2)
-        assert abs(speed - now) <= 3.2 * PERIOD + 1e-9
+    @given(angle=st.floats(-pi, pi), current=st.floats(-1.8, 1.8))
+    def test_rotation_speed_respects_acceleration(self, angle, current):
+        speed = rotation_speed(angle, current, PERIOD, 1.8, 3.2)
+        assert abs(speed - current) <= 3.2 * PERIOD + 1e-9
         assert abs(speed) <= 1.8 + 1e-9
 
     def test_speed_limit_is_applied_and_removed(self):
@@ -129,21 +129,21 @@ class TestSampling:
     @given(
         yaw=st.floats(-3.0, 3.0),
         x=st.floats(0.0, 0.26),
-        turning=st.floats(-1.0, 1.0),
+        yaw_rate=st.floats(-1.0, 1.0),
         bend=st.floats(-2.0, 2.0),
     )
-    def test_command_respects_velocity_and_acceleration_limits(self, yaw, x, turning, bend):
+    def test_command_respects_velocity_and_acceleration_limits(self, yaw, x, yaw_rate, bend):
         follower = SamplingFollower()
-        now = Velocity(x, 0.0, turning)
+        velocity = Velocity(x, 0.0, yaw_rate)
         command = follower.compute_velocity(
-            control_input(line((0.0, 0.0), (1.0, 0.0), (2.0, bend)), (0.0, 0.0, yaw), now)
+            control_input(line((0.0, 0.0), (1.0, 0.0), (2.0, bend)), (0.0, 0.0, yaw), velocity)
         )
         limits = follower.parameters.limits
-        for before, after, least, most, faster in zip(
-            now, command, limits.min_velocity, limits.max_velocity, limits.acceleration, strict=True
+        for old, new, lowest, highest, acceleration in zip(
+            velocity, command, limits.min_velocity, limits.max_velocity, limits.acceleration, strict=True
         ):
-            assert least - 1e-9 <= after <= most + 1e-9
-            assert abs(after - before) <= faster * PERIOD + 1e-9
+            assert lowest - 1e-9 <= new <= highest + 1e-9
+            assert abs(new - old) <= acceleration * PERIOD + 1e-9
 
     @pytest.mark.parametrize("y", [0.0, 0.25, 0.4])
     def test_robot_avoids_box(self, y):
@@ -168,8 +168,8 @@ class TestWholePaths:
         poses, velocities = drive(make(), CORNER, StoppedGoalChecker())
         assert hypot(*(poses[-1, :2] - CORNER[-1, :2])) <= 0.25
         assert abs(wrap_angle(poses[-1, 2] - pi / 2)) <= 0.25
-        beside = np.hypot(*(poses[:, None, :2] - CORNER[None, :, :2]).T).min(axis=0)
-        assert beside.max() < 0.3
+        distances = np.hypot(*(poses[:, None, :2] - CORNER[None, :, :2]).T).min(axis=0)
+        assert distances.max() < 0.3
         assert hypot(*velocities[-1, :2]) <= 0.25
 
     def test_path_behind_robot_is_followed(self, make):

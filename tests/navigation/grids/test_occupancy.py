@@ -16,12 +16,12 @@ def test_grid_message_round_trip() -> None:
     assert (message.info.width, message.info.height) == (3, 2)
     assert list(message.data) == [0, 100, -1, 5, 6, 7]
     assert (message.header.frame_id, message.header.stamp.sec, message.info.map_load_time.sec) == ("map", 3, 3)
-    again = grid_from_message(message)
-    assert (again.cells == grid.cells).all()
-    assert again.cells.dtype == np.int8
-    assert (again.x, again.y) == (-1.0, 2.0)
-    assert abs(again.yaw - pi / 2) < 1e-12
-    assert again.resolution == 0.05
+    converted = grid_from_message(message)
+    assert (converted.cells == grid.cells).all()
+    assert converted.cells.dtype == np.int8
+    assert (converted.x, converted.y) == (-1.0, 2.0)
+    assert abs(converted.yaw - pi / 2) < 1e-12
+    assert converted.resolution == 0.05
 
 
 @pytest.mark.parametrize(

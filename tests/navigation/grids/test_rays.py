@@ -32,24 +32,24 @@ def test_lines_are_connected_and_stay_within_half_a_cell(lines: list[tuple[tuple
     starts, ends = np.array([a for a, _ in lines]), np.array([b for _, b in lines])
     cells, line = cells_on_lines(starts, ends)
     for number, (start, end) in enumerate(zip(starts, ends, strict=True)):
-        own = cells[line == number]
-        assert (own[0] == start).all()
-        assert (own[-1] == end).all()
-        assert len(own) == np.abs(end - start).max() + 1
-        if len(own) > 1:
-            assert (np.abs(np.diff(own, axis=0)).max(axis=1) == 1).all()
-            exact = start + np.linspace(0, 1, len(own))[:, None] * (end - start)
-            assert np.abs(own - exact).max() <= 0.5 + 1e-9
+        line_cells = cells[line == number]
+        assert (line_cells[0] == start).all()
+        assert (line_cells[-1] == end).all()
+        assert len(line_cells) == np.abs(end - start).max() + 1
+        if len(line_cells) > 1:
+            assert (np.abs(np.diff(line_cells, axis=0)).max(axis=1) == 1).all()
+            exact = start + np.linspace(0, 1, len(line_cells))[:, None] * (end - start)
+            assert np.abs(line_cells - exact).max() <= 0.5 + 1e-9
 
 
 def test_rays_end_at_walls_and_maximum_range() -> None:
     walls = np.zeros((100, 100), bool)
     walls[:, 80] = True
     field = Grid(cells=distance_field(walls, 0.05), resolution=0.05)
-    measured = cast_rays(field, np.array([1.0, 2.5]), np.array([0.0, pi / 4, pi, pi / 2]), 10.0)
-    assert abs(measured[0] - 3.0) <= 0.05
-    assert measured[2] == measured[3] == 10.0
-    assert measured[1] == 10.0  # it leaves the grid before it meets the wall
+    ranges = cast_rays(field, np.array([1.0, 2.5]), np.array([0.0, pi / 4, pi, pi / 2]), 10.0)
+    assert abs(ranges[0] - 3.0) <= 0.05
+    assert ranges[2] == ranges[3] == 10.0
+    assert ranges[1] == 10.0  # it leaves the grid before it meets the wall
     assert cast_rays(field, np.array([1.0, 2.5]), np.array([0.0]), 2.0)[0] == 2.0
 
 
@@ -57,8 +57,8 @@ def test_rays_are_cast_in_rotated_grid() -> None:
     walls = np.zeros((100, 100), bool)
     walls[:, 80] = True
     field = Grid(cells=distance_field(walls, 0.05), resolution=0.05, x=1.0, y=-2.0, yaw=pi / 2)
-    measured = cast_rays(field, np.array([[0.0, 0.0], [-1.0, 0.0]]), np.array([pi / 2]), 10.0)
-    assert np.abs(measured - 2.0).max() <= 0.05
+    ranges = cast_rays(field, np.array([[0.0, 0.0], [-1.0, 0.0]]), np.array([pi / 2]), 10.0)
+    assert np.abs(ranges - 2.0).max() <= 0.05
 
 
 @given(st.integers(0, 2**32 - 1))
@@ -69,28 +69,28 @@ def test_rays_do_not_pass_through_walls(seed: int) -> None:
     field = Grid(cells=distance_field(walls, 0.1), resolution=0.1)
     points = random.uniform(0.3, 5.7, (20, 2))
     angles = random.uniform(-pi, pi, 20)
-    measured = cast_rays(field, points, angles, 20.0)
+    ranges = cast_rays(field, points, angles, 20.0)
     along = np.stack((np.cos(angles), np.sin(angles)), axis=-1)
     with np.errstate(divide="ignore"):
         exact = np.where(along > 0, (5.95 - points) / along, (0.05 - points) / along).min(axis=1)
-    ends = points + measured[:, None] * along
-    assert (measured < 20.0).all()
+    ends = points + ranges[:, None] * along
+    assert (ranges < 20.0).all()
     assert ((ends >= -1e-9) & (ends <= 6.0 + 1e-9)).all()
-    assert (measured <= exact + 0.1 / np.abs(along).max(axis=1)).all()
+    assert (ranges <= exact + 0.1 / np.abs(along).max(axis=1)).all()
 
 
 def test_ray_counts_counts_hits_and_passes() -> None:
-    hit, passed = ray_counts(
+    hits, passes = ray_counts(
         (1, 5), np.array([0, 0]), np.array([[0, 3], [0, 4], [0, 9]]), np.array([True, False, True])
     )
-    assert hit.tolist() == [[0, 0, 0, 1, 0]]
-    assert passed.tolist() == [[3, 3, 3, 2, 2]]
+    assert hits.tolist() == [[0, 0, 0, 1, 0]]
+    assert passes.tolist() == [[3, 3, 3, 2, 2]]
 
 
 def test_distance_field_has_meters_to_nearest_marked_cell() -> None:
-    marked = np.zeros((3, 4), bool)
-    assert np.isposinf(distance_field(marked, 0.1)).all()
-    marked[0, 0] = True
-    field = distance_field(marked, 0.5)
+    is_marked = np.zeros((3, 4), bool)
+    assert np.isposinf(distance_field(is_marked, 0.1)).all()
+    is_marked[0, 0] = True
+    field = distance_field(is_marked, 0.5)
     assert field[0].tolist() == [0.0, 0.5, 1.0, 1.5]
     assert field[1, 1] == 0.5 * 2**0.5

@@ -1,4 +1,4 @@
-"""Scans and motions of amcl: known answers."""
+"""Sensor and motion models of amcl: scans and motions with known results."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _QUIET = Noise(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def room(yaw: float = 0.0) -> MapLikelihoods:
-    """A room of 6 by 4 meters with walls, its corner at (0, 0)."""
+    """Return a room of 6 by 4 meters with walls; its corner is at (0, 0)."""
     cells = np.full((80, 120), FREE, np.int8)
     cells[[0, -1]] = cells[:, [0, -1]] = OCCUPIED
     return MapLikelihoods(Grid(cells=cells, resolution=0.05, yaw=yaw), LaserSettings())
 
 
 def beams_in_room(x: float, y: float, yaw: float, count: int = 36) -> Beams:
-    """What a laser in the middle of the robot sees there."""
+    """Return the beams of a laser at the robot's center."""
     angles = np.linspace(-pi, pi, count, endpoint=False)
     along = np.stack((np.cos(angles + yaw), np.sin(angles + yaw)), axis=-1)
     walls = np.where(along > 0, (np.array((5.975, 3.975)) - (x, y)), (np.array((0.025, 0.025)) - (x, y)))
@@ -51,9 +51,9 @@ def test_true_pose_is_likeliest(model: str) -> None:
 
 @pytest.mark.parametrize("model", MODELS)
 def test_true_pose_is_likeliest_on_rotated_map(model: str) -> None:
-    turned = room(yaw=pi / 2)
+    rotated_room = room(yaw=pi / 2)
     poses = np.array([(-1.5, 2.0, 0.4 + pi / 2), (-1.5, 2.0, 0.4), (-2.5, 2.0, 0.4 + pi / 2)])
-    assert turned.likelihoods(model, poses, beams_in_room(2.0, 1.5, 0.4)).argmax() == 0
+    assert rotated_room.likelihoods(model, poses, beams_in_room(2.0, 1.5, 0.4)).argmax() == 0
 
 
 def test_likelihood_matches_likelihood_field_formula() -> None:
@@ -62,9 +62,9 @@ def test_likelihood_matches_likelihood_field_formula() -> None:
     cells[:, 30] = OCCUPIED
     likelihoods = MapLikelihoods(Grid(cells=cells, resolution=0.1), settings)
     beams = Beams((0.0, 0.0), np.array([[1.0, 0.0]]), np.array([1.0]), 8.0)
-    measured = likelihoods.likelihoods("likelihood_field", np.array([[2.05, 1.05, 0.0], [1.85, 1.05, 0.0]]), beams)
+    computed = likelihoods.likelihoods("likelihood_field", np.array([[2.05, 1.05, 0.0], [1.85, 1.05, 0.0]]), beams)
     chances = 0.6 * np.exp(-0.5 * (np.array([0.0, 0.2]) / 0.1) ** 2) + 0.4 / 8.0
-    assert measured == pytest.approx(1.0 + chances**3, abs=1e-6)
+    assert computed == pytest.approx(1.0 + chances**3, abs=1e-6)
     product = likelihoods.likelihoods("likelihood_field_prob", np.array([[2.05, 1.05, 0.0], [1.85, 1.05, 0.0]]), beams)
     assert product[1] / product[0] == pytest.approx(chances[1] / chances[0], rel=1e-5)
 
@@ -79,13 +79,13 @@ def test_beams_without_hit_are_neutral_and_beams_off_map_do_not_match() -> None:
 
 def test_beams_that_few_particles_explain_are_skipped() -> None:
     beams = beams_in_room(2.0, 1.5, 0.0)
-    beams.end_points[:6] *= 0.4  # somebody stands there
+    beams.end_points[:6] *= 0.4  # a person stands in these beams
     poses = np.array([(2.0, 1.5, 0.0), (2.1, 1.5, 0.0), (1.4, 1.5, 0.0)])
     likelihoods = room()
     plain = likelihoods.likelihoods("likelihood_field_prob", poses, beams)
     skipped = likelihoods.likelihoods("likelihood_field_prob", poses, beams, BeamSkipping())
-    without = Beams((0.0, 0.0), beams.end_points[6:], beams.ranges[6:], 12.0)
-    assert skipped == pytest.approx(likelihoods.likelihoods("likelihood_field_prob", poses, without), rel=1e-5)
+    remaining_beams = Beams((0.0, 0.0), beams.end_points[6:], beams.ranges[6:], 12.0)
+    assert skipped == pytest.approx(likelihoods.likelihoods("likelihood_field_prob", poses, remaining_beams), rel=1e-5)
     assert plain[2] > 1.5 * skipped[2]
 
 

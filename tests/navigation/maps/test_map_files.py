@@ -1,4 +1,4 @@
-"""Maps as images: what pixels mean in each mode, and that what is written is read again."""
+"""Maps as images: the meaning of pixels in each mode, and round trips."""
 
 from __future__ import annotations
 
@@ -62,8 +62,8 @@ def test_alpha_is_averaged_in_trinary_and_unknown_in_scale_mode() -> None:
 
 
 def test_equal_thresholds_give_no_intermediate_values() -> None:
-    logged = _map_yaml(MapMode.SCALE, occupied=0.5, free=0.5)
-    assert cells_of_image(MapImage(np.array([[0.0, 0.5, 1.0]])), logged).tolist() == [[100, 0, 0]]
+    text = _map_yaml(MapMode.SCALE, occupied=0.5, free=0.5)
+    assert cells_of_image(MapImage(np.array([[0.0, 0.5, 1.0]])), text).tolist() == [[100, 0, 0]]
 
 
 def test_written_pixels_match_nav2() -> None:
@@ -79,17 +79,17 @@ def test_raw_map_round_trip(tmp_path_factory: pytest.TempPathFactory, cells: NDA
     grid = Grid(cells=cells, resolution=0.025, x=-12.345, y=3.0, yaw=0.5)
     image, text = save_map(grid, MapSaveSettings(name=str(folder / "a"), image_format=kind, mode=MapMode.RAW))
     assert (image.name, text.name) == (f"a.{kind}", "a.yaml")
-    again = load_map(text)
-    assert again.cells.tolist() == cells.tolist()
-    assert (again.resolution, again.x, again.y, again.yaw) == (0.025, -12.345, 3.0, 0.5)
+    loaded = load_map(text)
+    assert loaded.cells.tolist() == cells.tolist()
+    assert (loaded.resolution, loaded.x, loaded.y, loaded.yaw) == (0.025, -12.345, 3.0, 0.5)
 
 
 @given(_CELLS)
 def test_trinary_map_round_trip(tmp_path_factory: pytest.TempPathFactory, cells: NDArray[np.int8]) -> None:
     name = str(tmp_path_factory.mktemp("maps") / "a")
     _, text = save_map(Grid(cells=cells, resolution=0.05), MapSaveSettings(name=name, free_thresh=0.196))
-    known = np.where(cells >= 65, 100, np.where((cells >= 0) & (cells <= 20), 0, -1))
-    assert load_map(text).cells.tolist() == known.tolist()
+    rounded = np.where(cells >= 65, 100, np.where((cells >= 0) & (cells <= 20), 0, -1))
+    assert load_map(text).cells.tolist() == rounded.tolist()
 
 
 @given(_CELLS)
@@ -99,9 +99,9 @@ def test_scale_map_round_trip_keeps_unknown_cells(
     name = str(tmp_path_factory.mktemp("maps") / "a")
     image, text = save_map(Grid(cells=cells, resolution=0.05), MapSaveSettings(name=name, mode=MapMode.SCALE))
     assert image.suffix == ".png"
-    again = load_map(text).cells
-    assert ((again == -1) == (cells == -1)).all()
-    assert (again[cells >= 66] == 100).all()
+    loaded = load_map(text).cells
+    assert ((loaded == -1) == (cells == -1)).all()
+    assert (loaded[cells >= 66] == 100).all()
 
 
 def test_written_map_files_match_nav2_byte_for_byte(tmp_path: Path) -> None:
@@ -144,9 +144,9 @@ def test_saving_warns_about_lossy_thresholds_and_unknown_formats(tmp_path: Path)
 def test_malformed_images_are_reported(tmp_path: Path, data: bytes, reason: str) -> None:
     path = tmp_path / "a.pgm"
     path.write_bytes(data)
-    with pytest.raises(LinkwrightError, match=reason) as raised:
+    with pytest.raises(LinkwrightError, match=reason) as error:
         read_image(path)
-    assert raised.value.diagnostics[0].code == "NAV203"
+    assert error.value.diagnostics[0].code == "NAV203"
 
 
 @pytest.mark.parametrize(
@@ -168,13 +168,13 @@ def test_all_pgm_variants_are_read(tmp_path: Path, data: bytes) -> None:
     [(1.5, 0.2, "1.0 or less"), (0.5, -0.1, "0.0 or greater"), (0.2, 0.3, "smaller than threshold_occupied")],
 )
 def test_invalid_thresholds_are_rejected(tmp_path: Path, occupied: float, free: float, message: str) -> None:
-    saved = MapSaveSettings(name=str(tmp_path / "a"), occupied_thresh=occupied, free_thresh=free)
+    save_settings = MapSaveSettings(name=str(tmp_path / "a"), occupied_thresh=occupied, free_thresh=free)
     with pytest.raises(LinkwrightError, match=message):
-        save_map(Grid(cells=np.zeros((1, 1), np.int8), resolution=0.05), saved)
+        save_map(Grid(cells=np.zeros((1, 1), np.int8), resolution=0.05), save_settings)
 
 
 def test_missing_folder_is_reported(tmp_path: Path) -> None:
-    saved = MapSaveSettings(name=str(tmp_path / "no" / "a"))
-    with pytest.raises(LinkwrightError) as raised:
-        save_map(Grid(cells=np.zeros((1, 1), np.int8), resolution=0.05), saved)
-    assert raised.value.diagnostics[0].code == "NAV206"
+    save_settings = MapSaveSettings(name=str(tmp_path / "no" / "a"))
+    with pytest.raises(LinkwrightError) as error:
+        save_map(Grid(cells=np.zeros((1, 1), np.int8), resolution=0.05), save_settings)
+    assert error.value.diagnostics[0].code == "NAV206"

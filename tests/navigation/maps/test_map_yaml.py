@@ -1,4 +1,4 @@
-"""The YAML of maps: what nav2 reads is read, and mistakes are told with their place."""
+"""The YAML files of maps: all of nav2's keys are read, and mistakes are reported with their position."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ def test_negate_accepts_numbers_and_booleans(tmp_path: Path, text: str, value: b
 
 def test_mode_defaults_to_trinary_and_other_keys_are_ignored(tmp_path: Path) -> None:
     text = _GOOD.replace("mode: trinary", "comment: {who: me}").replace("house.pgm", "/maps/house.png")
-    shown = read_map_yaml(_file(tmp_path, text))
-    assert shown.mode is MapMode.TRINARY
-    assert shown.image == Path("/maps/house.png")
+    settings = read_map_yaml(_file(tmp_path, text))
+    assert settings.mode is MapMode.TRINARY
+    assert settings.image == Path("/maps/house.png")
 
 
 @pytest.mark.parametrize(
@@ -63,9 +63,9 @@ def test_mode_defaults_to_trinary_and_other_keys_are_ignored(tmp_path: Path) -> 
 def test_mistakes_are_reported_with_location(
     tmp_path: Path, old: str, new: str, line: int, column: int, message: str
 ) -> None:
-    with pytest.raises(LinkwrightError) as raised:
+    with pytest.raises(LinkwrightError) as error:
         read_map_yaml(_file(tmp_path, _GOOD.replace(old, new)))
-    finding = raised.value.diagnostics[0]
+    finding = error.value.diagnostics[0]
     assert finding.code == "NAV202"
     assert str(finding.message).startswith(message)
     assert finding.span is not None
@@ -73,22 +73,22 @@ def test_mistakes_are_reported_with_location(
 
 
 def test_malformed_yaml_is_reported_with_location(tmp_path: Path) -> None:
-    with pytest.raises(LinkwrightError, match="not valid YAML") as raised:
+    with pytest.raises(LinkwrightError, match="not valid YAML") as error:
         read_map_yaml(_file(tmp_path, _GOOD.replace("trinary", "[")))
-    assert raised.value.diagnostics[0].span is not None
+    assert error.value.diagnostics[0].span is not None
 
 
 @pytest.mark.parametrize("text", ["", "- a\n- b\n", "just words", "[" * 200])
 def test_yaml_that_is_not_a_map_is_rejected(tmp_path: Path, text: str) -> None:
-    with pytest.raises(LinkwrightError) as raised:
+    with pytest.raises(LinkwrightError) as error:
         read_map_yaml(_file(tmp_path, text))
-    assert raised.value.diagnostics[0].code == "NAV202"
+    assert error.value.diagnostics[0].code == "NAV202"
 
 
 def test_missing_file_error_suggests_files_in_folder(tmp_path: Path) -> None:
     _file(tmp_path, _GOOD)
-    with pytest.raises(LinkwrightError) as raised:
+    with pytest.raises(LinkwrightError) as error:
         read_map_yaml(tmp_path / "hose.yaml")
-    finding = raised.value.diagnostics[0]
+    finding = error.value.diagnostics[0]
     assert finding.code == "NAV201"
     assert "house.yaml" in str(finding.hint)

@@ -1,4 +1,4 @@
-"""mbot with its laser in our house, a path through all rooms, and how far a map is from the house."""
+"""mbot with its laser in the house, a path through all rooms, and the distances between a map and the house."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ TOUR = [
 
 
 def simulation(**options: Any) -> SteppedSimulation:
-    """The house with mbot at `START`."""
+    """Return a simulation of the house with mbot at `START`."""
     return SteppedSimulation(
         HOUSE,
         MBOT,
@@ -41,30 +41,30 @@ def simulation(**options: Any) -> SteppedSimulation:
 
 
 def drive(test: SteppedSimulation, corners: list[tuple[float, float]], speed: float = 0.7) -> None:
-    """Drive from corner to corner, by where the robot really is."""
+    """Drive from corner to corner by the robot's true pose."""
     for x, y in corners:
         while True:
-            here = test.robot_pose()
-            away = hypot(x - here[0], y - here[1])
-            if away < 0.12:
+            pose = test.robot_pose()
+            distance = hypot(x - pose[0], y - pose[1])
+            if distance < 0.12:
                 break
-            turn = (atan2(y - here[1], x - here[0]) - rpy_from_quaternion(here[3:])[2] + pi) % (2 * pi) - pi
-            ahead = min(speed, 1.5 * away) * max(0.0, cos(turn)) ** 3
-            test.drive(ahead if abs(turn) < 1.0 else 0.0, max(-1.5, min(1.5, 2.5 * turn)))
+            bearing = (atan2(y - pose[1], x - pose[0]) - rpy_from_quaternion(pose[3:])[2] + pi) % (2 * pi) - pi
+            ahead = min(speed, 1.5 * distance) * max(0.0, cos(bearing)) ** 3
+            test.drive(ahead if abs(bearing) < 1.0 else 0.0, max(-1.5, min(1.5, 2.5 * bearing)))
             test.advance(0.1)
     test.drive(0.0)
     test.advance(0.5)
 
 
 class Drift:
-    """Sends what ``/tf`` says of the robot in odom on to ``/drifting_tf`` as bad odometry says it.
+    """Republish the robot's pose in odom from ``/tf`` on ``/drifting_tf``, with the errors of bad odometry.
 
     Args:
-        test: the world.
-        scale: of the way.
-        yaw_per_meter: by which it turns besides, radians.
-        yaw_scale: of turns.
-        noise: standard deviations of random errors, a part of way and turn.
+        test: the simulation.
+        scale: the factor of distances.
+        yaw_per_meter: the yaw error per meter, in radians.
+        yaw_scale: the factor of rotations.
+        noise: the standard deviation of random errors, relative to distance and rotation.
     """
 
     def __init__(
@@ -72,38 +72,41 @@ class Drift:
     ) -> None:
         self._scale, self._yaw_per_meter, self._yaw_scale, self._noise = scale, yaw_per_meter, yaw_scale, noise
         self._rng = np.random.default_rng(11)
-        self._before: np.ndarray | None = None
+        self._last_pose: np.ndarray | None = None
         self.pose = np.zeros(3)
         node = test.graph.create_node("drift")
         self._publisher = node.create_publisher(TFMessage, "/drifting_tf", TF_QOS)
-        node.create_subscription(TFMessage, "/tf", self._hear, TF_QOS)
+        node.create_subscription(TFMessage, "/tf", self._on_transforms, TF_QOS)
 
-    def _hear(self, message: TFMessage) -> None:
+    def _on_transforms(self, message: TFMessage) -> None:
         for transform in message.transforms:
             if transform.child_frame_id == "base_footprint":
-                at, turned = transform.transform.translation, transform.transform.rotation
-                yaw = rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2]
-                self._move(np.array((at.x, at.y, yaw)))
+                translation, rotation = transform.transform.translation, transform.transform.rotation
+                yaw = rpy_from_quaternion((rotation.x, rotation.y, rotation.z, rotation.w))[2]
+                self._move(np.array((translation.x, translation.y, yaw)))
                 pose = (self.pose[0], self.pose[1], 0.0, *quaternion_from_rpy((0.0, 0.0, float(self.pose[2]))))
                 stamp_ns = transform.header.stamp.nanoseconds
                 batch = TransformBatch(("odom",), ("base_footprint",), stamp_ns, np.array([pose]))
                 self._publisher.publish(TFMessage(batch=batch))
 
     def _move(self, pose: np.ndarray) -> None:
-        if self._before is not None:
-            step = relative_pose(self._before, pose)
+        if self._last_pose is not None:
+            step = relative_pose(self._last_pose, pose)
             length = hypot(step[0], step[1])
             step *= (self._scale, self._scale, self._yaw_scale)
             step[2] += self._yaw_per_meter * length
-            # A random walk: what a second of driving adds does not depend on how often it is told.
+            # A random walk: the error per second does not depend on the rate of the transforms.
             spread = self._noise * np.sqrt((length + abs(step[2])) * 0.1)
             step += self._rng.normal(0, 1, 3) * spread
             self.pose = compose(self.pose, step)
-        self._before = pose
+        self._last_pose = pose
 
 
 def faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarray:
-    """The upright faces of boxes of models of the house at a height, of shape (n, 2, 2): from right to left, seen."""
+    """Return the upright faces of some models' boxes at a height, shape (n, 2, 2).
+
+    Each face goes from right to left, as seen from outside.
+    """
     segments = []
     for model in read_world(str(HOUSE)).world.models:
         for link in model.links if model.name in models else ():
@@ -120,16 +123,16 @@ def faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarr
 
 
 def distances(faces: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """How far points (n, 2) are from the nearest face, of shape (n,), meters."""
+    """Return the distance of points (n, 2) from the nearest face in meters, shape (n,)."""
     start, along = faces[:, 0], faces[:, 1] - faces[:, 0]
-    away = points[:, None] - start
-    part = np.clip((away * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
-    nearest: np.ndarray = np.linalg.norm(away - part[..., None] * along, axis=2).min(axis=1)
+    offsets = points[:, None] - start
+    share = np.clip((offsets * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
+    nearest: np.ndarray = np.linalg.norm(offsets - share[..., None] * along, axis=2).min(axis=1)
     return nearest
 
 
-def seen_points(faces: np.ndarray, grid: Grid) -> np.ndarray:
-    """Points of faces, every 5 cm, in front of which the map is free for 20 cm, of shape (n, 2)."""
+def visible_points(faces: np.ndarray, grid: Grid) -> np.ndarray:
+    """Return points on faces, every 5 cm, if the map is free for 20 cm in front of them, shape (n, 2)."""
     points = []
     for start, end in faces:
         length = float(np.hypot(*(end - start)))
@@ -144,12 +147,12 @@ def seen_points(faces: np.ndarray, grid: Grid) -> np.ndarray:
     return np.concatenate(points)
 
 
-def occupied_of(grid: Grid) -> np.ndarray:
-    """The middles of occupied cells, of shape (n, 2)."""
+def occupied_centers(grid: Grid) -> np.ndarray:
+    """Return the centers of occupied cells, shape (n, 2)."""
     return grid.centers_of(np.argwhere(grid.cells == OCCUPIED))
 
 
 def gaps(grid: Grid, points: np.ndarray) -> np.ndarray:
-    """How far each point (n, 2) is from the nearest occupied cell, of shape (n,), meters."""
-    occupied = occupied_of(grid)
+    """Return the distance of each point (n, 2) from the nearest occupied cell in meters, shape (n,)."""
+    occupied = occupied_centers(grid)
     return np.array([np.hypot(*(occupied - point).T).min() for point in points])

@@ -1,4 +1,4 @@
-"""A robot that moves as ``/cmd_vel`` tells it, in a room with walls, and tells where it is."""
+"""A robot in a room with walls that moves by ``/cmd_vel``, and publishes its pose and scans."""
 
 from __future__ import annotations
 
@@ -10,44 +10,44 @@ import numpy as np
 from linkwright.graph import ActionClient, Graph, JumpClock
 from linkwright.messages import get_action, get_message
 from linkwright.navigation.following.follower import ZERO_VELOCITY, Velocity, predict_poses
-from tests.navigation.nodes.scene import Scene
+from tests.navigation.nodes.fake_robot import FakeRobot
 
 PERIOD = 0.02
 
 
-class DrivingScene(Scene):
-    """A scene whose robot drives.
+class DrivingRobot(FakeRobot):
+    """A fake robot that drives.
 
     Attributes:
-        speeds: the velocities that it was told, in their order.
-        told: whether it tells its pose.
-        held: whether it cannot move.
-        seen: rays, in degrees, that meet something, and at which range.
-        sees: whether its laser sends.
+        speeds: the commanded velocities, in order.
+        publishes_pose: whether it publishes its pose.
+        is_blocked: whether it cannot move.
+        obstacles: the rays, in degrees, that meet an obstacle, and the range of each.
+        publishes_scans: whether its laser publishes.
     """
 
     def __init__(self, graph: Graph, clock: JumpClock) -> None:
         super().__init__(graph, clock)
         self.speeds: list[Velocity] = []
         self.velocity = ZERO_VELOCITY
-        self.told, self.held = True, False
-        self.seen: tuple[tuple[int, float], ...] = ()
-        self.sees = True
+        self.publishes_pose, self.is_blocked = True, False
+        self.obstacles: tuple[tuple[int, float], ...] = ()
+        self.publishes_scans = True
         self._odometry = self.node.create_publisher("nav_msgs/msg/Odometry", "/odom", 10)
         self.node.create_subscription("geometry_msgs/msg/Twist", "/cmd_vel", self._on_velocity, 10)
         self.node.create_timer(PERIOD, self._move)
-        self.node.create_timer(0.2, lambda: self.tell_scan(*self.seen) if self.sees else None)
-        self.tell_pose()
+        self.node.create_timer(0.2, lambda: self.publish_scan(*self.obstacles) if self.publishes_scans else None)
+        self.publish_pose()
 
     def _on_velocity(self, message: Any) -> None:
         self.velocity = Velocity(message.linear.x, message.linear.y, message.angular.z)
         self.speeds.append(self.velocity)
 
     def _move(self) -> None:
-        velocity = ZERO_VELOCITY if self.held else self.velocity
+        velocity = ZERO_VELOCITY if self.is_blocked else self.velocity
         self.pose = tuple(map(float, predict_poses(self.pose, np.array([velocity]), np.array([PERIOD]))[0, 0]))
-        if self.told:
-            self.tell_pose()
+        if self.publishes_pose:
+            self.publish_pose()
         message = self._odometry.msg_type()
         message.twist.twist.linear.x, message.twist.twist.angular.z = float(velocity.x), float(velocity.yaw)
         self._odometry.publish(message)
@@ -56,13 +56,13 @@ class DrivingScene(Scene):
         return hypot(self.pose[0] - x, self.pose[1] - y)
 
 
-class Asked:
-    """A goal that a test sends."""
+class GoalSender:
+    """An action client for the goals of a test."""
 
-    def __init__(self, scene: Scene, kind: str, name: str) -> None:
-        self._scene = scene
-        self.kind = get_action(f"nav2_msgs/action/{kind}")
-        self.client = ActionClient(scene.node, self.kind, name)
+    def __init__(self, robot: FakeRobot, action_type: str, name: str) -> None:
+        self._scene = robot
+        self.action_type = get_action(f"nav2_msgs/action/{action_type}")
+        self.client = ActionClient(robot.node, self.action_type, name)
         self.feedback: list[Any] = []
         self.handle: Any = None
         self.answer: Any = None
@@ -71,7 +71,7 @@ class Asked:
         await self._scene.run(0.1)
         self.answer = None
         self.client.send_goal_async(
-            self.kind.Goal(**fields), feedback_callback=lambda message: self.feedback.append(message.feedback)
+            self.action_type.Goal(**fields), feedback_callback=lambda message: self.feedback.append(message.feedback)
         ).add_done_callback(self._accepted)
         await self._scene.graph.settle()
 
@@ -83,8 +83,8 @@ class Asked:
     def _ended(self, future: Any) -> None:
         self.answer = future.result()
 
-    async def ends(self, seconds: float) -> int:
-        """Its status, once it has ended; 0 where it has not within so many seconds."""
+    async def status_after(self, seconds: float) -> int:
+        """Return the goal's final status, or 0 if it has not ended within the seconds."""
         for _ in range(round(seconds / 0.5)):
             if self.answer is not None:
                 return int(self.answer.status)

@@ -1,4 +1,4 @@
-"""amcl in our house, in lock-step with the simulation."""
+"""amcl in the house, in lock-step with the simulation."""
 
 from __future__ import annotations
 
@@ -58,12 +58,12 @@ class House:
         self.server.close()
 
     def send_pose_estimate(self, x: float, y: float, yaw: float) -> None:
-        """2D Pose Estimate."""
+        """Publish a pose estimate, as RViz's tool does."""
         message = get_message(POSE)()
         message.header.frame_id = "map"
         message.pose.pose.position.x, message.pose.pose.position.y = x, y
-        turned = message.pose.pose.orientation
-        turned.x, turned.y, turned.z, turned.w = quaternion_from_rpy((0.0, 0.0, yaw))
+        orientation = message.pose.pose.orientation
+        orientation.x, orientation.y, orientation.z, orientation.w = quaternion_from_rpy((0.0, 0.0, yaw))
         covariance = np.zeros((6, 6))
         covariance[0, 0] = covariance[1, 1] = 0.25
         covariance[5, 5] = 0.0685
@@ -72,31 +72,31 @@ class House:
         self.test.settle()
 
     def error(self) -> tuple[float, float]:
-        """How far, in meters and radians, the transforms have the robot from where it is."""
+        """Return the error of amcl's pose, in meters and radians."""
         true = self.test.robot_pose()
         transform, _ = self.buffer.lookup("map", "base_footprint", 0)
-        turn = rpy_from_quaternion(transform[3:])[2] - rpy_from_quaternion(true[3:])[2]
-        return hypot(transform[0] - true[0], transform[1] - true[1]), abs(atan2(sin(turn), cos(turn)))
+        yaw_error = rpy_from_quaternion(transform[3:])[2] - rpy_from_quaternion(true[3:])[2]
+        return hypot(transform[0] - true[0], transform[1] - true[1]), abs(atan2(sin(yaw_error), cos(yaw_error)))
 
     def drive(self, corners: list[tuple[float, float]], speed: float = 0.5) -> None:
-        """Drive from corner to corner, by where the robot really is."""
+        """Drive from corner to corner by the robot's true pose."""
         test = self.test
         for x, y in corners:
             for _ in range(300):
-                here = test.robot_pose()
-                away = hypot(x - here[0], y - here[1])
-                if away < 0.12:
+                pose = test.robot_pose()
+                distance = hypot(x - pose[0], y - pose[1])
+                if distance < 0.12:
                     break
-                turn = (atan2(y - here[1], x - here[0]) - rpy_from_quaternion(here[3:])[2] + pi) % (2 * pi) - pi
-                ahead = min(speed, 1.5 * away) * max(0.0, cos(turn)) ** 3
-                test.drive(ahead if abs(turn) < 1.0 else 0.0, max(-1.0, min(1.0, 2.0 * turn)))
+                bearing = (atan2(y - pose[1], x - pose[0]) - rpy_from_quaternion(pose[3:])[2] + pi) % (2 * pi) - pi
+                ahead = min(speed, 1.5 * distance) * max(0.0, cos(bearing)) ** 3
+                test.drive(ahead if abs(bearing) < 1.0 else 0.0, max(-1.0, min(1.0, 2.0 * bearing)))
                 test.advance(0.1)
                 try:
                     self.errors.append(self.error()[0])
                 except TransformException:
                     continue
             else:
-                raise AssertionError(f"stuck at {here} on the way to {x}, {y}")
+                raise AssertionError(f"stuck at {pose} on the way to {x}, {y}")
         test.drive(0.0)
         test.advance(0.5)
 
@@ -109,30 +109,30 @@ Begin = Callable[..., House]
 
 @pytest.fixture
 def begin() -> Iterator[Begin]:
-    running: list[Any] = []
+    running_nodes: list[Any] = []
 
     def start(pose: tuple[float, float, float] = (0.0, 0.0, 0.0), **parameters: object) -> House:
-        place = (pose[0], pose[1], 0, 0, 0, pose[2])
+        spawn_pose = (pose[0], pose[1], 0, 0, 0, pose[2])
         test = SteppedSimulation(
-            HOUSE, MBOT, arguments={"laser": "true"}, pose=place, robot_state_publisher=True, seed=3
+            HOUSE, MBOT, arguments={"laser": "true"}, pose=spawn_pose, robot_state_publisher=True, seed=3
         )
-        running.append(test.__enter__())
-        house = House(running[0], **parameters)
-        running.insert(0, house)
+        running_nodes.append(test.__enter__())
+        house = House(running_nodes[0], **parameters)
+        running_nodes.insert(0, house)
         return house
 
     yield start
-    if running:
-        running[0].close()
-        running[1].__exit__(None, None, None)
+    if running_nodes:
+        running_nodes[0].close()
+        running_nodes[1].__exit__(None, None, None)
 
 
 def test_map_matches_house() -> None:
     grid = load_map(MAP)
-    here = grid.cells_of(np.array([(0.0, 0.0), (4.9, 2.0), (4.95, 2.0), (20.0, 0.0)]))
-    assert grid.contains(here).tolist() == [True, True, True, False]
-    assert grid.cells[tuple(here[0])] == 0
-    assert 100 in (grid.cells[tuple(here[1])], grid.cells[tuple(here[2])])
+    cells = grid.cells_of(np.array([(0.0, 0.0), (4.9, 2.0), (4.95, 2.0), (20.0, 0.0)]))
+    assert grid.contains(cells).tolist() == [True, True, True, False]
+    assert grid.cells[tuple(cells[0])] == 0
+    assert 100 in (grid.cells[tuple(cells[1])], grid.cells[tuple(cells[2])])
 
 
 def test_amcl_tracks_drive_through_house(begin: Begin) -> None:
@@ -153,9 +153,9 @@ def test_wrong_pose_estimate_is_corrected_while_driving(begin: Begin) -> None:
     house.send_pose_estimate(-1.6, 0.3, 0.2)  # 0.5 m and 0.3 rad off
     house.test.advance(0.5)
     house.drive([(-2.2, -0.4), (-2.2, -2.0), (-0.2, -2.4)])
-    away, turn = house.error()
-    assert away < 0.1
-    assert turn < 0.1
+    distance, angle = house.error()
+    assert distance < 0.1
+    assert angle < 0.1
     covariance = np.asarray(house.poses.last.pose.covariance).reshape(6, 6)
     assert 0.0 < covariance[0, 0] < 0.2
 
@@ -168,9 +168,9 @@ def test_global_localization_finds_robot(begin: Begin) -> None:
     house = begin((-2.0, 0.0, 0.5), max_particles=5000)
     _call(house, "/reinitialize_global_localization")
     house.drive([(-2.2, -2.4), (-0.2, -2.4), (0.4, -1.7), (2.4, -1.7), (3.2, -0.6), (2.2, -1.7)])
-    away, turn = house.error()
-    assert away < 0.15
-    assert turn < 0.1
+    distance, angle = house.error()
+    assert distance < 0.15
+    assert angle < 0.1
 
 
 def test_kidnapped_robot_is_relocalized(begin: Begin) -> None:
@@ -224,12 +224,12 @@ def test_missing_transform_is_reported(begin: Begin) -> None:
 def test_poses_particles_and_transforms_match_nav2(begin: Begin) -> None:
     house = begin(set_initial_pose=True, transform_tolerance=0.5)
     clouds = house.test.record("/particle_cloud", get_message("nav2_msgs/msg/ParticleCloud"))
-    before = len(house.poses)
+    count = len(house.poses)
     house.test.advance(1.0)
-    assert len(house.poses) == before  # it stands still
+    assert len(house.poses) == count  # the robot does not move
     _call(house, "/request_nomotion_update")
     house.test.advance(0.5)
-    assert len(house.poses) == before + 1
+    assert len(house.poses) == count + 1
     assert house.poses.last.header.frame_id == "map"
     assert 500 <= len(clouds.last.particles) <= 2000
     assert sum(particle.weight for particle in clouds.last.particles) == pytest.approx(1.0)

@@ -1,4 +1,4 @@
-"""behavior_server: behaviors as actions, with obstacles, time and cancellation."""
+"""behavior_server: behaviors as actions, with obstacles, time allowances and cancellation."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.nodes.behavior_server import BehaviorServer
 from linkwright.navigation.nodes.costmap_messages import raw_message
 from linkwright.nodes import NodeOptions
-from tests.navigation.nodes.robots import Asked, DrivingScene
+from tests.navigation.nodes.robots import DrivingRobot, GoalSender
 
 
-class CostmapScene(DrivingScene):
-    """A scene that tells a costmap and a footprint, too."""
+class CostmapRobot(DrivingRobot):
+    """A fake robot that also publishes a costmap and a footprint."""
 
     def __init__(self, graph, clock):
         super().__init__(graph, clock)
@@ -33,7 +33,7 @@ class CostmapScene(DrivingScene):
         self.node.create_timer(0.2, self.publish_costmap)
 
     def publish_costmap(self):
-        if not self.sees:
+        if not self.publishes_scans:
             return
         self._raw.publish(raw_message(self.costmap, "odom", self.stamp()))
         message = self._footprint.msg_type()
@@ -45,94 +45,94 @@ class CostmapScene(DrivingScene):
 
 
 @pytest.fixture
-async def scene(graph, clock):
-    scene = CostmapScene(graph, clock)
-    scene.pose = (2.5, 2.5, 0.4)
+async def robot(graph, clock):
+    robot = CostmapRobot(graph, clock)
+    robot.pose = (2.5, 2.5, 0.4)
     server = BehaviorServer(graph, NodeOptions(parameters={"autostart_node": True}))
-    await scene.run(1.0)
-    yield scene
+    await robot.run(1.0)
+    yield robot
     server.close()
 
 
-async def test_spin_turns_by_requested_angle(scene):
-    goal = Asked(scene, "Spin", "spin")
+async def test_spin_turns_by_requested_angle(robot):
+    goal = GoalSender(robot, "Spin", "spin")
     await goal.send(target_yaw=pi / 2, time_allowance=Duration(seconds=10.0).to_msg())
-    assert await goal.ends(10.0) == GoalStatus.SUCCEEDED
-    assert scene.pose[2] == pytest.approx(0.4 + pi / 2, abs=0.1)
-    assert scene.velocity == ZERO_VELOCITY
+    assert await goal.status_after(10.0) == GoalStatus.SUCCEEDED
+    assert robot.pose[2] == pytest.approx(0.4 + pi / 2, abs=0.1)
+    assert robot.velocity == ZERO_VELOCITY
     assert goal.feedback[-1].angular_distance_traveled == pytest.approx(pi / 2, abs=0.15)
     assert goal.answer.result.total_elapsed_time.sec >= 1
 
 
 @pytest.mark.parametrize(
-    ("name", "kind", "sign"), [("backup", "BackUp", -1), ("drive_on_heading", "DriveOnHeading", 1)]
+    ("name", "action_type", "sign"), [("backup", "BackUp", -1), ("drive_on_heading", "DriveOnHeading", 1)]
 )
-async def test_straight_drives_cover_requested_distance(scene, name, kind, sign):
-    goal = Asked(scene, kind, name)
-    before = scene.pose
+async def test_straight_drives_cover_requested_distance(robot, name, action_type, sign):
+    goal = GoalSender(robot, action_type, name)
+    start = robot.pose
     await goal.send(target=get_message("geometry_msgs/msg/Point")(x=0.3), speed=0.2)
-    assert await goal.ends(10.0) == GoalStatus.SUCCEEDED
-    assert scene.distance_to(*before[:2]) == pytest.approx(0.3, abs=0.05)
-    assert np.sign(scene.pose[0] - before[0]) == sign
-    assert scene.velocity == ZERO_VELOCITY
+    assert await goal.status_after(10.0) == GoalStatus.SUCCEEDED
+    assert robot.distance_to(*start[:2]) == pytest.approx(0.3, abs=0.05)
+    assert np.sign(robot.pose[0] - start[0]) == sign
+    assert robot.velocity == ZERO_VELOCITY
 
 
-async def test_backup_stops_before_obstacle(scene, log):
-    scene.costmap.grid.cells[:, :30] = LETHAL  # up to x = 1.5 m
-    await scene.run(0.5)
-    goal = Asked(scene, "BackUp", "backup")
+async def test_backup_stops_before_obstacle(robot, log):
+    robot.costmap.grid.cells[:, :30] = LETHAL  # up to x = 1.5 m
+    await robot.run(0.5)
+    goal = GoalSender(robot, "BackUp", "backup")
     await goal.send(target=get_message("geometry_msgs/msg/Point")(x=3.0), speed=0.2)
-    assert await goal.ends(20.0) == GoalStatus.ABORTED
-    assert 1.65 < scene.pose[0] < 2.4
-    assert scene.velocity == ZERO_VELOCITY
+    assert await goal.status_after(20.0) == GoalStatus.ABORTED
+    assert 1.65 < robot.pose[0] < 2.4
+    assert robot.velocity == ZERO_VELOCITY
     assert any("there is an obstacle ahead" in record.text for record in log)
 
 
-async def test_drive_on_heading_ends_after_time_allowance(scene):
-    goal = Asked(scene, "DriveOnHeading", "drive_on_heading")
+async def test_drive_on_heading_ends_after_time_allowance(robot):
+    goal = GoalSender(robot, "DriveOnHeading", "drive_on_heading")
     target = get_message("geometry_msgs/msg/Point")(x=1.5)
     await goal.send(target=target, speed=0.05, time_allowance=Duration(seconds=2.0).to_msg())
-    assert await goal.ends(4.0) == GoalStatus.ABORTED
-    assert scene.velocity == ZERO_VELOCITY
+    assert await goal.status_after(4.0) == GoalStatus.ABORTED
+    assert robot.velocity == ZERO_VELOCITY
 
 
-async def test_silent_costmap_stops_robot(scene, log):
-    goal = Asked(scene, "DriveOnHeading", "drive_on_heading")
+async def test_silent_costmap_stops_robot(robot, log):
+    goal = GoalSender(robot, "DriveOnHeading", "drive_on_heading")
     await goal.send(target=get_message("geometry_msgs/msg/Point")(x=2.0), speed=0.02)
-    scene.sees = False
-    assert await goal.ends(10.0) == GoalStatus.ABORTED
-    assert scene.velocity == ZERO_VELOCITY
+    robot.publishes_scans = False
+    assert await goal.status_after(10.0) == GoalStatus.ABORTED
+    assert robot.velocity == ZERO_VELOCITY
     assert any("the costmap is no longer published" in record.text for record in log)
 
 
-async def test_wait_ends_or_is_canceled(scene):
-    goal = Asked(scene, "Wait", "wait")
+async def test_wait_ends_or_is_canceled(robot):
+    goal = GoalSender(robot, "Wait", "wait")
     await goal.send(time=Duration(seconds=2.0).to_msg())
-    assert await goal.ends(5.0) == GoalStatus.SUCCEEDED
+    assert await goal.status_after(5.0) == GoalStatus.SUCCEEDED
     await goal.send(time=Duration(seconds=60.0).to_msg())
-    await scene.run(1.0)
+    await robot.run(1.0)
     goal.handle.cancel_goal_async()
-    assert await goal.ends(2.0) == GoalStatus.CANCELED
+    assert await goal.status_after(2.0) == GoalStatus.CANCELED
 
 
-async def test_assisted_teleop_stops_before_wall(scene):
-    scene.costmap.grid.cells[:, 70:] = LETHAL  # from x = 3.5 m on
-    scene.pose = (2.5, 2.5, 0.0)
-    await scene.run(0.5)
-    teleop = scene.node.create_publisher("geometry_msgs/msg/Twist", "/cmd_vel_teleop", 10)
-    goal = Asked(scene, "AssistedTeleop", "assisted_teleop")
+async def test_assisted_teleop_stops_before_wall(robot):
+    robot.costmap.grid.cells[:, 70:] = LETHAL  # from x = 3.5 m on
+    robot.pose = (2.5, 2.5, 0.0)
+    await robot.run(0.5)
+    teleop = robot.node.create_publisher("geometry_msgs/msg/Twist", "/cmd_vel_teleop", 10)
+    goal = GoalSender(robot, "AssistedTeleop", "assisted_teleop")
     await goal.send(time_allowance=Duration(seconds=8.0).to_msg())
     twist = teleop.msg_type()
     twist.linear.x = 0.4
     for _ in range(70):
         teleop.publish(twist)
-        await scene.run(0.1)
-    assert 2.9 < scene.pose[0] < 3.31
-    assert await goal.ends(3.0) == GoalStatus.ABORTED
-    assert scene.velocity == ZERO_VELOCITY
+        await robot.run(0.1)
+    assert 2.9 < robot.pose[0] < 3.31
+    assert await goal.status_after(3.0) == GoalStatus.ABORTED
+    assert robot.velocity == ZERO_VELOCITY
 
 
-async def test_backup_target_beside_robot_is_rejected(scene):
-    goal = Asked(scene, "BackUp", "backup")
+async def test_backup_target_beside_robot_is_rejected(robot):
+    goal = GoalSender(robot, "BackUp", "backup")
     await goal.send(target=get_message("geometry_msgs/msg/Point")(x=0.3, y=0.1), speed=0.2)
-    assert await goal.ends(1.0) == GoalStatus.ABORTED
+    assert await goal.status_after(1.0) == GoalStatus.ABORTED

@@ -1,4 +1,4 @@
-"""bt_navigator and waypoint_follower: to poses and through them, with recoveries, feedback and refusals."""
+"""bt_navigator and waypoint_follower: navigation to and through poses, recoveries, feedback and rejections."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from linkwright.navigation.nodes.costmap_messages import raw_message
 from linkwright.navigation.nodes.waypoint_follower import WaypointFollower
 from linkwright.nodes import NodeOptions
 from tests.navigation.following.driving import line
-from tests.navigation.nodes.robots import Asked, DrivingScene, path_message, pose_stamped
+from tests.navigation.nodes.robots import DrivingRobot, GoalSender, path_message, pose_stamped
 from tests.navigation.nodes.test_controller_server import LOCAL, PURE_PURSUIT
 
 
 class Planner:
-    """Plans straight lines; fails as often as it is told."""
+    """A planner of straight lines that fails a given number of times."""
 
-    def __init__(self, scene):
-        self.scene = scene
+    def __init__(self, robot):
+        self.scene = robot
         self.failures = 0
         self.plans = 0
         for name in ("ComputePathToPose", "ComputePathThroughPoses"):
             kind = get_action(f"nav2_msgs/action/{name}")
             topic = "compute_path_to_pose" if name.endswith("ToPose") else "compute_path_through_poses"
-            ActionServer(scene.node, kind, topic, lambda handle, kind=kind: self._plan(handle, kind.Result()))
+            ActionServer(robot.node, kind, topic, lambda handle, kind=kind: self._plan(handle, kind.Result()))
 
     def _plan(self, handle, result):
         self.plans += 1
@@ -48,9 +48,9 @@ class Planner:
 
 
 @pytest.fixture
-async def scene(graph, clock):
-    scene = DrivingScene(graph, clock)
-    planner = Planner(scene)
+async def robot(graph, clock):
+    robot = DrivingRobot(graph, clock)
+    planner = Planner(robot)
     options = NodeOptions(parameters={"FollowPath.plugin": PURE_PURSUIT, "autostart_node": True})
     for name, value in LOCAL.items():
         options.parameters_of_others.set("/local_costmap/local_costmap", name, value)
@@ -58,133 +58,133 @@ async def scene(graph, clock):
     nodes = [ControllerServer(graph, options), BehaviorServer(graph, own), BtNavigator(graph, own)]
     follower = {"autostart_node": True, "stop_on_failure": False}
     nodes.append(WaypointFollower(graph, NodeOptions(parameters=follower)))
-    scene.planner = planner
-    await scene.run(1.0)
-    yield scene
+    robot.planner = planner
+    await robot.run(1.0)
+    yield robot
     for node in nodes:
         node.close()
 
 
-async def test_navigate_to_pose_reaches_goal_with_feedback(scene):
-    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+async def test_navigate_to_pose_reaches_goal_with_feedback(robot):
+    goal = GoalSender(robot, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(3.0, 1.0))
-    assert await goal.ends(60.0) == GoalStatus.SUCCEEDED
-    assert scene.distance_to(3.0, 1.0) < 0.26
-    assert scene.velocity == ZERO_VELOCITY
-    left = [feedback.distance_remaining for feedback in goal.feedback]
-    assert max(left) == pytest.approx(2.0, abs=0.2)
-    assert left[-1] < 0.4
+    assert await goal.status_after(60.0) == GoalStatus.SUCCEEDED
+    assert robot.distance_to(3.0, 1.0) < 0.26
+    assert robot.velocity == ZERO_VELOCITY
+    distances = [feedback.distance_remaining for feedback in goal.feedback]
+    assert max(distances) == pytest.approx(2.0, abs=0.2)
+    assert distances[-1] < 0.4
     assert goal.feedback[-1].number_of_recoveries == 0
     assert goal.feedback[-1].current_pose.header.frame_id == "map"
-    assert scene.planner.plans > 3, "a path each second"
+    assert robot.planner.plans > 3, "a path each second"
 
 
-async def test_goal_pose_topic_of_rviz_moves_robot(scene):
-    publisher = scene.node.create_publisher("geometry_msgs/msg/PoseStamped", "/goal_pose", 10)
+async def test_goal_pose_topic_of_rviz_moves_robot(robot):
+    publisher = robot.node.create_publisher("geometry_msgs/msg/PoseStamped", "/goal_pose", 10)
     publisher.publish(pose_stamped(2.0, 1.0))
     for _ in range(60):
-        await scene.run(0.5)
-    assert scene.distance_to(2.0, 1.0) < 0.26
+        await robot.run(0.5)
+    assert robot.distance_to(2.0, 1.0) < 0.26
 
 
-async def test_navigate_through_poses_visits_all_poses(scene):
-    goal = Asked(scene, "NavigateThroughPoses", "navigate_through_poses")
+async def test_navigate_through_poses_visits_all_poses(robot):
+    goal = GoalSender(robot, "NavigateThroughPoses", "navigate_through_poses")
     await goal.send(poses=[pose_stamped(2.0, 1.0), pose_stamped(2.0, 2.0), pose_stamped(3.0, 2.0)])
-    assert await goal.ends(90.0) == GoalStatus.SUCCEEDED
-    assert scene.distance_to(3.0, 2.0) < 0.26
+    assert await goal.status_after(90.0) == GoalStatus.SUCCEEDED
+    assert robot.distance_to(3.0, 2.0) < 0.26
     assert {feedback.number_of_poses_remaining for feedback in goal.feedback} >= {1, 2, 3}
 
 
-async def test_canceling_stops_robot(scene):
-    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+async def test_canceling_stops_robot(robot):
+    goal = GoalSender(robot, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(3.5, 1.0))
-    await scene.run(3.0)
-    assert scene.velocity.x > 0.0
+    await robot.run(3.0)
+    assert robot.velocity.x > 0.0
     goal.handle.cancel_goal_async()
-    assert await goal.ends(2.0) == GoalStatus.CANCELED
-    await scene.run(0.2)
-    assert scene.velocity == ZERO_VELOCITY
+    assert await goal.status_after(2.0) == GoalStatus.CANCELED
+    await robot.run(0.2)
+    assert robot.velocity == ZERO_VELOCITY
 
 
-async def test_new_goal_preempts_running_goal(scene):
-    first, second = (Asked(scene, "NavigateToPose", "navigate_to_pose") for _ in range(2))
+async def test_new_goal_preempts_running_goal(robot):
+    first, second = (GoalSender(robot, "NavigateToPose", "navigate_to_pose") for _ in range(2))
     await first.send(pose=pose_stamped(3.5, 1.0))
-    await scene.run(2.0)
+    await robot.run(2.0)
     await second.send(pose=pose_stamped(1.0, 2.0))
-    assert await second.ends(60.0) == GoalStatus.SUCCEEDED
-    assert await first.ends(0.5) == GoalStatus.ABORTED
-    assert scene.distance_to(1.0, 2.0) < 0.26
+    assert await second.status_after(60.0) == GoalStatus.SUCCEEDED
+    assert await first.status_after(0.5) == GoalStatus.ABORTED
+    assert robot.distance_to(1.0, 2.0) < 0.26
 
 
-async def test_recoveries_run_in_order_of_nav2(scene, log):
-    scene.planner.failures = 8
-    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+async def test_recoveries_run_in_order_of_nav2(robot, log):
+    robot.planner.failures = 8
+    goal = GoalSender(robot, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(2.0, 1.0))
-    assert await goal.ends(120.0) == GoalStatus.SUCCEEDED
-    logged = [record.text for record in log]
-    order = [logged.index(text) for text in ("Running spin", "Running wait", "Running backup")]
+    assert await goal.status_after(120.0) == GoalStatus.SUCCEEDED
+    texts = [record.text for record in log]
+    order = [texts.index(text) for text in ("Running spin", "Running wait", "Running backup")]
     assert order == sorted(order)
     assert goal.feedback[-1].number_of_recoveries >= 4
 
 
-async def test_goal_aborts_after_six_recoveries(scene, log):
-    scene.planner.failures = 1000
-    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+async def test_goal_aborts_after_six_recoveries(robot, log):
+    robot.planner.failures = 1000
+    goal = GoalSender(robot, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(2.0, 1.0))
-    assert await goal.ends(120.0) == GoalStatus.ABORTED
+    assert await goal.status_after(120.0) == GoalStatus.ABORTED
     assert any(record.text.startswith("Goal failed: the planner found no path") for record in log)
 
 
-async def test_goal_in_wall_aborts_with_reason(scene, log):
+async def test_goal_in_wall_aborts_with_reason(robot, log):
     costmap = Costmap(Grid(cells=np.zeros((100, 100), np.uint8), resolution=0.05))
     costmap.grid.cells[:, 40:44] = LETHAL
-    publisher = scene.node.create_publisher("nav2_msgs/msg/Costmap", "/global_costmap/costmap_raw", DESCRIPTION_QOS)
-    publisher.publish(raw_message(costmap, "map", scene.stamp()))
-    scene.planner.failures = 1000
-    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+    publisher = robot.node.create_publisher("nav2_msgs/msg/Costmap", "/global_costmap/costmap_raw", DESCRIPTION_QOS)
+    publisher.publish(raw_message(costmap, "map", robot.stamp()))
+    robot.planner.failures = 1000
+    goal = GoalSender(robot, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(2.1, 1.0))
-    assert await goal.ends(10.0) == GoalStatus.ABORTED
+    assert await goal.status_after(10.0) == GoalStatus.ABORTED
     assert any("the goal (2.10, 1.00) is in an obstacle" in record.text for record in log)
-    assert scene.velocity == ZERO_VELOCITY
+    assert robot.velocity == ZERO_VELOCITY
 
 
-async def test_goal_without_frame_aborts_without_recoveries(scene, log):
-    scene.planner.failures = 1000  # no planner transforms a pose without a frame
-    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+async def test_goal_without_frame_aborts_without_recoveries(robot, log):
+    robot.planner.failures = 1000  # no planner transforms a pose without a frame
+    goal = GoalSender(robot, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(2.0, 1.0, frame=""))
-    assert await goal.ends(10.0) == GoalStatus.ABORTED
+    assert await goal.status_after(10.0) == GoalStatus.ABORTED
     assert any("the goal has no frame_id, such as map" in record.text for record in log)
     assert all(feedback.number_of_recoveries == 0 for feedback in goal.feedback)
 
 
-async def test_empty_pose_list_is_rejected(scene):
-    goal = Asked(scene, "NavigateThroughPoses", "navigate_through_poses")
+async def test_empty_pose_list_is_rejected(robot):
+    goal = GoalSender(robot, "NavigateThroughPoses", "navigate_through_poses")
     await goal.send(poses=[])
     assert not goal.handle.accepted
 
 
-async def test_custom_behavior_tree_is_ignored_with_warning(scene, log):
-    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+async def test_custom_behavior_tree_is_ignored_with_warning(robot, log):
+    goal = GoalSender(robot, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(1.2, 1.0), behavior_tree="/tmp/mine.xml")
-    assert await goal.ends(30.0) == GoalStatus.SUCCEEDED
+    assert await goal.status_after(30.0) == GoalStatus.SUCCEEDED
     assert any("behavior trees are not supported" in record.text for record in log)
 
 
-async def test_waypoints_are_followed_and_missed_ones_are_reported(scene):
-    goal = Asked(scene, "FollowWaypoints", "follow_waypoints")
+async def test_waypoints_are_followed_and_missed_ones_are_reported(robot):
+    goal = GoalSender(robot, "FollowWaypoints", "follow_waypoints")
     costmap = Costmap(Grid(cells=np.zeros((100, 100), np.uint8), resolution=0.05))
     costmap.grid.cells[60:] = LETHAL  # above y = 3 m
-    publisher = scene.node.create_publisher("nav2_msgs/msg/Costmap", "/global_costmap/costmap_raw", DESCRIPTION_QOS)
-    publisher.publish(raw_message(costmap, "map", scene.stamp()))
+    publisher = robot.node.create_publisher("nav2_msgs/msg/Costmap", "/global_costmap/costmap_raw", DESCRIPTION_QOS)
+    publisher.publish(raw_message(costmap, "map", robot.stamp()))
     await goal.send(poses=[pose_stamped(2.0, 1.0), pose_stamped(2.0, 2.0)])
-    assert await goal.ends(90.0) == GoalStatus.SUCCEEDED
+    assert await goal.status_after(90.0) == GoalStatus.SUCCEEDED
     assert list(goal.answer.result.missed_waypoints) == []
     assert {feedback.current_waypoint for feedback in goal.feedback} == {0, 1}
-    scene.planner.failures = 2
+    robot.planner.failures = 2
     await goal.send(poses=[pose_stamped(1.0, 3.5), pose_stamped(2.0, 1.0)])
-    assert await goal.ends(90.0) == GoalStatus.SUCCEEDED
-    missed = [
+    assert await goal.status_after(90.0) == GoalStatus.SUCCEEDED
+    missed_waypoints = [
         getattr(missed_waypoint, "index", missed_waypoint) for missed_waypoint in goal.answer.result.missed_waypoints
     ]  # Jazzy's are messages
-    assert missed == [0]
-    assert scene.distance_to(2.0, 1.0) < 0.26
+    assert missed_waypoints == [0]
+    assert robot.distance_to(2.0, 1.0) < 0.26

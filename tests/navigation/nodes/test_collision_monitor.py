@@ -1,4 +1,4 @@
-"""collision_monitor: velocities pass, slowed and stopped by what sensors see."""
+"""collision_monitor: velocities are passed on, limited or stopped by the data of sensors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.messages import get_message
 from linkwright.navigation.following.follower import ZERO_VELOCITY
 from linkwright.navigation.nodes.collision_monitor import CollisionMonitor
 from linkwright.nodes import NodeOptions
-from tests.navigation.nodes.robots import DrivingScene
+from tests.navigation.nodes.robots import DrivingRobot
 
 STOP = {
     "polygons": ["stop"],
@@ -24,33 +24,33 @@ STOP = {
 SCAN = {"observation_sources": ["scan"], "base_frame_id": "base_link", "autostart_node": True}
 
 
-class Driven(DrivingScene):
-    """A scene whose robot somebody wants to drive forwards, ten times a second."""
+class CommandedRobot(DrivingRobot):
+    """A fake robot that is commanded to drive forward ten times a second."""
 
     def __init__(self, graph, clock):
         super().__init__(graph, clock)
-        self.wanted = 0.4
+        self.commanded_speed = 0.4
         self.wall = None
         self._driver = self.node.create_publisher("geometry_msgs/msg/Twist", "/cmd_vel_smoothed", 10)
         self.node.create_timer(0.1, self._drive)
 
-    def tell_scan(self, *ranges):
-        """A scan that sees a wall ahead, too, where there is one."""
-        super().tell_scan(*ranges, *([] if self.wall is None else [(0, self.wall - self.pose[0])]))
+    def publish_scan(self, *ranges):
+        """Publish a scan, with the wall ahead if there is one."""
+        super().publish_scan(*ranges, *([] if self.wall is None else [(0, self.wall - self.pose[0])]))
 
     def _drive(self):
         message = self._driver.msg_type()
-        message.linear.x = self.wanted
+        message.linear.x = self.commanded_speed
         self._driver.publish(message)
 
 
 @pytest.fixture
-def scene(graph, clock):
-    return Driven(graph, clock)
+def robot(graph, clock):
+    return CommandedRobot(graph, clock)
 
 
 @pytest.fixture
-def monitor(graph, scene):
+def monitor(graph, robot):
     monitors = []
 
     def make(**parameters):
@@ -62,106 +62,106 @@ def monitor(graph, scene):
         monitor.close()
 
 
-async def test_velocity_passes_in_free_space(scene, monitor):
+async def test_velocity_passes_in_free_space(robot, monitor):
     monitor(**STOP)
-    await scene.run(1.0)
-    assert scene.velocity.x == pytest.approx(0.4)
+    await robot.run(1.0)
+    assert robot.velocity.x == pytest.approx(0.4)
 
 
-async def test_robot_stops_for_obstacle_in_zone_and_resumes(scene, monitor, log):
+async def test_robot_stops_for_obstacle_in_zone_and_resumes(robot, monitor, log):
     node = monitor(**STOP, state_topic="state")
     states = []
-    scene.node.create_subscription("nav2_msgs/msg/CollisionMonitorState", "state", states.append, 10)
-    await scene.run(1.0)
-    scene.seen = ((0, 0.5),)
-    await scene.run(1.0)
-    assert scene.velocity == ZERO_VELOCITY
-    scene.seen = ()
-    await scene.run(1.0)
-    assert scene.velocity.x == pytest.approx(0.4)
+    robot.node.create_subscription("nav2_msgs/msg/CollisionMonitorState", "state", states.append, 10)
+    await robot.run(1.0)
+    robot.obstacles = ((0, 0.5),)
+    await robot.run(1.0)
+    assert robot.velocity == ZERO_VELOCITY
+    robot.obstacles = ()
+    await robot.run(1.0)
+    assert robot.velocity.x == pytest.approx(0.4)
     assert [(state.action_type, state.polygon_name) for state in states[-2:]] == [(1, "stop"), (0, "")]
     assert any(record.text == "Robot to stop due to stop" for record in log)
     assert node.lifecycle_state == ACTIVE
 
 
-async def test_publishing_ends_after_stop_pub_timeout(scene, monitor):
+async def test_publishing_ends_after_stop_pub_timeout(robot, monitor):
     monitor(**STOP, stop_pub_timeout=1.0)
-    scene.seen = ((0, 0.5),)
-    await scene.run(3.0)
-    scene.speeds.clear()
-    await scene.run(1.0)
-    assert scene.speeds == []
+    robot.obstacles = ((0, 0.5),)
+    await robot.run(3.0)
+    robot.speeds.clear()
+    await robot.run(1.0)
+    assert robot.speeds == []
 
 
-async def test_silent_sensor_stops_robot(scene, monitor):
+async def test_silent_sensor_stops_robot(robot, monitor):
     monitor(**STOP, source_timeout=1.0)
-    await scene.run(1.0)
-    assert scene.velocity.x == pytest.approx(0.4)
-    scene.sees = False
-    await scene.run(2.0)
-    assert scene.velocity == ZERO_VELOCITY
+    await robot.run(1.0)
+    assert robot.velocity.x == pytest.approx(0.4)
+    robot.publishes_scans = False
+    await robot.run(2.0)
+    assert robot.velocity == ZERO_VELOCITY
 
 
-async def test_sensor_with_zero_timeout_may_be_silent(scene, monitor):
+async def test_sensor_with_zero_timeout_may_be_silent(robot, monitor):
     monitor(**STOP, **{"scan.source_timeout": 0.0})
-    scene.sees = False
-    await scene.run(1.0)
-    assert scene.velocity.x == pytest.approx(0.4)
+    robot.publishes_scans = False
+    await robot.run(1.0)
+    assert robot.velocity.x == pytest.approx(0.4)
 
 
-async def test_slowdown_zone_reduces_velocity(scene, monitor):
+async def test_slowdown_zone_reduces_velocity(robot, monitor):
     monitor(**{**STOP, "stop.action_type": "slowdown", "stop.slowdown_ratio": 0.3})
-    scene.seen = ((0, 0.5),)
-    await scene.run(1.0)
-    assert scene.velocity.x == pytest.approx(0.12)
+    robot.obstacles = ((0, 0.5),)
+    await robot.run(1.0)
+    assert robot.velocity.x == pytest.approx(0.12)
 
 
-async def test_points_and_max_points_of_humble_are_read(scene, monitor):
+async def test_points_and_max_points_of_humble_are_read(robot, monitor):
     humble = {**STOP, "stop.points": [0.6, 0.3, 0.6, -0.3, 0.0, -0.3, 0.0, 0.3], "stop.max_points": 1}
     monitor(**humble)
-    scene.seen = ((0, 0.5),)
-    await scene.run(1.0)
-    assert scene.velocity.x == pytest.approx(0.4)  # one point is allowed
-    scene.seen = ((0, 0.5), (1, 0.5))
-    await scene.run(1.0)
-    assert scene.velocity == ZERO_VELOCITY
+    robot.obstacles = ((0, 0.5),)
+    await robot.run(1.0)
+    assert robot.velocity.x == pytest.approx(0.4)  # one point is allowed
+    robot.obstacles = ((0, 0.5), (1, 0.5))
+    await robot.run(1.0)
+    assert robot.velocity == ZERO_VELOCITY
 
 
-async def test_old_observations_stay_fixed_in_odometry_frame(scene, monitor):
+async def test_old_observations_stay_fixed_in_odometry_frame(robot, monitor):
     monitor(**STOP)
-    scene.seen = ((0, 0.9),)
-    await scene.run(0.5)
-    assert scene.velocity.x == pytest.approx(0.4)
-    scene.sees = False  # for less than the timeout
-    scene.tell_pose(x=scene.pose[0] + 0.35)
-    await scene.run(0.5)
-    assert scene.velocity == ZERO_VELOCITY
+    robot.obstacles = ((0, 0.9),)
+    await robot.run(0.5)
+    assert robot.velocity.x == pytest.approx(0.4)
+    robot.publishes_scans = False  # for less than the timeout
+    robot.publish_pose(x=robot.pose[0] + 0.35)
+    await robot.run(0.5)
+    assert robot.velocity == ZERO_VELOCITY
 
 
-async def test_approach_with_costmap_footprint_slows_down_before_wall(scene, monitor):
+async def test_approach_with_costmap_footprint_slows_down_before_wall(robot, monitor):
     polygon, point = get_message("geometry_msgs/msg/PolygonStamped"), get_message("geometry_msgs/msg/Point32")
-    footprints = scene.node.create_publisher(polygon, "/local_costmap/published_footprint", 10)
+    footprints = robot.node.create_publisher(polygon, "/local_costmap/published_footprint", 10)
 
     def publish_reading():
-        x, y, _ = scene.pose
+        x, y, _ = robot.pose
         corners = [(x + a, y + b) for a, b in ((0.2, 0.2), (0.2, -0.2), (-0.2, -0.2), (-0.2, 0.2))]
         message = polygon()
-        message.header.frame_id, message.header.stamp = "odom", scene.stamp()
+        message.header.frame_id, message.header.stamp = "odom", robot.stamp()
         message.polygon.points = [point(x=float(a), y=float(b)) for a, b in corners]
         footprints.publish(message)
 
-    scene.node.create_timer(0.1, publish_reading)
+    robot.node.create_timer(0.1, publish_reading)
     approach = {"polygons": ["body"], "body.type": "polygon", "body.action_type": "approach", "body.min_points": 1}
     monitor(**approach, **{"body.time_before_collision": 2.0})
-    scene.wall = scene.pose[0] + 1.5
-    await scene.run(8.0)
-    assert 0.2 < scene.wall - scene.pose[0] < 0.45
-    speeds = [speed.x for speed in scene.speeds if speed.x > 0]
+    robot.wall = robot.pose[0] + 1.5
+    await robot.run(8.0)
+    assert 0.2 < robot.wall - robot.pose[0] < 0.45
+    speeds = [speed.x for speed in robot.speeds if speed.x > 0]
     assert speeds[0] == pytest.approx(0.4)
     assert 0 < speeds[-1] < 0.2
 
 
-async def test_velocity_polygon_follows_speed(scene, monitor):
+async def test_velocity_polygon_follows_speed(robot, monitor):
     zone = {
         "polygons": ["v"],
         "v.type": "velocity_polygon",
@@ -169,64 +169,64 @@ async def test_velocity_polygon_follows_speed(scene, monitor):
         "v.min_points": 1,
         "v.velocity_polygons": ["fast", "slow"],
     }
-    for name, reach, least, most in (("fast", 1.0, 0.3, 1.0), ("slow", 0.4, -1.0, 0.3)):
-        zone[f"v.{name}.points"] = f"[[{reach}, 0.3], [{reach}, -0.3], [0.0, -0.3], [0.0, 0.3]]"
-        zone |= {f"v.{name}.linear_min": least, f"v.{name}.linear_max": most}
+    for name, size, lowest, highest in (("fast", 1.0, 0.3, 1.0), ("slow", 0.4, -1.0, 0.3)):
+        zone[f"v.{name}.points"] = f"[[{size}, 0.3], [{size}, -0.3], [0.0, -0.3], [0.0, 0.3]]"
+        zone |= {f"v.{name}.linear_min": lowest, f"v.{name}.linear_max": highest}
         zone |= {f"v.{name}.theta_min": -1.0, f"v.{name}.theta_max": 1.0}
     monitor(**zone)
-    scene.seen = ((0, 0.7),)
-    await scene.run(1.0)
-    assert scene.velocity == ZERO_VELOCITY
-    scene.wanted = 0.2
-    await scene.run(1.0)
-    assert scene.velocity.x == pytest.approx(0.2)
+    robot.obstacles = ((0, 0.7),)
+    await robot.run(1.0)
+    assert robot.velocity == ZERO_VELOCITY
+    robot.commanded_speed = 0.2
+    await robot.run(1.0)
+    assert robot.velocity.x == pytest.approx(0.2)
 
 
-async def test_zone_can_be_disabled_by_parameter(scene, monitor):
+async def test_zone_can_be_disabled_by_parameter(robot, monitor):
     node = monitor(**STOP)
-    scene.seen = ((0, 0.5),)
-    await scene.run(1.0)
-    assert scene.velocity == ZERO_VELOCITY
+    robot.obstacles = ((0, 0.5),)
+    await robot.run(1.0)
+    assert robot.velocity == ZERO_VELOCITY
     node.set_parameters([type(node.get_parameter("stop.enabled"))("stop.enabled", value=False)])
-    await scene.run(1.0)
-    assert scene.velocity.x == pytest.approx(0.4)
+    await robot.run(1.0)
+    assert robot.velocity.x == pytest.approx(0.4)
 
 
-async def test_point_cloud_is_filtered_by_height(scene, monitor):
+async def test_point_cloud_is_filtered_by_height(robot, monitor):
     cloud, field = get_message("sensor_msgs/msg/PointCloud2"), get_message("sensor_msgs/msg/PointField")
-    clouds = scene.node.create_publisher(cloud, "/points", 5)
+    clouds = robot.node.create_publisher(cloud, "/points", 5)
     height = [0.01]
 
     def publish_reading():
         points = np.array([[0.5, 0.0, height[0]], [np.nan, 0.0, 0.2]], np.float32)
         message = cloud(height=1, width=2, point_step=12, row_step=24, data=points.tobytes())
         message.fields = [field(name=name, offset=4 * i, datatype=7, count=1) for i, name in enumerate("xyz")]
-        message.header.frame_id, message.header.stamp = "base_link", scene.stamp()
+        message.header.frame_id, message.header.stamp = "base_link", robot.stamp()
         clouds.publish(message)
 
-    scene.node.create_timer(0.1, publish_reading)
+    robot.node.create_timer(0.1, publish_reading)
     monitor(**STOP, **{"scan.type": "pointcloud", "scan.topic": "points"})
-    await scene.run(1.0)
-    assert scene.velocity.x == pytest.approx(0.4)
+    await robot.run(1.0)
+    assert robot.velocity.x == pytest.approx(0.4)
     height[0] = 0.2
-    await scene.run(1.0)
-    assert scene.velocity == ZERO_VELOCITY
+    await robot.run(1.0)
+    assert robot.velocity == ZERO_VELOCITY
 
 
 @pytest.mark.parametrize(("distance", "passes"), [(0.5, False), (2.0, True), (9.0, True)])
-async def test_range_message_is_arc_of_points(scene, monitor, distance, passes):
-    kind = get_message("sensor_msgs/msg/Range")
-    ranges = scene.node.create_publisher(kind, "/sonar", 5)
+async def test_range_message_is_arc_of_points(robot, monitor, distance, passes):
+    message_type = get_message("sensor_msgs/msg/Range")
+    ranges = robot.node.create_publisher(message_type, "/sonar", 5)
 
     def publish_reading():
-        message = kind(field_of_view=0.5, min_range=0.1, max_range=4.0, range=distance)
-        message.header.frame_id, message.header.stamp = "base_link", scene.stamp()
+        message = message_type(field_of_view=0.5, min_range=0.1, max_range=4.0, range=distance)
+        message.header.frame_id, message.header.stamp = "base_link", robot.stamp()
         ranges.publish(message)
 
-    scene.node.create_timer(0.1, publish_reading)
+    robot.node.create_timer(0.1, publish_reading)
     monitor(**STOP, **{"scan.type": "range", "scan.topic": "sonar"})
-    await scene.run(1.0)
-    assert (scene.velocity != ZERO_VELOCITY) is passes
+    await robot.run(1.0)
+    assert (robot.velocity != ZERO_VELOCITY) is passes
 
 
 @pytest.mark.parametrize(
@@ -239,13 +239,13 @@ async def test_range_message_is_arc_of_points(scene, monitor, distance, passes):
         ("scan.type", "sonar"),
     ],
 )
-async def test_invalid_parameter_is_reported_and_node_stays_unconfigured(scene, monitor, log, name, value):
+async def test_invalid_parameter_is_reported_and_node_stays_unconfigured(robot, monitor, log, name, value):
     node = monitor(**{**STOP, name: value})
-    await scene.run(0.5)
+    await robot.run(0.5)
     assert node.lifecycle_state == UNCONFIGURED
     errors = [record.text for record in log if record.level == LogLevel.ERROR]
     assert any("NODE433" in error and name in error for error in errors)
-    assert scene.speeds == []
+    assert robot.speeds == []
 
 
 def test_topic_name_of_wrong_type_is_an_error(graph):

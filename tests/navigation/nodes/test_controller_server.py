@@ -1,4 +1,4 @@
-"""controller_server: follows paths, stops at the end of all, and says why it gives up."""
+"""controller_server: it follows paths, stops at the end, and reports why it fails."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.navigation.following.follower import ZERO_VELOCITY
 from linkwright.navigation.nodes.controller_server import ControllerServer
 from linkwright.nodes import NodeOptions
 from tests.navigation.following.driving import line
-from tests.navigation.nodes.robots import Asked, DrivingScene, path_message
+from tests.navigation.nodes.robots import DrivingRobot, GoalSender, path_message
 
 LOCAL = {
     "global_frame": "odom",
@@ -47,18 +47,18 @@ PATH = line((1.0, 1.0), (2.5, 1.0), (2.5, 2.0))
 
 @pytest.fixture
 async def start(graph, clock):
-    """Starts the server with parameters; the scene and the action."""
+    """Return a function that starts the server with parameters, and returns robot and action client."""
     servers = []
 
     async def start(**parameters):
-        scene = DrivingScene(graph, clock)
+        robot = DrivingRobot(graph, clock)
         options = NodeOptions(parameters={"FollowPath.plugin": PURE_PURSUIT, "autostart_node": True, **parameters})
         for name, value in LOCAL.items():
             options.parameters_of_others.set("/local_costmap/local_costmap", name, value)
         server = ControllerServer(graph, options)
         servers.append(server)
-        await scene.run(1.0)
-        return scene, Asked(scene, "FollowPath", "follow_path"), server
+        await robot.run(1.0)
+        return robot, GoalSender(robot, "FollowPath", "follow_path"), server
 
     yield start
     for server in servers:
@@ -67,117 +67,117 @@ async def start(graph, clock):
 
 @pytest.mark.parametrize("parameters", [{}, DWB], ids=["pure pursuit", "dwb"])
 async def test_path_is_followed_to_end(start, parameters):
-    scene, goal, _ = await start(**parameters)
+    robot, goal, _ = await start(**parameters)
     await goal.send(path=path_message(PATH))
-    assert await goal.ends(60.0) == GoalStatus.SUCCEEDED
-    assert scene.distance_to(2.5, 2.0) < 0.26
-    assert abs(scene.pose[2] - pi / 2) < 0.26
-    assert scene.velocity == ZERO_VELOCITY
+    assert await goal.status_after(60.0) == GoalStatus.SUCCEEDED
+    assert robot.distance_to(2.5, 2.0) < 0.26
+    assert abs(robot.pose[2] - pi / 2) < 0.26
+    assert robot.velocity == ZERO_VELOCITY
     assert goal.feedback[0].distance_to_goal == pytest.approx(2.5, abs=0.15)
     assert max(feedback.speed for feedback in goal.feedback) > 0.15
 
 
 async def test_canceling_stops_robot(start):
-    scene, goal, _ = await start()
+    robot, goal, _ = await start()
     await goal.send(path=path_message(PATH))
-    await scene.run(2.0)
-    assert scene.velocity.x > 0.0
+    await robot.run(2.0)
+    assert robot.velocity.x > 0.0
     goal.handle.cancel_goal_async()
-    assert await goal.ends(2.0) == GoalStatus.CANCELED
-    assert scene.velocity == ZERO_VELOCITY
+    assert await goal.status_after(2.0) == GoalStatus.CANCELED
+    assert robot.velocity == ZERO_VELOCITY
 
 
 async def test_new_path_preempts_running_path(start, log):
-    scene, goal, _ = await start()
+    robot, goal, _ = await start()
     await goal.send(path=path_message(PATH))
-    await scene.run(2.0)
-    second = Asked(scene, "FollowPath", "follow_path")
+    await robot.run(2.0)
+    second = GoalSender(robot, "FollowPath", "follow_path")
     await second.send(path=path_message(line((1.5, 1.0), (3.0, 1.0))))
-    assert ZERO_VELOCITY not in scene.speeds[5:]
-    assert await goal.ends(1.0) == GoalStatus.ABORTED
-    assert await second.ends(30.0) == GoalStatus.SUCCEEDED
-    assert scene.distance_to(3.0, 1.0) < 0.26
+    assert ZERO_VELOCITY not in robot.speeds[5:]
+    assert await goal.status_after(1.0) == GoalStatus.ABORTED
+    assert await second.status_after(30.0) == GoalStatus.SUCCEEDED
+    assert robot.distance_to(3.0, 1.0) < 0.26
     beginnings = ["Received a goal, begin computing control effort.", "Passing new path to controller."]
     assert [record.text for record in log if record.text in beginnings] == beginnings
 
 
 async def test_obstacle_on_path_stops_robot(start, log):
-    scene, goal, _ = await start()
+    robot, goal, _ = await start()
     await goal.send(path=path_message(line((1.0, 1.0), (4.5, 1.0))))
-    scene.seen = tuple((degree % 360, 0.8) for degree in range(-20, 21))
-    assert await goal.ends(30.0) == GoalStatus.ABORTED
-    assert scene.velocity == ZERO_VELOCITY
+    robot.obstacles = tuple((degree % 360, 0.8) for degree in range(-20, 21))
+    assert await goal.status_after(30.0) == GoalStatus.ABORTED
+    assert robot.velocity == ZERO_VELOCITY
     assert any("there is an obstacle ahead" in record.text for record in log)
 
 
 async def test_held_robot_fails_to_make_progress(start, log):
-    scene, goal, _ = await start(**{"progress_checker.movement_time_allowance": 3.0})
+    robot, goal, _ = await start(**{"progress_checker.movement_time_allowance": 3.0})
     await goal.send(path=path_message(PATH))
-    scene.held = True
-    assert await goal.ends(6.0) == GoalStatus.ABORTED
+    robot.is_blocked = True
+    assert await goal.status_after(6.0) == GoalStatus.ABORTED
     assert any("Failed to make progress" in record.text for record in log)
 
 
 async def test_lost_transforms_stop_robot(start, log):
-    scene, goal, _ = await start()
+    robot, goal, _ = await start()
     await goal.send(path=path_message(PATH))
-    await scene.run(1.0)
-    assert scene.velocity.x > 0.0
-    scene.told = False
-    await scene.run(0.5)
-    assert scene.velocity == ZERO_VELOCITY, "it waits"
-    scene.told = True
-    await scene.run(1.0)
-    assert scene.velocity.x > 0.0, "it goes on"
-    scene.told = False
-    assert await goal.ends(5.0) == GoalStatus.ABORTED
-    assert scene.velocity == ZERO_VELOCITY
+    await robot.run(1.0)
+    assert robot.velocity.x > 0.0
+    robot.publishes_pose = False
+    await robot.run(0.5)
+    assert robot.velocity == ZERO_VELOCITY, "it waits"
+    robot.publishes_pose = True
+    await robot.run(1.0)
+    assert robot.velocity.x > 0.0, "the robot continues"
+    robot.publishes_pose = False
+    assert await goal.status_after(5.0) == GoalStatus.ABORTED
+    assert robot.velocity == ZERO_VELOCITY
     assert any("s old; the goal is aborted" in record.text for record in log)
 
 
 async def test_silent_laser_stops_robot(start, log):
-    scene, goal, _ = await start()
+    robot, goal, _ = await start()
     await goal.send(path=path_message(line((1.0, 1.0), (4.5, 1.0))))
-    await scene.run(0.5)
-    assert scene.velocity.x > 0.0
-    scene.sees = False
-    await scene.run(1.5)
-    assert scene.velocity == ZERO_VELOCITY
-    assert await goal.ends(10.0) == GoalStatus.ABORTED
+    await robot.run(0.5)
+    assert robot.velocity.x > 0.0
+    robot.publishes_scans = False
+    await robot.run(1.5)
+    assert robot.velocity == ZERO_VELOCITY
+    assert await goal.status_after(10.0) == GoalStatus.ABORTED
     assert any("the costmap is not current" in record.text for record in log)
 
 
 async def test_deactivation_stops_robot(start):
-    scene, goal, server = await start()
+    robot, goal, server = await start()
     await goal.send(path=path_message(PATH))
-    await scene.run(1.0)
+    await robot.run(1.0)
     server.node.trigger_deactivate()
-    await scene.run(0.1)
-    assert scene.velocity == ZERO_VELOCITY
-    assert await goal.ends(1.0) == GoalStatus.ABORTED
+    await robot.run(0.1)
+    assert robot.velocity == ZERO_VELOCITY
+    assert await goal.status_after(1.0) == GoalStatus.ABORTED
     await goal.send(path=path_message(PATH))
     assert not goal.handle.accepted
 
 
 async def test_speed_limit_is_respected(start):
-    scene, goal, _ = await start()
+    robot, goal, _ = await start()
     limit = get_message("nav2_msgs/msg/SpeedLimit")(percentage=True, speed_limit=20.0)
-    publisher = scene.node.create_publisher(type(limit), "/speed_limit", 10)
+    publisher = robot.node.create_publisher(type(limit), "/speed_limit", 10)
     publisher.publish(limit)
     await goal.send(path=path_message(PATH))
-    await scene.run(3.0)
-    assert 0.05 < max(speed.x for speed in scene.speeds) <= 0.1 + 1e-9
+    await robot.run(3.0)
+    assert 0.05 < max(speed.x for speed in robot.speeds) <= 0.1 + 1e-9
 
 
 async def test_empty_path_and_unknown_controller_are_rejected(start, log):
     _, goal, _ = await start()
     await goal.send(path=path_message([]))
-    assert await goal.ends(1.0) == GoalStatus.ABORTED
+    assert await goal.status_after(1.0) == GoalStatus.ABORTED
     await goal.send(path=path_message(PATH), controller_id="Fast")
-    assert await goal.ends(1.0) == GoalStatus.ABORTED
-    logged = [record.text for record in log]
-    assert "Path is empty." in logged
-    assert "there is no controller 'Fast'; available: FollowPath" in logged
+    assert await goal.status_after(1.0) == GoalStatus.ABORTED
+    texts = [record.text for record in log]
+    assert "Path is empty." in texts
+    assert "there is no controller 'Fast'; available: FollowPath" in texts
 
 
 async def test_parameters_without_effect_are_reported(start, log):

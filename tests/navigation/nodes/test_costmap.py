@@ -1,4 +1,4 @@
-"""Costmaps of nav2's servers on the graph: maps, scans, windows that move, services, parameters."""
+"""Costmaps of nav2's servers on the graph: maps, scans, rolling windows, services, parameters."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.messages import get_message, get_service
 from linkwright.navigation.costmaps.costmap import FREE, INSCRIBED, LETHAL
 from linkwright.navigation.nodes.costmap import make_costmap
 from linkwright.nodes import NodeOptions
-from tests.navigation.nodes.scene import Scene, walls
+from tests.navigation.nodes.fake_robot import FakeRobot, walls
 
 GLOBAL = {
     "global_frame": "map",
@@ -43,19 +43,19 @@ LOCAL = {
 
 
 @pytest.fixture
-def scene(graph, clock) -> Scene:
-    return Scene(graph, clock)
+def robot(graph, clock) -> FakeRobot:
+    return FakeRobot(graph, clock)
 
 
 @pytest.fixture
-def start(graph, scene):
+def start(graph, robot):
     nodes = []
 
     def start(name="global_costmap", parameters=GLOBAL, **more):
         options = NodeOptions()
         for key, value in {**parameters, **more}.items():
             options.parameters_of_others.set(f"/{name}/{name}", key, value)
-        node = make_costmap(scene.node, graph, options, name)
+        node = make_costmap(robot.node, graph, options, name)
         nodes.append(node)
         if node.trigger_configure() == TransitionCallbackReturn.SUCCESS:
             node.trigger_activate()
@@ -67,21 +67,21 @@ def start(graph, scene):
         node.destroy_node()
 
 
-async def call(scene, service, kind, **fields):
-    kind = get_service(f"nav2_msgs/srv/{kind}")
-    client = scene.node.create_client(kind, service)
-    future = client.call_async(kind.Request(**fields))
-    await scene.graph.settle()
+async def call(robot, service, service_type, **fields):
+    service_type = get_service(f"nav2_msgs/srv/{service_type}")
+    client = robot.node.create_client(service_type, service)
+    future = client.call_async(service_type.Request(**fields))
+    await robot.graph.settle()
     assert future.done()
     return future.result()
 
 
-async def test_global_costmap_has_size_of_map(scene, start):
+async def test_global_costmap_has_size_of_map(robot, start):
     node = start()
     assert node.get_fully_qualified_name() == "/global_costmap/global_costmap"
-    scene.tell_map(walls())
-    scene.tell_pose()
-    await scene.run(0.5)
+    robot.publish_map(walls())
+    robot.publish_pose()
+    await robot.run(0.5)
     costs = node.costmap.grid.cells
     assert costs.shape == (60, 80)
     assert costs[30, 0] == LETHAL
@@ -90,161 +90,163 @@ async def test_global_costmap_has_size_of_map(scene, start):
     assert node.is_current
 
 
-async def test_costmap_inherits_tf_remappings_of_server(graph, scene):
-    """The launch files of nav2 make the topics of transforms relative, for robots in namespaces."""
+async def test_costmap_inherits_tf_remappings_of_server(graph, robot):
+    """nav2's launch files use relative names for the topics of transforms, for robots in namespaces."""
     options = NodeOptions(remappings=[("/tf", "tf"), ("/tf_static", "tf_static")])
-    node = make_costmap(scene.node, graph, options, "global_costmap")
+    node = make_costmap(robot.node, graph, options, "global_costmap")
     topics = {subscription.topic_name for subscription in node.subscriptions}
     assert {"/tf", "/tf_static"} <= topics
     node.shut_down()
     node.destroy_node()
 
 
-async def test_costmap_waits_for_transform_and_map(scene, start):
+async def test_costmap_waits_for_transform_and_map(robot, start):
     node = start()
-    await scene.run(0.5)
+    await robot.run(0.5)
     assert not node.is_current
-    scene.tell_pose()
-    await scene.run(0.5)
+    robot.publish_pose()
+    await robot.run(0.5)
     assert not node.is_current
-    scene.tell_map(walls())
-    await scene.run(0.5)
+    robot.publish_map(walls())
+    await robot.run(0.5)
     assert node.is_current
 
 
-async def test_laser_obstacles_are_marked_and_cleared(scene, start):
+async def test_laser_obstacles_are_marked_and_cleared(robot, start):
     node = start()
-    scene.tell_map(walls())
-    scene.tell_pose()
-    scene.tell_scan((0, 1.0))
-    await scene.run(0.3)
+    robot.publish_map(walls())
+    robot.publish_pose()
+    robot.publish_scan((0, 1.0))
+    await robot.run(0.3)
     assert node.costmap.cost_at(np.array([2.0, 1.0])) == LETHAL
-    scene.tell_pose()
-    scene.tell_scan()
-    await scene.run(0.3)
+    robot.publish_pose()
+    robot.publish_scan()
+    await robot.run(0.3)
     assert node.costmap.cost_at(np.array([2.0, 1.0])) == FREE
 
 
-async def test_scan_waits_for_its_transform(scene, start):
+async def test_scan_waits_for_its_transform(robot, start):
     node = start()
-    scene.tell_map(walls())
-    scene.tell_pose(x=0.5)
-    await scene.run(0.3)
-    scene.tell_scan((0, 1.0))
-    await scene.run(0.3)
+    robot.publish_map(walls())
+    robot.publish_pose(x=0.5)
+    await robot.run(0.3)
+    robot.publish_scan((0, 1.0))
+    await robot.run(0.3)
     assert node.costmap.cost_at(np.array([1.5, 1.0])) == FREE
-    scene.tell_pose(x=1.0)  # the robot has moved since the last transform, and the scan is between both
-    await scene.run(0.3)
+    robot.publish_pose(x=1.0)  # the robot has moved since the last transform, and the scan is between both
+    await robot.run(0.3)
     obstacle_cells = np.argwhere(node.costmap.grid.cells[15:25, 20:50] == LETHAL)
     assert len(obstacle_cells) == 1
     assert 1.5 < (obstacle_cells[0, 1] + 20) * 0.05 < 2.0
 
 
-async def test_local_costmap_moves_with_robot(scene, start):
+async def test_local_costmap_moves_with_robot(robot, start):
     node = start("local_costmap", LOCAL)
-    scene.tell_pose()
-    scene.tell_scan((0, 0.8))
-    await scene.run(0.3)
+    robot.publish_pose()
+    robot.publish_scan((0, 0.8))
+    await robot.run(0.3)
     assert node.costmap.grid.cells.shape == (40, 40)
     assert node.costmap.cost_at(np.array([1.8, 1.0])) == LETHAL
-    scene.tell_pose(x=1.5)
-    scene.tell_scan((0, 0.3))
-    await scene.run(0.3)
+    robot.publish_pose(x=1.5)
+    robot.publish_scan((0, 0.3))
+    await robot.run(0.3)
     assert node.costmap.grid.x == pytest.approx(0.5)
     assert node.costmap.cost_at(np.array([1.8, 1.0])) == LETHAL
 
 
-async def test_sonar_readings_mark_obstacle(scene, start):
+async def test_sonar_readings_mark_obstacle(robot, start):
     node = start(
         plugins=["sonar"],
         **{"sonar.plugin": "nav2_costmap_2d::RangeSensorLayer", "sonar.topics": ["sonar"]},
     )
     kind = get_message("sensor_msgs/msg/Range")
-    publisher = scene.node.create_publisher(kind, "/sonar", SENSOR_DATA_QOS)
+    publisher = robot.node.create_publisher(kind, "/sonar", SENSOR_DATA_QOS)
     for _ in range(5):
         message = kind(field_of_view=0.5, min_range=0.1, max_range=3.0, range=1.0)
-        message.header.frame_id, message.header.stamp = "base_link", scene.stamp()
+        message.header.frame_id, message.header.stamp = "base_link", robot.stamp()
         publisher.publish(message)
-        scene.tell_pose()
-        await scene.run(0.2)
+        robot.publish_pose()
+        await robot.run(0.2)
     assert node.costmap.cost_at(np.array([2.0, 1.0])) == LETHAL
     assert node.costmap.cost_at(np.array([1.5, 1.0])) == FREE
 
 
-async def test_costmap_topics_are_published(scene, start):
-    maps, parts, raw, outlines = [], [], [], []
-    for kind, topic, heard in (
+async def test_costmap_topics_are_published(robot, start):
+    maps, updates, raw, outlines = [], [], [], []
+    for message_type, topic, received in (
         ("nav_msgs/msg/OccupancyGrid", "costmap", maps),
-        ("map_msgs/msg/OccupancyGridUpdate", "costmap_updates", parts),
+        ("map_msgs/msg/OccupancyGridUpdate", "costmap_updates", updates),
         ("nav2_msgs/msg/Costmap", "costmap_raw", raw),
     ):
-        scene.node.create_subscription(get_message(kind), f"/global_costmap/{topic}", heard.append, DESCRIPTION_QOS)
+        robot.node.create_subscription(
+            get_message(message_type), f"/global_costmap/{topic}", received.append, DESCRIPTION_QOS
+        )
     polygon = get_message("geometry_msgs/msg/PolygonStamped")
-    scene.node.create_subscription(polygon, "/global_costmap/published_footprint", outlines.append, 10)
+    robot.node.create_subscription(polygon, "/global_costmap/published_footprint", outlines.append, 10)
     node = start()
-    scene.tell_map(walls(columns=300))
-    scene.tell_pose()
-    await scene.run(0.5)
+    robot.publish_map(walls(columns=300))
+    robot.publish_pose()
+    await robot.run(0.5)
     result = np.array(maps[-1].data, np.int8).reshape(60, 300)
     assert (result[30, 0], result[30, 3], result[30, 40]) == (100, 99, 0)
     assert np.array_equal(np.array(raw[-1].data, np.uint8).reshape(60, 300), node.costmap.grid.cells)
     assert len(outlines[-1].polygon.points) == 16
     count = len(maps)
-    scene.tell_pose()
-    scene.tell_scan((0, 1.0))
-    await scene.run(0.5)
+    robot.publish_pose()
+    robot.publish_scan((0, 1.0))
+    await robot.run(0.5)
     assert len(maps) == count  # only a part changed
-    part = parts[-1]
-    assert part.width < 300
-    cells = np.array(part.data, np.int8).reshape(part.height, part.width)
-    assert cells[20 - part.y, 40 - part.x] == 100 or cells[19 - part.y, 39 - part.x] == 100
+    update = updates[-1]
+    assert update.width < 300
+    cells = np.array(update.data, np.int8).reshape(update.height, update.width)
+    assert cells[20 - update.y, 40 - update.x] == 100 or cells[19 - update.y, 39 - update.x] == 100
 
 
-async def test_clear_services_clear_costmap(scene, start):
+async def test_clear_services_clear_costmap(robot, start):
     node = start()
-    scene.tell_map(walls())
-    scene.tell_pose()
-    scene.tell_scan((0, 1.0), (180, 0.5))
-    await scene.run(0.3)
+    robot.publish_map(walls())
+    robot.publish_pose()
+    robot.publish_scan((0, 1.0), (180, 0.5))
+    await robot.run(0.3)
     layer = node.layered.layers[1]
-    layer.buffers[0].add(np.zeros(3), np.zeros((0, 3)), 0)  # what was seen is not seen any more
-    near, far = np.array([0.5, 1.0]), np.array([2.0, 1.0])
-    await call(scene, "/global_costmap/clear_around_global_costmap", "ClearCostmapAroundRobot", reset_distance=1.2)
-    assert node.costmap.cost_at(near) < INSCRIBED
-    assert node.costmap.cost_at(far) == LETHAL
-    await call(scene, "/global_costmap/clear_except_global_costmap", "ClearCostmapExceptRegion", reset_distance=1.2)
-    assert node.costmap.cost_at(far) == FREE
+    layer.buffers[0].add(np.zeros(3), np.zeros((0, 3)), 0)  # the obstacle is no longer observed
+    near_point, far_point = np.array([0.5, 1.0]), np.array([2.0, 1.0])
+    await call(robot, "/global_costmap/clear_around_global_costmap", "ClearCostmapAroundRobot", reset_distance=1.2)
+    assert node.costmap.cost_at(near_point) < INSCRIBED
+    assert node.costmap.cost_at(far_point) == LETHAL
+    await call(robot, "/global_costmap/clear_except_global_costmap", "ClearCostmapExceptRegion", reset_distance=1.2)
+    assert node.costmap.cost_at(far_point) == FREE
     layer.layer_grid.cells[20, 40] = LETHAL
-    await call(scene, "/global_costmap/clear_entirely_global_costmap", "ClearEntireCostmap")
-    assert node.costmap.cost_at(far) == FREE
+    await call(robot, "/global_costmap/clear_entirely_global_costmap", "ClearEntireCostmap")
+    assert node.costmap.cost_at(far_point) == FREE
     assert node.costmap.grid.cells[30, 0] == LETHAL
-    answer = await call(scene, "/global_costmap/get_costmap", "GetCostmap")
+    answer = await call(robot, "/global_costmap/get_costmap", "GetCostmap")
     assert answer.map.metadata.size_x == 80
 
 
-async def test_footprint_parameter_replaces_radius(scene, start):
+async def test_footprint_parameter_replaces_radius(robot, start):
     node = start(footprint="[[0.3, 0.1], [0.3, -0.1], [-0.3, -0.1], [-0.3, 0.1]]", footprint_padding=0.0)
     assert node.footprint.tolist() == [[0.3, 0.1], [0.3, -0.1], [-0.3, -0.1], [-0.3, 0.1]]
     assert node.layered.inscribed_radius == pytest.approx(0.1)
 
 
-async def test_changed_parameters_take_effect(scene, start):
+async def test_changed_parameters_take_effect(robot, start):
     node = start()
-    scene.tell_map(walls())
-    scene.tell_pose()
-    await scene.run(0.3)
-    place = np.array([0.5, 1.5])
-    assert node.costmap.cost_at(place) > FREE
+    robot.publish_map(walls())
+    robot.publish_pose()
+    await robot.run(0.3)
+    point = np.array([0.5, 1.5])
+    assert node.costmap.cost_at(point) > FREE
     node.set_parameters([Parameter("inflation_layer.inflation_radius", value=0.3)])
-    await scene.run(0.3)
-    assert node.costmap.cost_at(place) == FREE
+    await robot.run(0.3)
+    assert node.costmap.cost_at(point) == FREE
     node.set_parameters([Parameter("inflation_layer.enabled", value=False), Parameter("robot_radius", value=0.4)])
-    await scene.run(0.3)
+    await robot.run(0.3)
     assert node.costmap.cost_at(np.array([0.1, 1.5])) == FREE
     assert node.layered.circumscribed_radius == pytest.approx(0.41, abs=0.01)
 
 
-async def test_unsupported_layers_and_filters_are_reported_and_ignored(scene, start, log):
+async def test_unsupported_layers_and_filters_are_reported_and_ignored(robot, start, log):
     start(
         plugins=["static_layer", "sonar"],
         filters=["keepout_filter"],
@@ -254,15 +256,15 @@ async def test_unsupported_layers_and_filters_are_reported_and_ignored(scene, st
             "keepout_filter.enabled": True,
         },
     )
-    logged = [record.text for record in log]
-    assert "layers of type my_package::Sonar are not supported: the costmap ignores 'sonar'" in logged
-    assert "costmap filters are not supported: the costmap ignores keepout_filter" in logged
-    assert "layers that 'plugins' does not name are ignored: obstacle_layer" in logged
-    assert not [text for text in logged if "is not a parameter" in text or "are not read" in text]
+    texts = [record.text for record in log]
+    assert "layers of type my_package::Sonar are not supported: the costmap ignores 'sonar'" in texts
+    assert "costmap filters are not supported: the costmap ignores keepout_filter" in texts
+    assert "layers that 'plugins' does not name are ignored: obstacle_layer" in texts
+    assert not [text for text in texts if "is not a parameter" in text or "are not read" in text]
 
 
 @pytest.mark.parametrize(
-    ("given", "why"),
+    ("parameters", "reason"),
     [
         ({"resolution": 0.0}, "parameter 'resolution' of 'global_costmap' cannot be '0.0'"),
         ({"footprint": "[[1, 2]]"}, "'[[1, 2]]' has 1"),
@@ -270,7 +272,7 @@ async def test_unsupported_layers_and_filters_are_reported_and_ignored(scene, st
         ({"obstacle_layer.scan.data_type": "Image"}, "choose from LaserScan, PointCloud2"),
     ],
 )
-async def test_invalid_parameters_are_reported(scene, start, log, given, why):
-    node = start(**given)
+async def test_invalid_parameters_are_reported(robot, start, log, parameters, reason):
+    node = start(**parameters)
     assert not node.is_active
-    assert [record for record in log if why in record.text]
+    assert [record for record in log if reason in record.text]

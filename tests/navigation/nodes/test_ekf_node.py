@@ -27,15 +27,15 @@ async def test():
         yield graph
 
 
-def start(test, kind=EkfNode, **parameters):
-    return kind(test.graph, NodeOptions(parameters={"frequency": 10.0, "two_d_mode": True, **parameters}))
+def start(test, node_type=EkfNode, **parameters):
+    return node_type(test.graph, NodeOptions(parameters={"frequency": 10.0, "two_d_mode": True, **parameters}))
 
 
-def logged(test, level):
+def log_texts(test, level):
     return [record.text for record in test.log if record.level.name == level]
 
 
-def stamped(message, seconds, frame):
+def with_header(message, seconds, frame):
     message.header.stamp = Time.from_nanoseconds(round(seconds * 1e9))
     message.header.frame_id = frame
     return message
@@ -46,20 +46,20 @@ def now(test):
 
 
 def odometry(test, x=0.0, y=0.0, yaw=0.0, vx=0.0, vyaw=0.0, variance=0.01, at=None, frame="odom"):
-    message = stamped(get_message("nav_msgs/msg/Odometry")(), now(test) if at is None else at, frame)
+    message = with_header(get_message("nav_msgs/msg/Odometry")(), now(test) if at is None else at, frame)
     message.child_frame_id = "base_link"
     message.pose.pose.position.x, message.pose.pose.position.y = x, y
-    turn = message.pose.pose.orientation
-    turn.x, turn.y, turn.z, turn.w = quaternion_from_rpy((0.0, 0.0, yaw))
+    orientation = message.pose.pose.orientation
+    orientation.x, orientation.y, orientation.z, orientation.w = quaternion_from_rpy((0.0, 0.0, yaw))
     message.twist.twist.linear.x, message.twist.twist.angular.z = vx, vyaw
     message.pose.covariance = message.twist.covariance = np.eye(6).reshape(36) * variance
     return message
 
 
 def imu(test, yaw=0.0, vyaw=0.0, acceleration=(0.0, 0.0, 0.0), frame="base_link", variance=0.001):
-    message = stamped(get_message("sensor_msgs/msg/Imu")(), now(test), frame)
-    turn, acc = message.orientation, message.linear_acceleration
-    turn.x, turn.y, turn.z, turn.w = quaternion_from_rpy((0.0, 0.0, yaw))
+    message = with_header(get_message("sensor_msgs/msg/Imu")(), now(test), frame)
+    orientation, acc = message.orientation, message.linear_acceleration
+    orientation.x, orientation.y, orientation.z, orientation.w = quaternion_from_rpy((0.0, 0.0, yaw))
     message.angular_velocity.z = vyaw
     acc.x, acc.y, acc.z = acceleration
     for name in ("orientation", "angular_velocity", "linear_acceleration"):
@@ -67,14 +67,14 @@ def imu(test, yaw=0.0, vyaw=0.0, acceleration=(0.0, 0.0, 0.0), frame="base_link"
     return message
 
 
-def place(test, parent, child, x=0.0, y=0.0, yaw=0.0, static=False):
+def publish_transform(test, parent, child, x=0.0, y=0.0, yaw=0.0, static=False):
     pose = np.array([[x, y, 0.0, *quaternion_from_rpy((0.0, 0.0, yaw))]])
     message = TFMessage(batch=TransformBatch((parent,), (child,), test.clock.now_ns(), pose))
     test.publish("/tf_static" if static else "/tf", message, STATIC_TF_PUBLISHER_QOS if static else TF_QOS)
 
 
 def planar(message):
-    """x, y and yaw of a message of Odometry."""
+    """Return x, y and yaw of an Odometry message."""
     turn = message.pose.pose.orientation
     _, _, yaw = rpy_from_quaternion((turn.x, turn.y, turn.z, turn.w))
     return message.pose.pose.position.x, message.pose.pose.position.y, yaw
@@ -125,7 +125,7 @@ async def test_outlier_is_rejected(test):
 async def test_imu_with_rotation_and_offset_is_transformed(test):
     start(test, imu0="imu", imu0_config=config(YAW, VYAW, AX), publish_acceleration=True)
     filtered, acceleration = test.record("/odometry/filtered"), test.record("/accel/filtered")
-    place(test, "base_link", "imu_link", x=0.3, yaw=pi / 2, static=True)
+    publish_transform(test, "base_link", "imu_link", x=0.3, yaw=pi / 2, static=True)
     await test.settle()
     for _ in range(30):
         test.publish("/imu", imu(test, yaw=0.4 + pi / 2, acceleration=(0.7, 0.0, 0.0), frame="imu_link"))
@@ -153,15 +153,15 @@ async def test_missing_frame_is_reported(test):
         test.publish("/imu", imu(test, frame="nowhere"))
         await test.advance(0.1)
     assert len(filtered) == 0
-    (text,) = logged(test, "WARN")
+    (text,) = log_texts(test, "WARN")
     assert text.startswith('Could not obtain transform: "base_link"')
 
 
 async def test_map_world_frame_publishes_odom_transform(test):
     start(test, pose0="fix", pose0_config=config(X, Y, YAW), world_frame="map", transform_time_offset=0.5)
     tf = test.record("/tf", TFMessage)
-    place(test, "odom", "base_link", x=2.0)
-    pose = stamped(get_message("geometry_msgs/msg/PoseWithCovarianceStamped")(), now(test), "map")
+    publish_transform(test, "odom", "base_link", x=2.0)
+    pose = with_header(get_message("geometry_msgs/msg/PoseWithCovarianceStamped")(), now(test), "map")
     pose.pose.pose.position.x, pose.pose.pose.orientation.w = 5.0, 1.0
     test.publish("/fix", pose)
     await test.advance(0.1)
@@ -188,13 +188,13 @@ async def test_pose_is_set_by_topic_and_service(test):
     filtered = test.record("/odometry/filtered")
     test.publish("/wheels", odometry(test))
     await test.advance(0.2)
-    kind = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")
-    pose = stamped(kind(), now(test), "odom")
+    message_type = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")
+    pose = with_header(message_type(), now(test), "odom")
     pose.pose.pose.position.x, pose.pose.pose.orientation.w = 4.0, 1.0
     test.publish("/set_pose", pose)
     await test.advance(0.2)
     assert planar(filtered.last)[0] == pytest.approx(4.0)
-    pose = stamped(kind(), now(test), "odom")
+    pose = with_header(message_type(), now(test), "odom")
     pose.pose.pose.position.x, pose.pose.pose.orientation.w = 5.0, 1.0
     await test.call("/set_pose", get_service("robot_localization/srv/SetPose").Request(pose=pose))
     test.publish("/wheels", odometry(test, vx=3.0, at=now(test) - 0.1))
@@ -208,7 +208,7 @@ async def test_toggle_and_enable_services_control_filter(test):
     test.publish("/wheels", odometry(test, x=1.0))
     await test.advance(0.5)
     assert len(filtered) == 0
-    assert logged(test, "INFO") == ["Filter is disabled. To enable it call the /enable service"]
+    assert log_texts(test, "INFO") == ["Filter is disabled. To enable it call the /enable service"]
     await test.call("/enable", get_service("std_srvs/srv/Empty").Request())
     await test.advance(0.2)
     assert planar(filtered.last)[0] == pytest.approx(1.0)
@@ -237,7 +237,7 @@ async def test_filter_resets_when_simulated_time_jumps_back(test):
     await run(1, 20, 0.0)
     assert planar(filtered.last)[0] == pytest.approx(0.0)
     assert filtered.last.header.stamp.nanoseconds < 2e9
-    assert logged(test, "WARN") == ["Time has jumped: the filter restarts."]
+    assert log_texts(test, "WARN") == ["Time has jumped: the filter restarts."]
 
 
 async def test_old_message_is_ignored(test):
@@ -248,7 +248,7 @@ async def test_old_message_is_ignored(test):
     test.publish("/wheels", odometry(test, x=9.0, at=START - 5.0))
     await test.advance(0.2)
     assert planar(filtered.last)[0] == pytest.approx(1.0)
-    assert len(logged(test, "WARN")) == 1
+    assert len(log_texts(test, "WARN")) == 1
 
 
 async def test_velocity_commands_move_estimate(test):
@@ -273,12 +273,12 @@ async def test_velocity_commands_move_estimate(test):
 
 
 async def test_ukf_node_publishes_estimate(test):
-    running = start(test, UkfNode, odom0="wheels", odom0_config=config(X, VX))
+    node = start(test, UkfNode, odom0="wheels", odom0_config=config(X, VX))
     filtered = test.record("/odometry/filtered")
     for step in range(50):
         test.publish("/wheels", odometry(test, x=0.1 * step, vx=1.0))
         await test.advance(0.1)
-    assert running.node.get_name() == "ukf_filter_node"
+    assert node.node.get_name() == "ukf_filter_node"
     assert planar(filtered.last)[0] == pytest.approx(4.9, abs=0.1)
 
 
@@ -299,22 +299,22 @@ async def test_ukf_node_publishes_estimate(test):
     ],
 )
 async def test_invalid_parameters_are_rejected(test, parameters, text):
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         start(test, **parameters)
-    assert text in str(caught.value)
+    assert text in str(error.value)
 
 
 async def test_unknown_sensor_parameters_are_reported(test):
     start(test, odom0="wheels", odom0_config=config(X), odom0_diferential=True, odom2_config=config(X))
-    (misspelled,) = logged(test, "WARN")
+    (misspelled,) = log_texts(test, "WARN")
     assert misspelled.startswith(
         "'odom0_diferential' is not a parameter of this node; did you mean 'odom0_differential'"
     )
-    assert "parameters that this node does not have are ignored: odom2_config" in logged(test, "INFO")
+    assert "parameters that this node does not have are ignored: odom2_config" in log_texts(test, "INFO")
 
 
 async def test_sensor_without_enabled_values_is_reported(test):
     start(test, odom0="wheels")
-    assert logged(test, "WARN") == [
+    assert log_texts(test, "WARN") == [
         "wheels is listed as an input topic (odom0), but odom0_config enables none of its values"
     ]

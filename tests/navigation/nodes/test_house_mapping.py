@@ -1,4 +1,4 @@
-"""Our house, mapped by driving through it with bad odometry."""
+"""Mapping of the house during a drive with bad odometry."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from tests.navigation.nodes.house import (
     drive,
     faces,
     gaps,
-    occupied_of,
-    seen_points,
+    occupied_centers,
     simulation,
+    visible_points,
 )
 
 CELL = 0.05
@@ -39,8 +39,8 @@ def test_house_walls_are_mapped_within_5_cm_and_loop_is_closed(monkeypatch):
         grid = grid_from_message(
             test.call("/slam_toolbox/dynamic_map", get_service("nav_msgs/srv/GetMap").Request()).map
         )
-        here = test.robot_pose()
-        true = np.array((here[0], here[1], rpy_from_quaternion(here[3:])[2]))
+        pose = test.robot_pose()
+        true = np.array((pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]))
         correction = [
             transform
             for message in transforms
@@ -49,19 +49,19 @@ def test_house_walls_are_mapped_within_5_cm_and_loop_is_closed(monkeypatch):
         ][-1]
         mapper.close()
     # The loop: odometry ends a meter from where the robot is, and the map does not.
-    at, turned = correction.transform.translation, correction.transform.rotation
-    yaw = rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2]
+    translation, rotation = correction.transform.translation, correction.transform.rotation
+    yaw = rpy_from_quaternion((rotation.x, rotation.y, rotation.z, rotation.w))[2]
     assert np.hypot(*relative_pose(true, drift.pose)[:2]) > 0.8
-    error = relative_pose(true, compose(np.array((at.x, at.y, yaw)), drift.pose))
+    error = relative_pose(true, compose(np.array((translation.x, translation.y, yaw)), drift.pose))
     assert np.hypot(error[0], error[1]) < 0.05
     assert abs(error[2]) < 0.02
-    # The walls: what is occupied near them lies on them, and what can be seen of them is there.
-    occupied = occupied_of(grid)
-    near = occupied[distances(walls, occupied) < 0.2]
-    assert len(near) > 900
-    assert distances(solid, near).max() < CELL + 1e-4
-    seen = seen_points(walls, grid)
-    assert len(seen) > 800
-    missing = gaps(grid, seen)
-    assert np.quantile(missing, 0.99) < CELL
-    assert missing.max() < 3 * CELL  # at the edge of what can be seen
+    # The walls: occupied cells near them are on them, and their visible parts are occupied.
+    occupied = occupied_centers(grid)
+    near_walls = occupied[distances(walls, occupied) < 0.2]
+    assert len(near_walls) > 900
+    assert distances(solid, near_walls).max() < CELL + 1e-4
+    visible = visible_points(walls, grid)
+    assert len(visible) > 800
+    gap_sizes = gaps(grid, visible)
+    assert np.quantile(gap_sizes, 0.99) < CELL
+    assert gap_sizes.max() < 3 * CELL  # at the edge of the visible parts

@@ -1,4 +1,4 @@
-"""lifecycle_manager: order, commands, and what happens when one of the managed nodes dies."""
+"""lifecycle_manager: order, commands, and the death of a managed node."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class _Node(ManagedNode):
     def deactivate(self) -> None:
         self._do("deactivate")
 
-    def _do(self, what: str) -> None:
-        self.DID.append(f"{what} {self.get_name()}")
+    def _do(self, transition: str) -> None:
+        self.DID.append(f"{transition} {self.get_name()}")
 
 
 class _Server(ManagedServer):
@@ -56,39 +56,39 @@ class Stack:
             self.servers[name] = _Server(self.graph, NodeOptions(name=name))
 
     async def manage(self, *names: str, until: str, **parameters: object) -> None:
-        """Start the manager, and wait until it has said something."""
+        """Start the manager, and wait for a line in its log."""
         facts = {"node_names": list(names), "autostart": True, **parameters}
         self.manager = LifecycleManager(self.graph, NodeOptions(parameters=facts))
         await self.until(until)
 
     async def until(self, line: str) -> None:
-        def logged() -> bool:
+        def is_logged() -> bool:
             return any(line in record.text for record in self.log)
 
         for _ in range(200):
             await self.graph.settle()
-            if logged():
+            if is_logged():
                 return
             await self.clock.advance(0.1)
         raise AssertionError([record.text for record in self.log])
 
     async def command(self, number: int) -> bool:
-        kind = get_service("nav2_msgs/srv/ManageLifecycleNodes")
-        client = self.graph.create_node("asks").create_client(kind, "/lifecycle_manager/manage_nodes")
-        future: Any = client.call_async(kind.Request(command=number))
+        service_type = get_service("nav2_msgs/srv/ManageLifecycleNodes")
+        client = self.graph.create_node("asks").create_client(service_type, "/lifecycle_manager/manage_nodes")
+        future: Any = client.call_async(service_type.Request(command=number))
         while not future.done():
             await self.clock.advance(0.1)
         return bool(future.result().success)
 
     async def is_active(self) -> bool:
-        kind = get_service("std_srvs/srv/Trigger")
-        client = self.graph.create_node("asks").create_client(kind, "/lifecycle_manager/is_active")
-        future: Any = client.call_async(kind.Request())
+        service_type = get_service("std_srvs/srv/Trigger")
+        client = self.graph.create_node("asks").create_client(service_type, "/lifecycle_manager/is_active")
+        future: Any = client.call_async(service_type.Request())
         await eventually(future.done)
         return bool(future.result().success)
 
     def kill(self, name: str) -> None:
-        """As with kill -9: no word to anybody."""
+        """Kill a node as kill -9 does, without any message."""
         server = self.servers.pop(name)
         node: Any = server.node
         node.destroy_node()
@@ -98,7 +98,7 @@ class Stack:
         return {name: node.lifecycle_state.label for name, node in nodes.items()}
 
     async def health(self) -> tuple[str, int, str]:
-        """What the next message on ``/diagnostics`` says."""
+        """Return the next status on ``/diagnostics``."""
         messages: list[Any] = []
         node = self.graph.create_node("hears")
         node.create_subscription("diagnostic_msgs/msg/DiagnosticArray", "/diagnostics", messages.append, 10)

@@ -1,4 +1,4 @@
-"""What nav2's servers have in common: their life, and the bond to whoever manages them."""
+"""Common features of nav2's servers: the lifecycle, and the bond to the lifecycle manager."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ class _Node(ManagedNode):
     def cleanup(self) -> None:
         self.did.append("cleanup")
 
-    def _do(self, what: str) -> None:
-        self.did.append(what)
-        if self.get_parameter("fails").value == what:
+    def _do(self, transition: str) -> None:
+        self.did.append(transition)
+        if self.get_parameter("fails").value == transition:
             raise LinkwrightError(Diagnostic("NODE433", phrase("it cannot be")))
 
 
@@ -44,7 +44,7 @@ class _Server(ManagedServer):
     DEFAULT_NAME = "server"
 
 
-def _started(graph: Graph, **parameters: object) -> tuple[_Server, _Node]:
+def _start(graph: Graph, **parameters: object) -> tuple[_Server, _Node]:
     server = _Server(graph, NodeOptions(parameters=parameters))
     node = server.node
     assert isinstance(node, _Node)
@@ -52,7 +52,7 @@ def _started(graph: Graph, **parameters: object) -> tuple[_Server, _Node]:
 
 
 async def test_managed_node_follows_transitions(graph: Graph) -> None:
-    server, node = _started(graph)
+    server, node = _start(graph)
     node.trigger_configure()
     assert graph.topics()["/kept"]
     node.trigger_activate()
@@ -65,36 +65,36 @@ async def test_managed_node_follows_transitions(graph: Graph) -> None:
 
 
 async def test_autostart_node_activates_and_cleans_up_on_close(graph: Graph) -> None:
-    server, node = _started(graph, autostart_node=True)
+    server, node = _start(graph, autostart_node=True)
     assert node.lifecycle_state == ACTIVE
     server.close()
     assert node.did == ["configure", "activate", "deactivate", "cleanup"]
 
 
-@pytest.mark.parametrize(("fails", "left"), [("configure", UNCONFIGURED), ("activate", INACTIVE)])
+@pytest.mark.parametrize(("fails", "remaining"), [("configure", UNCONFIGURED), ("activate", INACTIVE)])
 async def test_error_in_transition_is_reported_and_transition_fails(
-    graph: Graph, log: list[LogRecord], fails: str, left: object
+    graph: Graph, log: list[LogRecord], fails: str, remaining: object
 ) -> None:
-    server, node = _started(graph, fails=fails)
+    server, node = _start(graph, fails=fails)
     verdicts = [node.trigger_configure()]
     if verdicts == [TransitionCallbackReturn.SUCCESS]:
         verdicts.append(node.trigger_activate())
     assert verdicts[-1] == TransitionCallbackReturn.FAILURE
-    assert node.lifecycle_state == left
+    assert node.lifecycle_state == remaining
     errors = [record.text for record in log if record.level is LogLevel.ERROR]
     assert errors == ["error[NODE433]: it cannot be"]
     server.close()
 
 
 async def test_unknown_parameters_are_reported_on_configure(graph: Graph, log: list[LogRecord]) -> None:
-    server, node = _started(graph, failz="x")
+    server, node = _start(graph, failz="x")
     node.trigger_configure()
     assert any("'failz' is not a parameter of this node" in record.text for record in log)
     server.close()
 
 
-class _Pair:
-    """Two sides of a bond."""
+class _BondedPair:
+    """The two sides of a bond."""
 
     def __init__(self, graph: Graph) -> None:
         self.events: list[str] = []
@@ -111,7 +111,7 @@ class _Pair:
 
 
 async def test_bond_forms_and_breaks_when_other_side_leaves(graph: Graph, clock: JumpClock) -> None:
-    pair = _Pair(graph)
+    pair = _BondedPair(graph)
     await clock.advance(60.0)
     assert pair.events == []  # it waits for the other side
     server = pair.server()
@@ -124,7 +124,7 @@ async def test_bond_forms_and_breaks_when_other_side_leaves(graph: Graph, clock:
 
 
 async def test_bond_breaks_after_four_seconds_of_silence(graph: Graph, clock: JumpClock) -> None:
-    pair = _Pair(graph)
+    pair = _BondedPair(graph)
     server = pair.server()
     await clock.advance(0.2)
     server._timer.cancel()  # as if the process were gone
@@ -137,7 +137,7 @@ async def test_bond_breaks_after_four_seconds_of_silence(graph: Graph, clock: Ju
 
 
 async def test_ending_own_bond_gives_no_break_event(graph: Graph, clock: JumpClock) -> None:
-    pair = _Pair(graph)
+    pair = _BondedPair(graph)
     server = pair.server()
     await clock.advance(0.2)
     pair.manager.end()

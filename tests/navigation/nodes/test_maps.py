@@ -44,16 +44,16 @@ async def test_active_map_server_latches_map(graph: Graph, tmp_path: Path) -> No
     server = MapServer(graph, NodeOptions(parameters={"yaml_filename": _files(tmp_path), "frame_id": "world"}))
     node: Any = server.node
     node.trigger_configure()
-    before = await _call(graph, "nav_msgs/srv/GetMap", "/map_server/map")
-    assert before.map.info.width == 0
+    inactive_answer = await _call(graph, "nav_msgs/srv/GetMap", "/map_server/map")
+    assert inactive_answer.map.info.width == 0
     node.trigger_activate()
     maps: list[Any] = []
     graph.create_node("audience").create_subscription(_GRID, "/map", maps.append, LATCHED_QOS)
     await graph.settle()
     assert list(maps[0].data) == _CELLS.ravel().tolist()
     assert (maps[0].header.frame_id, maps[0].info.origin.position.x) == ("world", -1.0)
-    after = await _call(graph, "nav_msgs/srv/GetMap", "/map_server/map")
-    assert list(after.map.data) == _CELLS.ravel().tolist()
+    active_answer = await _call(graph, "nav_msgs/srv/GetMap", "/map_server/map")
+    assert list(active_answer.map.data) == _CELLS.ravel().tolist()
     server.close()
 
 
@@ -62,20 +62,20 @@ async def test_load_map_service_replaces_map(graph: Graph, log: list[LogRecord],
     server = MapServer(graph, NodeOptions(parameters=parameters))
     maps: list[Any] = []
     graph.create_node("audience").create_subscription(_GRID, "/floor", maps.append, LATCHED_QOS)
-    other = _files(tmp_path, "other", _CELLS.T)
+    other_file = _files(tmp_path, "other", _CELLS.T)
 
     async def load(url: str) -> Any:
         return await _call(graph, "nav2_msgs/srv/LoadMap", "/map_server/load_map", map_url=url)
 
-    answer = await load(other)
+    answer = await load(other_file)
     assert (answer.result, answer.map.info.width) == (0, 2)
     assert [grid.info.width for grid in maps] == [3, 2]
-    broken = tmp_path / "broken.yaml"
-    broken.write_text("image: other.pgm\n")
+    invalid_file = tmp_path / "broken.yaml"
+    invalid_file.write_text("image: other.pgm\n")
     (tmp_path / "other.pgm").write_bytes(b"P5 1")
-    assert [(await load(url)).result for url in ("", str(broken), other)] == [1, 3, 2]
+    assert [(await load(url)).result for url in ("", str(invalid_file), other_file)] == [1, 3, 2]
     assert [text.split("]")[0] for text in _errors(log)] == ["error[NAV201", "error[NAV202", "error[NAV203"]
-    assert f"{broken}:1:1" in _errors(log)[1]
+    assert f"{invalid_file}:1:1" in _errors(log)[1]
     assert len(maps) == 2
     server.close()
 
@@ -99,7 +99,7 @@ def _publish(graph: Graph, topic: str = "/map") -> None:
     )
 
 
-async def _saved(graph: Graph, *words: str) -> int:
+async def _save_map(graph: Graph, *words: str) -> int:
     saver = MapSaver(graph, NodeOptions(arguments=list(words)))
     await graph.settle()
     status = await saver.finished
@@ -110,7 +110,7 @@ async def _saved(graph: Graph, *words: str) -> int:
 async def test_map_saver_saves_map_of_topic(graph: Graph, log: list[LogRecord], tmp_path: Path) -> None:
     _publish(graph, "/floor")
     words = ("-t", "floor", "-f", str(tmp_path / "a"), "--occ", "0.65", "--free", "0.196", "--mode", "trinary")
-    assert await _saved(graph, *words, "--ros-args", "-p", "save_map_timeout:=5.0") == 0
+    assert await _save_map(graph, *words, "--ros-args", "-p", "save_map_timeout:=5.0") == 0
     assert load_map(tmp_path / "a.yaml").cells.tolist() == _CELLS.tolist()
     assert [record.text for record in log if record.level is LogLevel.INFO][-1] == "Map saved successfully"
 
@@ -138,7 +138,7 @@ async def test_map_saver_fails_after_timeout_without_map(
 async def test_map_saver_rejects_unknown_arguments(
     graph: Graph, log: list[LogRecord], words: list[str], text: str
 ) -> None:
-    assert await _saved(graph, *words) == 255
+    assert await _save_map(graph, *words) == 255
     assert _errors(log) == [text]
 
 
@@ -152,7 +152,7 @@ async def test_map_saver_help_is_printed(graph: Graph) -> None:
 
 async def test_map_saver_fails_if_file_is_not_writable(graph: Graph, log: list[LogRecord], tmp_path: Path) -> None:
     _publish(graph)
-    assert await _saved(graph, "-f", str(tmp_path / "no" / "a")) == 1
+    assert await _save_map(graph, "-f", str(tmp_path / "no" / "a")) == 1
     assert _errors(log)[0].startswith("Failed to save the map: error[NAV206]")
 
 

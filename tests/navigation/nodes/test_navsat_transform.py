@@ -28,21 +28,21 @@ def start(test, **parameters):
     return NavsatTransformNode(test.graph, NodeOptions(parameters=parameters))
 
 
-def headed(test, kind, frame):
+def with_header(test, kind, frame):
     message = get_message(kind)()
     message.header.stamp, message.header.frame_id = Time.from_nanoseconds(test.clock.now_ns()), frame
     return message
 
 
-def turn(message, yaw):
+def set_yaw(message, yaw):
     message.x, message.y, message.z, message.w = quaternion_from_rpy((0.0, 0.0, yaw))
 
 
 async def fix(test, east=0.0, north=0.0, altitude=200.0, frame="gps"):
-    """What a receiver says that is some meters away from where it began, on the grid."""
+    """Return a receiver's fix at some meters from the start, on the grid."""
     zone = zone_from_degrees(*HERE)
     x, y = utm_from_degrees(*HERE, zone)
-    message = headed(test, "sensor_msgs/msg/NavSatFix", frame)
+    message = with_header(test, "sensor_msgs/msg/NavSatFix", frame)
     message.latitude, message.longitude = degrees_from_utm(x + east, y + north, zone)
     message.altitude = altitude
     message.position_covariance = np.diag([1.0, 4.0, 9.0]).reshape(9)
@@ -51,17 +51,17 @@ async def fix(test, east=0.0, north=0.0, altitude=200.0, frame="gps"):
 
 
 async def odometry(test, x=0.0, y=0.0, yaw=0.0):
-    message = headed(test, "nav_msgs/msg/Odometry", "odom")
+    message = with_header(test, "nav_msgs/msg/Odometry", "odom")
     message.child_frame_id = "base_link"
     message.pose.pose.position.x, message.pose.pose.position.y = x, y
-    turn(message.pose.pose.orientation, yaw)
+    set_yaw(message.pose.pose.orientation, yaw)
     test.publish("/odometry/filtered", message)
     await test.settle()
 
 
 async def imu(test, yaw, frame="base_link"):
-    message = headed(test, "sensor_msgs/msg/Imu", frame)
-    turn(message.orientation, yaw)
+    message = with_header(test, "sensor_msgs/msg/Imu", frame)
+    set_yaw(message.orientation, yaw)
     test.publish("/imu", message)
     await test.settle()
 
@@ -121,23 +121,25 @@ async def test_odometry_is_published_as_fixes(test):
 
 async def test_datum_is_used_by_conversion_services(test):
     start(test, wait_for_datum=True, datum=[*HERE, 0.0])
-    ask = get_service("robot_localization/srv/FromLL").Request()
+    request = get_service("robot_localization/srv/FromLL").Request()
     zone = zone_from_degrees(*HERE)
     x, y = utm_from_degrees(*HERE, zone)
-    ask.ll_point.latitude, ask.ll_point.longitude = degrees_from_utm(x + 20.0, y - 7.0, zone)
-    there = (await test.call("/fromLL", ask)).map_point
+    request.ll_point.latitude, request.ll_point.longitude = degrees_from_utm(x + 20.0, y - 7.0, zone)
+    there = (await test.call("/fromLL", request)).map_point
     assert (there.x, there.y) == pytest.approx((20.0, -7.0), abs=1e-6)
-    back = (await test.call("/toLL", get_service("robot_localization/srv/ToLL").Request(map_point=there))).ll_point
-    assert (back.latitude, back.longitude) == pytest.approx((ask.ll_point.latitude, ask.ll_point.longitude), abs=1e-9)
-    several = get_service("robot_localization/srv/FromLLArray").Request(ll_points=[ask.ll_point] * 2)
+    ll_point = (await test.call("/toLL", get_service("robot_localization/srv/ToLL").Request(map_point=there))).ll_point
+    assert (ll_point.latitude, ll_point.longitude) == pytest.approx(
+        (request.ll_point.latitude, request.ll_point.longitude), abs=1e-9
+    )
+    several = get_service("robot_localization/srv/FromLLArray").Request(ll_points=[request.ll_point] * 2)
     assert [map_point.x for map_point in (await test.call("/fromLLArray", several)).map_points] == pytest.approx(
         [20.0, 20.0]
     )
     datum = get_service("robot_localization/srv/SetDatum").Request()
-    datum.geo_pose.position = ask.ll_point
-    turn(datum.geo_pose.orientation, 0.0)
+    datum.geo_pose.position = request.ll_point
+    set_yaw(datum.geo_pose.orientation, 0.0)
     await test.call("/datum", datum)
-    there = (await test.call("/fromLL", ask)).map_point
+    there = (await test.call("/fromLL", request)).map_point
     assert (there.x, there.y) == pytest.approx((0.0, 0.0), abs=1e-6)
     zone_request = get_service("robot_localization/srv/SetUTMZone").Request
     assert (await test.call("/setUTMZone", zone_request(utm_zone="31U"))).status
@@ -146,11 +148,13 @@ async def test_datum_is_used_by_conversion_services(test):
 
 async def test_local_cartesian_mode_uses_tangent_plane(test):
     start(test, wait_for_datum=True, datum=[*HERE, pi / 2], use_local_cartesian=True)
-    ask = get_service("robot_localization/srv/FromLL").Request()
-    place = ask.ll_point
-    place.latitude, place.longitude, place.altitude = TangentPlane(*HERE, 0.0).geodetic_from_point((3.0, 50.0, 2.0))
-    there = (await test.call("/fromLL", ask)).map_point
-    assert (there.x, there.y, there.z) == pytest.approx((50.0, -3.0, 2.0), abs=1e-5)
+    request = get_service("robot_localization/srv/FromLL").Request()
+    ll_point = request.ll_point
+    ll_point.latitude, ll_point.longitude, ll_point.altitude = TangentPlane(*HERE, 0.0).geodetic_from_point(
+        (3.0, 50.0, 2.0)
+    )
+    map_point = (await test.call("/fromLL", request)).map_point
+    assert (map_point.x, map_point.y, map_point.z) == pytest.approx((50.0, -3.0, 2.0), abs=1e-5)
 
 
 async def test_nothing_is_published_without_all_inputs(test):
@@ -175,6 +179,6 @@ async def test_nothing_is_published_without_all_inputs(test):
     ],
 )
 async def test_invalid_parameters_are_rejected(test, parameters, text):
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         start(test, **parameters)
-    assert text in str(caught.value)
+    assert text in str(error.value)

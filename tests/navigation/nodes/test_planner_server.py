@@ -1,4 +1,4 @@
-"""planner_server and smoother_server on the graph: goals and their errors, canceling, taking over, services."""
+"""planner_server and smoother_server on the graph: goals and errors, cancellation, preemption, services."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwright.navigation.nodes.planner_server import PlannerServer
 from linkwright.navigation.nodes.smoother_server import SmootherServer
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.component_container import ComponentContainer, load_request
-from tests.navigation.nodes.scene import Scene, walls
+from tests.navigation.nodes.fake_robot import FakeRobot, walls
 
 SHARE = Path(linkwright.navigation.substitutes.__file__).parent / "share"
 COSTMAP = {
@@ -33,31 +33,31 @@ SUCCEEDED, CANCELED, ABORTED = GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalSt
 
 
 @pytest.fixture
-def scene(graph, clock) -> Scene:
-    return Scene(graph, clock)
+def robot(graph, clock) -> FakeRobot:
+    return FakeRobot(graph, clock)
 
 
 def pose(x, y, yaw=0.0, frame="map"):
     return path_message(np.array([[x, y, yaw]]), frame, get_message("builtin_interfaces/msg/Time")()).poses[0]
 
 
-class Goal:
+class SentGoal:
     """A goal that was sent."""
 
-    def __init__(self, scene, kind, name, fields):
-        self.scene, self.kind = scene, get_action(f"nav2_msgs/action/{kind}")
-        self.client = ActionClient(scene.node, self.kind, name)
-        self.future = self.client.send_goal_async(self.kind.Goal(**fields))
+    def __init__(self, robot, action_type, name, fields):
+        self.scene, self.action_type = robot, get_action(f"nav2_msgs/action/{action_type}")
+        self.client = ActionClient(robot.node, self.action_type, name)
+        self.future = self.client.send_goal_async(self.action_type.Goal(**fields))
         self.answer = None
 
-    async def accepted(self):
+    async def wait_accepted(self):
         await self.scene.graph.settle()
         self.handle = self.future.result()
         self.answer = self.handle.get_result_async() if self.handle.accepted else None
         return self
 
-    async def ended(self, seconds=0.5):
-        await self.accepted()
+    async def wait_ended(self, seconds=0.5):
+        await self.wait_accepted()
         await self.scene.run(seconds)
         assert self.answer.done()
         answer = self.answer.result()
@@ -65,7 +65,7 @@ class Goal:
 
 
 @pytest.fixture
-async def server(graph, scene):
+async def server(graph, robot):
     nodes = []
 
     async def start(kind=PlannerServer, grid=None, costmap=None, **parameters):
@@ -74,9 +74,9 @@ async def server(graph, scene):
             rules.set("/global_costmap/global_costmap", key, value)
         node = kind(graph, NodeOptions(parameters={"autostart_node": True, **parameters}, parameters_of_others=rules))
         nodes.append(node)
-        scene.tell_map(walls() if grid is None else grid)
-        scene.tell_pose()
-        await scene.run(0.5)
+        robot.publish_map(walls() if grid is None else grid)
+        robot.publish_pose()
+        await robot.run(0.5)
         return node
 
     yield start
@@ -86,25 +86,25 @@ async def server(graph, scene):
 
 @pytest.fixture
 def jazzy(monkeypatch):
-    """The messages of Jazzy, whose results say why."""
+    """Use the messages of Jazzy, whose results have error messages."""
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
-    known = {name: kind for name, kind in classes._classes.items() if not name.startswith("nav2_msgs/")}
-    monkeypatch.setattr(classes, "_classes", known)
+    other_classes = {name: kind for name, kind in classes._classes.items() if not name.startswith("nav2_msgs/")}
+    monkeypatch.setattr(classes, "_classes", other_classes)
     monkeypatch.setattr(classes, "LIBRARY", Library())
 
 
-def to_pose(scene, goal, **more):
-    return Goal(scene, "ComputePathToPose", "compute_path_to_pose", {"goal": goal, **more})
+def to_pose(robot, goal, **fields):
+    return SentGoal(robot, "ComputePathToPose", "compute_path_to_pose", {"goal": goal, **fields})
 
 
-async def test_compute_path_to_pose_returns_and_publishes_path(scene, server):
+async def test_compute_path_to_pose_returns_and_publishes_path(robot, server):
     await server()
     plans = []
-    scene.node.create_subscription(get_message("nav_msgs/msg/Path"), "/plan", plans.append, 1)
-    status, result = await to_pose(scene, pose(3.0, 2.0, 1.0)).ended()
+    robot.node.create_subscription(get_message("nav_msgs/msg/Path"), "/plan", plans.append, 1)
+    status, result = await to_pose(robot, pose(3.0, 2.0, 1.0)).wait_ended()
     assert status == SUCCEEDED
     path_poses = poses_from_messages(result.path.poses)
-    assert path_poses[0, :2] == pytest.approx(scene.pose[:2])
+    assert path_poses[0, :2] == pytest.approx(robot.pose[:2])
     assert path_poses[-1] == pytest.approx([3.0, 2.0, 1.0])
     assert result.path.header.frame_id == "map"
     assert len(plans[-1].poses) == len(path_poses)
@@ -112,27 +112,27 @@ async def test_compute_path_to_pose_returns_and_publishes_path(scene, server):
     assert length == pytest.approx(hypot(2.0, 1.0), rel=0.05)
 
 
-async def test_goal_without_frame_is_aborted(scene, server, log):
+async def test_goal_without_frame_is_aborted(robot, server, log):
     await server()
-    status, result = await to_pose(scene, pose(3.0, 2.0, frame="")).ended()
+    status, result = await to_pose(robot, pose(3.0, 2.0, frame="")).wait_ended()
     assert (status, len(result.path.poses)) == (ABORTED, 0)
     assert any("Failed to transform from  to map" in record.text for record in log)
 
 
-async def test_start_pose_and_goal_frame_are_respected(scene, server):
+async def test_start_pose_and_goal_frame_are_respected(robot, server):
     await server()
     start = pose(0.5, 2.5)
-    status, result = await to_pose(scene, pose(1.5, 0.0, frame="base_link"), start=start, use_start=True).ended()
+    status, result = await to_pose(robot, pose(1.5, 0.0, frame="base_link"), start=start, use_start=True).wait_ended()
     path_poses = poses_from_messages(result.path.poses)
     assert status == SUCCEEDED
     assert path_poses[[0, -1], :2] == pytest.approx(np.array([[0.5, 2.5], [2.5, 1.0]]))
 
 
-async def test_compute_path_through_poses_visits_all_poses(scene, server):
+async def test_compute_path_through_poses_visits_all_poses(robot, server):
     await server()
     goals = [pose(1.0, 2.0), pose(3.0, 2.0), pose(3.0, 1.0, 2.0)]
-    goal = Goal(scene, "ComputePathThroughPoses", "compute_path_through_poses", {"goals": goals})
-    status, result = await goal.ended()
+    goal = SentGoal(robot, "ComputePathThroughPoses", "compute_path_through_poses", {"goals": goals})
+    status, result = await goal.wait_ended()
     path_poses = poses_from_messages(result.path.poses)
     assert status == SUCCEEDED
     assert path_poses[-1] == pytest.approx([3.0, 1.0, 2.0])
@@ -141,14 +141,14 @@ async def test_compute_path_through_poses_visits_all_poses(scene, server):
         assert np.hypot(path_poses[:, 0] - x, path_poses[:, 1] - y).min() < 1e-6
 
 
-def divided():
+def divided_room():
     grid = walls()
     grid.cells[:, 40:44] = 100
     return grid
 
 
 @pytest.mark.parametrize(
-    ("goal", "code", "why"),
+    ("goal", "code", "reason"),
     [
         (pose(2.1, 1.5), "GOAL_OCCUPIED", "Goal Coordinates of(2.100000, 1.500000) was in lethal cost"),
         (pose(3.0, 1.5), "NO_VALID_PATH", "Failed to create plan with tolerance of: 0.500000"),
@@ -156,18 +156,18 @@ def divided():
         (pose(0.0, 0.0, frame="moon"), "TF_ERROR", "Unable to transform poses to global frame"),
     ],
 )
-async def test_planning_failure_has_error_code_and_message(jazzy, scene, server, goal, code, why):
-    await server(grid=divided())
-    status, result = await to_pose(scene, goal).ended()
+async def test_planning_failure_has_error_code_and_message(jazzy, robot, server, goal, code, reason):
+    await server(grid=divided_room())
+    status, result = await to_pose(robot, goal).wait_ended()
     assert status == ABORTED
     assert result.error_code == getattr(result, code)
-    assert result.error_msg == why
+    assert result.error_msg == reason
     assert not len(result.path.poses)
 
 
-async def test_planning_failure_is_logged(scene, server, logged):
-    await server(grid=divided())
-    status, _ = await to_pose(scene, pose(2.1, 1.5)).ended()
+async def test_planning_failure_is_logged(robot, server, logged):
+    await server(grid=divided_room())
+    status, _ = await to_pose(robot, pose(2.1, 1.5)).wait_ended()
     assert status == ABORTED
     assert logged("WARN")[-1] == (
         "GridBased plugin failed to plan from (1.00, 1.00) to (2.10, 1.50): "
@@ -175,70 +175,70 @@ async def test_planning_failure_is_logged(scene, server, logged):
     )
 
 
-async def test_planning_without_map_fails(jazzy, scene, graph):
+async def test_planning_without_map_fails(jazzy, robot, graph):
     node = PlannerServer(graph, NodeOptions(parameters={"autostart_node": True}))
-    scene.tell_pose()
-    await scene.run(0.5)
-    goal = await to_pose(scene, pose(2.0, 1.0)).accepted()
-    await scene.run(0.9)
+    robot.publish_pose()
+    await robot.run(0.5)
+    goal = await to_pose(robot, pose(2.0, 1.0)).wait_accepted()
+    await robot.run(0.9)
     assert not goal.answer.done()
-    await scene.run(0.5)
+    await robot.run(0.5)
     result = goal.answer.result().result
     assert (result.error_code, result.error_msg) == (result.TIMEOUT, "Costmap timed out waiting for update")
     node.close()
 
 
-async def test_planning_waits_for_costmap_and_can_be_canceled(scene, graph):
+async def test_planning_waits_for_costmap_and_can_be_canceled(robot, graph):
     node = PlannerServer(graph, NodeOptions(parameters={"autostart_node": True, "costmap_update_timeout": 60.0}))
-    scene.tell_pose()
-    await scene.run(0.5)
-    goal = await to_pose(scene, pose(2.0, 1.0)).accepted()
-    await scene.run(5.0)
+    robot.publish_pose()
+    await robot.run(0.5)
+    goal = await to_pose(robot, pose(2.0, 1.0)).wait_accepted()
+    await robot.run(5.0)
     assert not goal.answer.done()
     goal.handle.cancel_goal_async()
-    await scene.run(0.2)
+    await robot.run(0.2)
     assert goal.answer.result().status == CANCELED
     node.close()
 
 
-async def test_new_goal_preempts_running_goal(scene, graph):
+async def test_new_goal_preempts_running_goal(robot, graph):
     node = PlannerServer(graph, NodeOptions(parameters={"autostart_node": True, "costmap_update_timeout": 60.0}))
-    scene.tell_pose()
-    await scene.run(0.5)
-    first = await to_pose(scene, pose(2.0, 1.0)).accepted()
-    await scene.run(1.0)
-    second = await to_pose(scene, pose(3.0, 1.0)).accepted()
-    scene.tell_map(walls())
-    scene.tell_pose()
-    await scene.run(1.0)
+    robot.publish_pose()
+    await robot.run(0.5)
+    first = await to_pose(robot, pose(2.0, 1.0)).wait_accepted()
+    await robot.run(1.0)
+    second = await to_pose(robot, pose(3.0, 1.0)).wait_accepted()
+    robot.publish_map(walls())
+    robot.publish_pose()
+    await robot.run(1.0)
     assert first.answer.result().status == ABORTED
     assert second.answer.result().status == SUCCEEDED
     node.close()
 
 
-async def test_planners_are_chosen_by_name(jazzy, scene, server, log):
+async def test_planners_are_chosen_by_name(jazzy, robot, server, log):
     smac = {"Smac.plugin": "nav2_smac_planner/SmacPlannerHybrid", "Smac.minimum_turning_radius": 0.4}
-    near = {"Near.plugin": "nav2_navfn_planner::NavfnPlanner", "Near.tolerance": 0.0}
-    await server(planner_plugins=["Smac", "Near"], **smac, **near)
-    logged = [record.text for record in log]
+    near_parameters = {"Near.plugin": "nav2_navfn_planner::NavfnPlanner", "Near.tolerance": 0.0}
+    await server(planner_plugins=["Smac", "Near"], **smac, **near_parameters)
+    texts = [record.text for record in log]
     assert [
         text
-        for text in logged
+        for text in texts
         if text.startswith("nav2_smac_planner/SmacPlannerHybrid is not supported: plans of 'Smac'")
     ]
-    assert not [text for text in logged if "Near" in text and "is not supported" in text]
-    by_wall = pose(0.15, 1.5)
-    assert (await to_pose(scene, by_wall, planner_id="Smac").ended())[0] == SUCCEEDED
-    status, result = await to_pose(scene, by_wall, planner_id="Near").ended()
+    assert not [text for text in texts if "Near" in text and "is not supported" in text]
+    near_wall = pose(0.15, 1.5)
+    assert (await to_pose(robot, near_wall, planner_id="Smac").wait_ended())[0] == SUCCEEDED
+    status, result = await to_pose(robot, near_wall, planner_id="Near").wait_ended()
     assert (status, result.error_code) == (ABORTED, result.GOAL_OCCUPIED)
-    status, result = await to_pose(scene, by_wall, planner_id="Far").ended()
+    status, result = await to_pose(robot, near_wall, planner_id="Far").wait_ended()
     assert (result.error_code, result.error_msg) == (result.INVALID_PLANNER, "Planner id Far is invalid")
 
 
-async def test_inactive_server_rejects_goals(scene, graph):
+async def test_inactive_server_rejects_goals(robot, graph):
     node = PlannerServer(graph, NodeOptions())
     node.node.trigger_configure()
-    goal = await to_pose(scene, pose(2.0, 1.0)).accepted()
+    goal = await to_pose(robot, pose(2.0, 1.0)).wait_accepted()
     assert not goal.handle.accepted
     node.close()
 
@@ -253,13 +253,13 @@ async def test_nav2_bringup_parameters_load_without_warning(graph, log, kind):
     node.close()
 
 
-async def test_costmap_in_container_has_parameters_of_process(scene, graph):
+async def test_costmap_in_container_has_parameters_of_process(robot, graph):
     rules = ParameterRules()
     rules.set("/global_costmap/global_costmap", "robot_radius", 0.33)
     container = ComponentContainer(graph, NodeOptions(parameters_of_others=rules))
     request = load_request()
     request.package_name, request.plugin_name = "nav2_planner", "nav2_planner::PlannerServer"
-    client = scene.node.create_client(
+    client = robot.node.create_client(
         get_service("composition_interfaces/srv/LoadNode"), "/ComponentManager/_container/load_node"
     )
     future = client.call_async(request)
@@ -270,41 +270,41 @@ async def test_costmap_in_container_has_parameters_of_process(scene, graph):
     container.close()
 
 
-async def test_is_path_valid_checks_costmap(scene, server):
+async def test_is_path_valid_checks_costmap(robot, server):
     await server(costmap={"map_topic": "/map"})
     service = get_service("nav2_msgs/srv/IsPathValid")
-    client = scene.node.create_client(service, "is_path_valid")
+    client = robot.node.create_client(service, "is_path_valid")
     stamp = get_message("builtin_interfaces/msg/Time")()
 
     async def ask(*points):
         path = path_message(np.array([(x, y, 0.0) for x, y in points]).reshape(-1, 3), "map", stamp)
         future = client.call_async(service.Request(path=path))
-        await scene.graph.settle()
+        await robot.graph.settle()
         return future.result()
 
     assert (await ask((1.0, 1.0), (2.0, 1.0))).is_valid
     assert not (await ask()).is_valid
     assert not (await ask((1.0, 1.0), (3.9, 1.0))).is_valid
-    assert (await ask((0.1, 1.0), (1.0, 1.0), (2.0, 1.0))).is_valid  # what lies behind does not count
+    assert (await ask((0.1, 1.0), (1.0, 1.0), (2.0, 1.0))).is_valid  # the part behind the robot does not count
 
 
 # --- smoothing --------------------------------------------------------------------------------------------------------
 
 
-def smooth(scene, poses, **more):
+def smooth(robot, poses, **fields):
     stamp = get_message("builtin_interfaces/msg/Time")()
     path = path_message(np.array(poses, float).reshape(-1, 3), "map", stamp)
-    return Goal(scene, "SmoothPath", "smooth_path", {"path": path, **more})
+    return SentGoal(robot, "SmoothPath", "smooth_path", {"path": path, **fields})
 
 
 CORNER = [(1.0 + 0.05 * step, 1.0, 0.0) for step in range(20)] + [(2.0, 1.0 + 0.05 * step, 1.0) for step in range(20)]
 
 
-async def test_path_is_smoothed(scene, server):
+async def test_path_is_smoothed(robot, server):
     await server(SmootherServer)
     await server()
-    await scene.run(0.5)
-    status, result = await smooth(scene, CORNER, check_for_collisions=True).ended()
+    await robot.run(0.5)
+    status, result = await smooth(robot, CORNER, check_for_collisions=True).wait_ended()
     assert status == SUCCEEDED
     assert result.was_completed
     path_poses = poses_from_messages(result.path.poses)
@@ -313,16 +313,16 @@ async def test_path_is_smoothed(scene, server):
     assert np.abs(np.diff(path_poses[:-1, 2])).max() < 1.0
 
 
-async def test_smoothing_failures_have_error_code_and_message(jazzy, scene, server):
+async def test_smoothing_failures_have_error_code_and_message(jazzy, robot, server):
     await server(SmootherServer)
-    _, result = await smooth(scene, CORNER).ended()
+    _, result = await smooth(robot, CORNER).wait_ended()
     assert (result.error_code, result.error_msg) == (result.FAILED_TO_SMOOTH_PATH, "Costmap is not available")
     await server()
-    await scene.run(0.5)
-    _, result = await smooth(scene, []).ended()
+    await robot.run(0.5)
+    _, result = await smooth(robot, []).wait_ended()
     assert result.error_code == result.INVALID_PATH
-    _, result = await smooth(scene, CORNER, smoother_id="mine").ended()
+    _, result = await smooth(robot, CORNER, smoother_id="mine").wait_ended()
     assert (result.error_code, result.error_msg) == (result.INVALID_SMOOTHER, "Invalid Smoother: mine")
     through_wall = [(1.0 - 0.1 * step, 1.0, 3.0) for step in range(12)]
-    _, result = await smooth(scene, through_wall, check_for_collisions=True).ended()
+    _, result = await smooth(robot, through_wall, check_for_collisions=True).wait_ended()
     assert result.error_code == result.SMOOTHED_PATH_IN_COLLISION

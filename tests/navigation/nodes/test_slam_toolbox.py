@@ -1,4 +1,4 @@
-"""The nodes of slam_toolbox, with scans of known walls and time that passes in steps."""
+"""The nodes of slam_toolbox, with scans of known walls and a stepped clock."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ PATH = along([(-4, -3), (-1, -3), (3, -3)], step=0.25, turn=0.25)
 
 
 class Robot:
-    """Sends the transforms and scans of a robot in the flat."""
+    """A robot in the flat that publishes transforms and scans."""
 
     def __init__(self, test: SteppedGraph, mounting: tuple[float, ...] = (0, 0, 0.2, 0, 0, 0)) -> None:
         self.test = test
@@ -69,7 +69,7 @@ class Robot:
         return message
 
     def go(self, path: np.ndarray, odometry: np.ndarray, seconds: float = 0.5) -> None:
-        """Be at each pose for a moment."""
+        """Publish the scan and the odometry at each pose of a path."""
         for pose, text in zip(path, odometry, strict=True):
             self.publish_odometry(text)
             self.scans.publish(self.scan(pose))
@@ -87,25 +87,27 @@ def humble(monkeypatch):
     monkeypatch.delenv("ROS_DISTRO", raising=False)
 
 
-def start(test: SteppedGraph, kind: Any = AsyncSlamToolbox, **parameters: Any) -> Any:
-    return kind(test.graph, NodeOptions(parameters={"map_update_interval": 2.0, **parameters}))
+def start(test: SteppedGraph, node_type: Any = AsyncSlamToolbox, **parameters: Any) -> Any:
+    return node_type(test.graph, NodeOptions(parameters={"map_update_interval": 2.0, **parameters}))
 
 
 def logged(test: SteppedGraph, level: str) -> list[str]:
     return [record.text for record in test.log if record.level.name == level]
 
 
-def call(test: SteppedGraph, service: str, kind: str, **fields: Any) -> Any:
-    return test.call(f"/slam_toolbox/{service}", get_service(kind).Request(**fields))
+def call(test: SteppedGraph, service: str, service_type: str, **fields: Any) -> Any:
+    return test.call(f"/slam_toolbox/{service}", get_service(service_type).Request(**fields))
 
 
 def planar(transform: Any) -> np.ndarray:
-    at, turned = transform.translation, transform.rotation
-    return np.array((at.x, at.y, rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2]))
+    translation, rotation = transform.translation, transform.rotation
+    return np.array(
+        (translation.x, translation.y, rpy_from_quaternion((rotation.x, rotation.y, rotation.z, rotation.w))[2])
+    )
 
 
 def map_to_odom(tf: Any) -> Any:
-    """The last transform that the node published."""
+    """Return the last transform that the node published."""
     transforms = [transform for message in tf for transform in message.transforms if transform.header.frame_id == "map"]
     assert transforms[-1].child_frame_id == "odom"
     return transforms[-1]
@@ -126,7 +128,7 @@ def test_map_pose_and_transform_are_published_and_accurate(test, kind):
     assert maps.last.header.frame_id == "map"
     assert maps.last.info.resolution == pytest.approx(0.05)
     assert sizes.last == maps.last.info
-    true = relative_pose(PATH[0], PATH[-1])  # the map lies where the first scan was taken
+    true = relative_pose(PATH[0], PATH[-1])  # the map's frame is at the first scan
     correction = map_to_odom(tf)
     assert compose(planar(correction.transform), odometry[-1]) == pytest.approx(true, abs=0.03)
     assert (
@@ -233,8 +235,8 @@ def test_map_is_saved_and_returned_by_services(test, tmp_path):
     answer = call(test, "dynamic_map", "nav_msgs/srv/GetMap").map
     test.advance(2.5)
     assert answer.info.width == maps.last.info.width
-    saved = load_map(tmp_path / "flat.yaml")
-    assert ((saved.cells == OCCUPIED) == (grid_from_message(answer).cells == OCCUPIED)).all()
+    saved_map = load_map(tmp_path / "flat.yaml")
+    assert ((saved_map.cells == OCCUPIED) == (grid_from_message(answer).cells == OCCUPIED)).all()
 
 
 def test_reset_service_starts_new_map(test):
@@ -249,7 +251,7 @@ def test_reset_service_starts_new_map(test):
     assert call(test, "dynamic_map", "nav_msgs/srv/GetMap").map.info.width == 0
 
 
-def serialized(test: SteppedGraph, path: Path, node: Any) -> str:
+def serialize_map(test: SteppedGraph, path: Path, node: Any) -> str:
     robot = Robot(test)
     robot.go(PATH, relative_pose(PATH[0], PATH))
     name = str(path / "flat")
@@ -260,16 +262,16 @@ def serialized(test: SteppedGraph, path: Path, node: Any) -> str:
 
 
 def test_robot_is_localized_in_saved_map(test, tmp_path):
-    name = serialized(test, tmp_path, start(test))
+    name = serialize_map(test, tmp_path, start(test))
     start(test, LocalizationSlamToolbox, map_file_name=name, map_start_pose=[1.9, 0.2, 0.1])
     maps, poses = test.record("/map"), test.record("/pose")
     test.advance(3.0)
     assert is_a_map(maps.last)
-    robot, back = Robot(test), along([(-2, -3), (0, -3), (2, -2.8)], step=0.25)
-    robot.go(back, drifting(relative_pose(back[0], back), 1.05, 0.03))
-    where = [relative_pose(PATH[0], pose) for pose in back]
+    robot, return_path = Robot(test), along([(-2, -3), (0, -3), (2, -2.8)], step=0.25)
+    robot.go(return_path, drifting(relative_pose(return_path[0], return_path), 1.05, 0.03))
+    expected_poses = [relative_pose(PATH[0], pose) for pose in return_path]
     at = poses.last.pose.pose.position
-    assert min(np.hypot(at.x - pose[0], at.y - pose[1]) for pose in where[-3:]) < 0.05
+    assert min(np.hypot(at.x - pose[0], at.y - pose[1]) for pose in expected_poses[-3:]) < 0.05
     initial = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")()
     initial.header.frame_id = "map"
     initial.pose.pose.position.x, initial.pose.pose.position.y = 4.6, 0.5
@@ -283,7 +285,7 @@ def test_robot_is_localized_in_saved_map(test, tmp_path):
 
 
 def test_mapping_continues_in_saved_map(test, tmp_path):
-    name = serialized(test, tmp_path, start(test))
+    name = serialize_map(test, tmp_path, start(test))
     node = start(test, MapAndLocalizationSlamToolbox)
     request = get_service("slam_toolbox/srv/DeserializePoseGraph").Request
     pose = get_message("geometry_msgs/msg/Pose2D")(x=6.6, y=0.5, theta=0.2)
@@ -296,15 +298,15 @@ def test_mapping_continues_in_saved_map(test, tmp_path):
         initial_pose=pose,
     )
     robot, poses = Robot(test), test.record("/pose")
-    before = len(node._work[0].mapper.scans)
-    on = along([(3, -3), (4, -3), (4, 2)], step=0.25, turn=0.25)
-    robot.go(on, drifting(relative_pose(on[0], on), 1.02, 0.02))
-    assert len(node._work[0].mapper.scans) > before
+    scan_count = len(node._work[0].mapper.scans)
+    new_path = along([(3, -3), (4, -3), (4, 2)], step=0.25, turn=0.25)
+    robot.go(new_path, drifting(relative_pose(new_path[0], new_path), 1.02, 0.02))
+    assert len(node._work[0].mapper.scans) > scan_count
     at = poses.last.pose.pose.position
-    assert [at.x, at.y] == pytest.approx(relative_pose(PATH[0], on[-1])[:2], abs=0.3)
+    assert [at.x, at.y] == pytest.approx(relative_pose(PATH[0], new_path[-1])[:2], abs=0.3)
     assert call(test, "set_localization_mode", "std_srvs/srv/SetBool", data=True).success
     count = len(node._work[0].mapper.scans)
-    robot.go(on[::-1], relative_pose(on[0], on[::-1]))
+    robot.go(new_path[::-1], relative_pose(new_path[0], new_path[::-1]))
     assert len(node._work[0].mapper.scans) == count
 
 
@@ -316,15 +318,15 @@ def test_invalid_pose_graph_file_is_rejected_with_reason(test, tmp_path):
         ("broken", "it does not contain a pose graph"),
         ("none", "does not exist"),
     ):
-        with pytest.raises(LinkwrightError) as caught:
+        with pytest.raises(LinkwrightError) as error:
             start(test, LocalizationSlamToolbox, map_file_name=str(tmp_path / name), map_start_at_dock=True)
-        assert caught.value.diagnostics[0].code == "NAV501"
-        assert reason in str(caught.value)
+        assert error.value.diagnostics[0].code == "NAV501"
+        assert reason in str(error.value)
     start(test)
-    kind = "slam_toolbox/srv/DeserializePoseGraph"
-    call(test, "deserialize_map", kind, filename=str(tmp_path / "none"), match_type=1)
-    call(test, "deserialize_map", kind, filename="x", match_type=3)
-    call(test, "deserialize_map", kind, filename="x")
+    service_type = "slam_toolbox/srv/DeserializePoseGraph"
+    call(test, "deserialize_map", service_type, filename=str(tmp_path / "none"), match_type=1)
+    call(test, "deserialize_map", service_type, filename="x", match_type=3)
+    call(test, "deserialize_map", service_type, filename="x")
     errors = logged(test, "ERROR")
     assert "does not exist" in errors[-3]
     assert "non-localization" in errors[-2]
@@ -372,9 +374,9 @@ def test_pose_graph_markers_are_published(test):
     start(test)
     markers = test.record("/slam_toolbox/graph_visualization")
     Robot(test).go(PATH[:12], relative_pose(PATH[0], PATH[:12]))
-    nodes, edges, others = markers.last.markers
+    nodes, edges, removed = markers.last.markers
     assert len(edges.points) == 2 * (len(nodes.points) - 1) > 4
-    assert others.action == others.DELETE
+    assert removed.action == removed.DELETE
 
 
 def test_map_restarts_when_time_jumps_back(test):

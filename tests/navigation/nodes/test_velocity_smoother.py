@@ -1,4 +1,4 @@
-"""velocity_smoother: limits of speed and acceleration, time-outs and the life of a managed node."""
+"""velocity_smoother: limits of speed and acceleration, timeouts, and the lifecycle."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ velocities = st.floats(-3.0, 3.0)
 LIMITS = [AxisLimits(-0.5, 0.5, 2.5, -2.0), AxisLimits(-1.0, 1.0, 0.0, 0.0), AxisLimits(-2.5, 2.5, 3.2, -3.0)]
 
 
-@given(wanted=st.tuples(*[velocities] * 3), now=st.tuples(*[st.floats(-0.5, 0.5)] * 3), scaled=st.booleans())
-def test_velocity_and_acceleration_limits_hold_on_each_axis(wanted, now, scaled):
-    after = smooth_velocities(LIMITS, now, wanted, 0.05, keep_direction=scaled)
-    for limits, before, velocity, goal in zip(LIMITS, now, after, wanted, strict=True):
-        assert abs(velocity - before) <= limits.max_change(before, limits.clamped(goal), 0.05) + 1e-12
-        assert min(before, limits.min_velocity) - 1e-12 <= velocity <= max(before, limits.max_velocity) + 1e-12
+@given(target=st.tuples(*[velocities] * 3), current=st.tuples(*[st.floats(-0.5, 0.5)] * 3), scaled=st.booleans())
+def test_velocity_and_acceleration_limits_hold_on_each_axis(target, current, scaled):
+    smoothed = smooth_velocities(LIMITS, current, target, 0.05, keep_direction=scaled)
+    for limits, old, velocity, goal in zip(LIMITS, current, smoothed, target, strict=True):
+        assert abs(velocity - old) <= limits.max_change(old, limits.clamped(goal), 0.05) + 1e-12
+        assert min(old, limits.min_velocity) - 1e-12 <= velocity <= max(old, limits.max_velocity) + 1e-12
 
 
 def test_keep_direction_scales_all_axes():
@@ -33,49 +33,49 @@ def test_keep_direction_scales_all_axes():
     assert smooth_velocities(limits, (0, 0), (1.0, 1.0), 0.1, keep_direction=False) == pytest.approx([0.1, 0.4])
 
 
-class Line:
-    """What goes in and what comes out."""
+class SmootherHarness:
+    """A velocity smoother with a publisher of commands, and the velocities that it publishes."""
 
-    def __init__(self, stage, kind=TWIST, **parameters):
-        self.stage, self.kind, self.out = stage, kind, []
-        stage.node.create_subscription(kind, "/cmd_vel_smoothed", self.out.append, 100)
-        self.publisher = stage.node.create_publisher(kind, "/cmd_vel", 10)
+    def __init__(self, stage, message_type=TWIST, **parameters):
+        self.stage, self.message_type, self.published = stage, message_type, []
+        stage.node.create_subscription(message_type, "/cmd_vel_smoothed", self.published.append, 100)
+        self.publisher = stage.node.create_publisher(message_type, "/cmd_vel", 10)
         self.odometry = stage.node.create_publisher(ODOMETRY, "/odom", 10)
         self.node = VelocitySmoother(stage.graph, NodeOptions(parameters={"autostart_node": True, **parameters}))
 
     async def send(self, x, yaw=0.0):
-        message = self.kind()
+        message = self.message_type()
         twist = getattr(message, "twist", message)
         twist.linear.x, twist.angular.z = x, yaw
         self.publisher.publish(message)
         await self.stage.graph.settle()
 
     def speeds(self):
-        return [round(getattr(message, "twist", message).linear.x, 6) for message in self.out]
+        return [round(getattr(message, "twist", message).linear.x, 6) for message in self.published]
 
 
 @pytest.fixture
-async def line(stage):
+async def harness(stage):
     lines = []
 
-    def start(**given):
-        lines.append(Line(stage, **given))
+    def start(**arguments):
+        lines.append(SmootherHarness(stage, **arguments))
         return lines[-1]
 
     yield start
-    for line in lines:
-        line.node.close()
+    for harness in lines:
+        harness.node.close()
 
 
-async def test_step_command_becomes_ramp_within_limits(line, stage):
-    smoother = line()
+async def test_step_command_becomes_ramp_within_limits(harness, stage):
+    smoother = harness()
     await smoother.send(0.8)
     await stage.clock.advance(0.3)
     assert smoother.speeds() == [0.125, 0.25, 0.375, 0.5, 0.5, 0.5]
 
 
-async def test_command_ends_after_velocity_timeout(line, stage, logged):
-    smoother = line(velocity_timeout=0.2)
+async def test_command_ends_after_velocity_timeout(harness, stage, logged):
+    smoother = harness(velocity_timeout=0.2)
     await smoother.send(0.25)
     await stage.clock.advance(2.0)
     assert smoother.speeds() == [0.125, 0.25, 0.25, 0.25, 0.125, 0.0]
@@ -84,8 +84,8 @@ async def test_command_ends_after_velocity_timeout(line, stage, logged):
     ]
 
 
-async def test_timeout_after_stop_command_is_not_logged(line, stage, logged):
-    smoother = line(velocity_timeout=0.2)
+async def test_timeout_after_stop_command_is_not_logged(harness, stage, logged):
+    smoother = harness(velocity_timeout=0.2)
     await smoother.send(0.25)
     await stage.clock.advance(0.1)
     await smoother.send(0.0)
@@ -93,14 +93,14 @@ async def test_timeout_after_stop_command_is_not_logged(line, stage, logged):
     assert not [text for text in logged("INFO") if "velocity_timeout" in text]
 
 
-async def test_lost_command_publisher_stops_robot_and_is_reported(line, stage, logged):
-    smoother = line(velocity_timeout=10.0, enable_stamped_cmd_vel=False)
+async def test_lost_command_publisher_stops_robot_and_is_reported(harness, stage, logged):
+    smoother = harness(velocity_timeout=10.0, enable_stamped_cmd_vel=False)
     driver = RemotePublisher(RemoteTransport(stage.graph), "/cmd_vel")
     message = TWIST()
     message.linear.x = 0.25
     driver.send(message)
     await stage.clock.advance(0.2)
-    driver.be_lost()
+    driver.disappear()
     await stage.clock.advance(1.0)
     assert smoother.speeds()[3] == 0.25
     assert smoother.speeds()[-1] == 0.0
@@ -112,15 +112,15 @@ async def test_lost_command_publisher_stops_robot_and_is_reported(line, stage, l
     ]
 
 
-async def test_velocities_within_deadband_are_zero(line, stage):
-    smoother = line(deadband_velocity=[0.2, 0.0, 0.0])
+async def test_velocities_within_deadband_are_zero(harness, stage):
+    smoother = harness(deadband_velocity=[0.2, 0.0, 0.0])
     await smoother.send(0.3)
     await stage.clock.advance(0.15)
     assert smoother.speeds() == [0.0, 0.25, 0.3]
 
 
-async def test_closed_loop_starts_from_measured_velocity(line, stage):
-    smoother = line(feedback="CLOSED_LOOP")
+async def test_closed_loop_starts_from_measured_velocity(harness, stage):
+    smoother = harness(feedback="CLOSED_LOOP")
     message = ODOMETRY()
     message.twist.twist.linear.x = 0.2
     smoother.odometry.publish(message)
@@ -129,37 +129,37 @@ async def test_closed_loop_starts_from_measured_velocity(line, stage):
     assert smoother.speeds() == [0.325]
 
 
-async def test_six_axes_may_be_limited(line, stage):
+async def test_six_axes_may_be_limited(harness, stage):
     six = {name: [sign] * 6 for name, sign in (("max_velocity", 1.0), ("min_velocity", -1.0))}
     six |= {"max_accel": [2.0] * 6, "max_decel": [-2.0] * 6, "deadband_velocity": [0.0] * 6}
-    smoother = line(**six)
+    smoother = harness(**six)
     await smoother.send(1.0, 1.0)
     await stage.clock.advance(0.06)
-    assert (smoother.out[0].linear.x, smoother.out[0].angular.z) == pytest.approx((0.1, 0.1))
+    assert (smoother.published[0].linear.x, smoother.published[0].angular.z) == pytest.approx((0.1, 0.1))
 
 
 @pytest.mark.parametrize("kind", [TWIST, STAMPED])
-async def test_twist_and_twist_stamped_pass_without_warning(line, stage, logged, kind):
-    smoother = line(kind=kind)
+async def test_twist_and_twist_stamped_pass_without_warning(harness, stage, logged, kind):
+    smoother = harness(message_type=kind)
     await smoother.send(0.5)
     await stage.clock.advance(0.06)
     assert smoother.speeds() == [0.125]
     assert logged("WARN") == []
 
 
-async def test_nan_commands_are_ignored_with_error(line, stage, logged):
-    smoother = line()
+async def test_nan_commands_are_ignored_with_error(harness, stage, logged):
+    smoother = harness()
     await smoother.send(float("nan"))
     await stage.clock.advance(0.5)
-    assert smoother.out == []
+    assert smoother.published == []
     assert "NaNs" in logged("ERROR")[0]
 
 
-async def test_velocity_smoother_is_a_managed_node(line, stage):
-    smoother = line(autostart_node=False)
+async def test_velocity_smoother_is_a_managed_node(harness, stage):
+    smoother = harness(autostart_node=False)
     await smoother.send(0.5)
     await stage.clock.advance(0.5)
-    assert smoother.out == []
+    assert smoother.published == []
     node = smoother.node.node
     node.trigger_configure()
     node.trigger_activate()
@@ -184,13 +184,13 @@ async def test_velocity_smoother_is_a_managed_node(line, stage):
         ({"smoothing_frequency": 0.0}, "smoothing_frequency must be more than 0"),
     ],
 )
-async def test_invalid_parameters_are_reported(line, logged, wrong, text):
-    line(autostart_node=False, **wrong).node.node.trigger_configure()
+async def test_invalid_parameters_are_reported(harness, logged, wrong, text):
+    harness(autostart_node=False, **wrong).node.node.trigger_configure()
     assert text in logged("ERROR")[0]
 
 
-async def test_parameters_can_change_at_runtime(line, stage):
-    smoother = line()
+async def test_parameters_can_change_at_runtime(harness, stage):
+    smoother = harness()
     assert await stage.set(smoother.node, max_velocity=[0.25, 0.0, 1.0]) == [(True, "")]
     await smoother.send(0.5)
     await stage.clock.advance(0.3)

@@ -34,7 +34,7 @@ class Nav2:
         self.refuses = False
         self.log = node.get_logger()
         self.commands: list[tuple[str, int]] = []
-        self.cancelled = 0
+        self.cancel_count = 0
         for name in ("navigation", "localization"):
             manager = f"/lifecycle_manager_{name}"
             node.create_service(get_service("std_srvs/srv/Trigger"), f"{manager}/is_active", self._is_active)
@@ -43,8 +43,8 @@ class Nav2:
         node.create_service(
             get_service("action_msgs/srv/CancelGoal"), "/navigate_to_pose/_action/cancel_goal", self._cancel
         )
-        lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self.status = node.create_publisher(GoalStatusArray, "/navigate_to_pose/_action/status", lasting)
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.status = node.create_publisher(GoalStatusArray, "/navigate_to_pose/_action/status", latched)
         self.feedback = node.create_publisher(Feedback, "/navigate_to_pose/_action/feedback", 10)
 
     def _is_active(self, _: Any, response: Any) -> Any:
@@ -58,11 +58,11 @@ class Nav2:
         return response
 
     def _cancel(self, _: Any, response: Any) -> Any:
-        self.cancelled += 1
+        self.cancel_count += 1
         return response
 
-    def goal(self, *statuses: int) -> None:
-        """Publish the states of goals, each accepted a second after the one before."""
+    def publish_goal_states(self, *statuses: int) -> None:
+        """Publish the states of goals, each accepted a second after the previous one."""
         message = GoalStatusArray()
         for number, status in enumerate(statuses):
             goal_status = GoalStatus(status=status)
@@ -71,7 +71,7 @@ class Nav2:
             message.status_list.append(goal_status)
         self.status.publish(message)
 
-    def progress(self, distance: float) -> None:
+    def publish_progress(self, distance: float) -> None:
         message = Feedback()
         message.feedback.distance_remaining = distance
         message.feedback.navigation_time.sec, message.feedback.navigation_time.nanosec = 12, 500_000_000
@@ -82,7 +82,7 @@ class Nav2:
 
 @asynccontextmanager
 async def navigation_page():
-    """nav2, and a page that shows the panel."""
+    """Run nav2's services, and a page that shows the panel."""
     async with open_world() as world:
         nav2 = Nav2(world.graph)
         async with page(world.viewer) as client:
@@ -113,15 +113,15 @@ async def test_panel_without_nav2_shows_unknown_and_rejects_commands():
 async def test_goal_progress_is_shown_until_next_goal():
     async with navigation_page() as (_, nav2, client):
         await client.until("navigation_state", navigation="active")
-        nav2.goal(2)
-        nav2.progress(3.456)
+        nav2.publish_goal_states(2)
+        nav2.publish_progress(3.456)
         message = await client.until("navigation_state", distance=3.46)
-        assert (message["goal"], message["eta"], message["taken"], message["recoveries"]) == ("active", 75.0, 12.5, 2)
-        nav2.progress(float("nan"))
+        assert (message["goal"], message["eta"], message["elapsed"], message["recoveries"]) == ("active", 75.0, 12.5, 2)
+        nav2.publish_progress(float("nan"))
         await client.until("navigation_state", distance=None, eta=75.0)
-        nav2.goal(4, 2)
+        nav2.publish_goal_states(4, 2)
         await client.until("navigation_state", goal="active", eta=None, recoveries=None)
-        nav2.goal(4, 4)
+        nav2.publish_goal_states(4, 4)
         await client.until("navigation_state", goal="succeeded")
 
 
@@ -130,23 +130,23 @@ async def test_goal_failure_is_shown_with_error_until_next_goal():
         nav2 = Nav2(world.graph)
         async with page(world.viewer) as client:
             await client.opened()
-            nav2.goal(2)
+            nav2.publish_goal_states(2)
             world.graph.create_node("camera").get_logger().error("no light")
             nav2.log.error("Goal failed: the goal is in an obstacle")
-            nav2.goal(6)
+            nav2.publish_goal_states(6)
             message = await client.until("goal_outcome", failed=True)
             assert message["reason"] == "Goal failed: the goal is in an obstacle"
-            nav2.goal(6, 2)
+            nav2.publish_goal_states(6, 2)
             await client.until("goal_outcome", failed=False, reason="")
 
 
 async def test_goal_failure_before_page_opened_is_not_shown():
     async with open_world() as world:
         nav2 = Nav2(world.graph)
-        nav2.goal(6)
+        nav2.publish_goal_states(6)
         async with page(world.viewer) as client:
             await client.opened()
-            nav2.goal(6, 5)
+            nav2.publish_goal_states(6, 5)
             messages = [message for message in await client.drain(0.6) if isinstance(message, dict)]
             assert not any(message["failed"] for message in messages if message["type"] == "goal_outcome")
 
@@ -175,16 +175,16 @@ async def test_buttons_command_both_managers_in_order_of_nav2():
 
 async def test_goal_is_canceled_by_cancel_and_reset():
     async with navigation_page() as (_, nav2, client):
-        nav2.goal(2)
+        nav2.publish_goal_states(2)
         await client.until("navigation_state", goal="active", navigation="active")
         await client.send("command_navigation", command="cancel")
         await client.until("navigation_state", busy=True)
         await client.until("navigation_state", busy=False, problem="")
-        assert (nav2.cancelled, nav2.commands) == (1, [])
+        assert (nav2.cancel_count, nav2.commands) == (1, [])
         await client.send("command_navigation", command="reset")
         await client.until("navigation_state", busy=True)
         await client.until("navigation_state", busy=False, problem="")
-        assert (nav2.cancelled, nav2.commands) == (2, [("navigation", RESET), ("localization", RESET)])
+        assert (nav2.cancel_count, nav2.commands) == (2, [("navigation", RESET), ("localization", RESET)])
 
 
 async def test_closed_panel_has_no_subscriptions():

@@ -1,4 +1,4 @@
-"""The map of our house: planners that cross unknown cells stay within its walls, and out of its furniture."""
+"""The map of the house: plans that may cross unknown cells stay within its walls, and avoid its furniture."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.places import GAZEBO_PACKAGE
 ROBOT = 0.22
 WALLS = np.array((4.9, 3.9))
 """Meters from the origin to the inner sides of the outer walls, along x and y."""
-PLACES = {
+ROOM_POINTS = {
     "living room": (0.0, 0.0),
     "bedroom": (-1.9, 1.6),
     "hall": (0.0, 2.5),
@@ -25,34 +25,34 @@ PLACES = {
     "kitchen": (2.3, -1.7),
 }
 DOORS = [(-1.5, 1.05), (0.9, 2.5), (1.55, -1.6)]
-"""Of bedroom, bath and kitchen."""
+"""The doors of bedroom, bath and kitchen."""
 
 
 def house() -> Grid:
     return load_map(GAZEBO_PACKAGE / "maps" / "house.yaml")
 
 
-def reached(grid: Grid) -> np.ndarray:
-    """The cells that a planner gets to from the living room, unknown ones allowed."""
+def reachable_cells(grid: Grid) -> np.ndarray:
+    """Return the cells that a planner reaches from the living room; unknown cells are allowed."""
     distances = distance_field(grid.cells == OCCUPIED, grid.resolution)
     costs = Inflation(inflation_radius=0.6, cost_scaling_factor=3.0).costs(distances, ROBOT)
     costs = np.where(distances > 0.6, 0, costs).astype(np.uint8)
     costs[(grid.cells == UNSEEN) & (costs < INSCRIBED)] = UNKNOWN
-    row, column = grid.cells_of(np.array(PLACES["living room"]))
+    row, column = grid.cells_of(np.array(ROOM_POINTS["living room"]))
     return np.isfinite(run_to_end(compute_potential(crossing_prices(costs), (int(row), int(column)))))
 
 
 def free_or_outside(grid: Grid) -> np.ndarray:
-    """The cells that are free, and those outside of the house."""
+    """Return the cells that are free or outside the house."""
     centers = grid.centers_of(np.moveaxis(np.indices(grid.cells.shape), 0, -1))
     return (grid.cells == FREE) | (np.abs(centers) > WALLS).any(axis=-1)
 
 
 def test_planner_reaches_all_rooms_and_no_unseen_cells():
     grid = house()
-    there = reached(grid)
-    assert all(there[tuple(grid.cells_of(np.array(place)))] for place in PLACES.values())
-    assert free_or_outside(grid)[there].all()
+    reachable = reachable_cells(grid)
+    assert all(reachable[tuple(grid.cells_of(np.array(point)))] for point in ROOM_POINTS.values())
+    assert free_or_outside(grid)[reachable].all()
 
 
 def test_closed_doors_separate_rooms():
@@ -60,7 +60,9 @@ def test_closed_doors_separate_rooms():
     for door in DOORS:
         row, column = grid.cells_of(np.array(door))
         grid.cells[row - 8 : row + 9, column - 8 : column + 9] = OCCUPIED
-    there = reached(grid)
-    shut = [name for name, place in PLACES.items() if not there[tuple(grid.cells_of(np.array(place)))]]
-    assert shut == ["bedroom", "bath", "kitchen"]
-    assert free_or_outside(grid)[there].all()
+    reachable = reachable_cells(grid)
+    unreachable_rooms = [
+        name for name, point in ROOM_POINTS.items() if not reachable[tuple(grid.cells_of(np.array(point)))]
+    ]
+    assert unreachable_rooms == ["bedroom", "bath", "kitchen"]
+    assert free_or_outside(grid)[reachable].all()

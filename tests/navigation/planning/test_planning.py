@@ -1,4 +1,4 @@
-"""Plans: as short as they can be, clear of obstacles, through mazes; what cannot be planned says why."""
+"""Planning: shortest paths, clearance, mazes, and the reasons of failures."""
 
 from __future__ import annotations
 
@@ -25,48 +25,48 @@ def costmap(cells) -> Costmap:
     return Costmap(Grid(cells=np.asarray(cells, np.uint8), resolution=RESOLUTION))
 
 
-def drawn(*rows: str) -> Costmap:
-    """A costmap of characters: # lethal, o inscribed, ? unknown, the last row is that of y = 0."""
+def costmap_of_text(*rows: str) -> Costmap:
+    """Return a costmap of characters: # lethal, o inscribed, ? unknown; the last row is at y = 0."""
     costs = {"#": LETHAL, "o": INSCRIBED, "?": UNKNOWN, ".": 0}
     return costmap([[costs[character] for character in row] for row in reversed(rows)])
 
 
-def inflated(obstacles) -> Costmap:
+def inflated_costmap(obstacles) -> Costmap:
     distances = distance_field(obstacles, RESOLUTION)
     costs = Inflation(inflation_radius=0.6, cost_scaling_factor=3.0).costs(distances, 0.2)
     return costmap(np.where(distances > 0.6, 0, costs))
 
 
-def planned(scene: Costmap, start, goal, **more) -> np.ndarray:
-    return run_to_end(plan(scene, (*start, 0.0)[:3], (*goal, 0.0)[:3], Settings(**more)))
+def plan_path(robot: Costmap, start, goal, **settings) -> np.ndarray:
+    return run_to_end(plan(robot, (*start, 0.0)[:3], (*goal, 0.0)[:3], Settings(**settings)))
 
 
 def length(path: np.ndarray) -> float:
     return float(np.hypot(*np.diff(path[:, :2], axis=0).T).sum())
 
 
-def touched(scene: Costmap, path: np.ndarray) -> int:
-    """The highest cost along the straight lines between the points of a path, other than of what is unknown."""
+def highest_cost(robot: Costmap, path: np.ndarray) -> int:
+    """Return the highest known cost on the straight lines between a path's points."""
     share = np.linspace(0.0, 1.0, 21)[:, None, None]
-    costs = scene.cost_at(path[None, :-1, :2] * (1 - share) + path[None, 1:, :2] * share)
+    costs = robot.cost_at(path[None, :-1, :2] * (1 - share) + path[None, 1:, :2] * share)
     return int(np.where(costs == UNKNOWN, 0, costs).max())
 
 
 def dijkstra(price: np.ndarray, source: tuple[int, int]) -> np.ndarray:
-    """What the cheapest ways along rows, columns and diagonals cost that cut no corner of an obstacle."""
+    """Return the costs of the cheapest paths along rows, columns and diagonals that cut no corner of an obstacle."""
     rows, columns = price.shape
     number = np.arange(rows * columns).reshape(rows, columns)
     begins, ends, weights = [], [], []
-    for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):
-        left, step = max(0, -right), max(0, right)
-        a = (slice(0, rows - down), slice(left, columns - step))
-        b = (slice(down, rows), slice(left + right, columns - step + right))
+    for row_step, column_step in ((0, 1), (1, 0), (1, 1), (1, -1)):
+        margin, step = max(0, -column_step), max(0, column_step)
+        a = (slice(0, rows - row_step), slice(margin, columns - step))
+        b = (slice(row_step, rows), slice(margin + column_step, columns - step + column_step))
         with np.errstate(invalid="ignore"):
-            weight = hypot(down, right) * (price[a] + price[b]) / 2.0
-        if down and right:  # no corner is cut
-            beside = (slice(0, rows - down), slice(left + right, columns - step + right))
-            below = (slice(down, rows), slice(left, columns - step))
-            weight = np.where(np.isfinite(price[beside] + price[below]), weight, np.inf)
+            weight = hypot(row_step, column_step) * (price[a] + price[b]) / 2.0
+        if row_step and column_step:  # no corner is cut
+            target_slice = (slice(0, rows - row_step), slice(margin + column_step, columns - step + column_step))
+            below = (slice(row_step, rows), slice(margin, columns - step))
+            weight = np.where(np.isfinite(price[target_slice] + price[below]), weight, np.inf)
         fine = np.isfinite(weight)
         begins.append(number[a][fine])
         ends.append(number[b][fine])
@@ -95,50 +95,50 @@ def rooms(seed: int, size: int = 60) -> np.ndarray:
 
 
 def test_potential_in_open_space_is_distance():
-    least = run_to_end(compute_potential(np.full((81, 81), NEUTRAL_COST), (40, 40)))
+    potential = run_to_end(compute_potential(np.full((81, 81), NEUTRAL_COST), (40, 40)))
     rows, columns = np.ogrid[:81, :81]
     truth = NEUTRAL_COST * np.hypot(rows - 40, columns - 40)
-    far = truth > 20 * NEUTRAL_COST
-    assert (least[far] >= truth[far] - 1e-6).all()
-    assert (least[far] <= 1.05 * truth[far]).all()
+    is_far = truth > 20 * NEUTRAL_COST
+    assert (potential[is_far] >= truth[is_far] - 1e-6).all()
+    assert (potential[is_far] <= 1.05 * truth[is_far]).all()
 
 
 @pytest.mark.parametrize("seed", range(12))
 def test_potential_matches_dijkstra(seed):
-    price = crossing_prices(inflated(rooms(seed)).grid.cells)
-    least, truth = run_to_end(compute_potential(price, (2, 2))), dijkstra(price, (2, 2))
-    reached = np.isfinite(least)
-    assert np.array_equal(np.isfinite(truth), reached)
-    far = reached & (truth > 10 * NEUTRAL_COST)
-    between_middles = least[far] - price[far] / 2.0 - price[2, 2] / 2.0
-    assert (between_middles <= 1.15 * truth[far]).all()  # of first order, and worst after ten cells
-    assert (least[far] >= 0.9 * truth[far]).all()  # not only in eight directions, so it may be less
+    price = crossing_prices(inflated_costmap(rooms(seed)).grid.cells)
+    potential, truth = run_to_end(compute_potential(price, (2, 2))), dijkstra(price, (2, 2))
+    is_reached = np.isfinite(potential)
+    assert np.array_equal(np.isfinite(truth), is_reached)
+    is_far = is_reached & (truth > 10 * NEUTRAL_COST)
+    between_middles = potential[is_far] - price[is_far] / 2.0 - price[2, 2] / 2.0
+    assert (between_middles <= 1.15 * truth[is_far]).all()  # of first order, and worst after ten cells
+    assert (potential[is_far] >= 0.9 * truth[is_far]).all()  # not only in eight directions, so it may be less
 
 
 @settings(max_examples=20, deadline=None)
 @given(obstacles=st.integers(0, 10_000).map(lambda seed: np.random.default_rng(seed).random((25, 25)) < 0.35))
 def test_potential_reaches_exactly_connected_cells(obstacles):
     obstacles[12, 12] = False
-    least = run_to_end(compute_potential(np.where(obstacles, np.inf, NEUTRAL_COST), (12, 12)))
+    potential = run_to_end(compute_potential(np.where(obstacles, np.inf, NEUTRAL_COST), (12, 12)))
     groups, _ = load_scipy("ndimage").label(~obstacles)
-    assert np.array_equal(np.isfinite(least), groups == groups[12, 12])
+    assert np.array_equal(np.isfinite(potential), groups == groups[12, 12])
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_heuristic_search_gives_same_cost(seed):
-    price = crossing_prices(inflated(rooms(seed)).grid.cells)
-    whole = run_to_end(compute_potential(price, (2, 2)))
+    price = crossing_prices(inflated_costmap(rooms(seed)).grid.cells)
+    full_potential = run_to_end(compute_potential(price, (2, 2)))
     for heuristic in (False, True):
-        part = run_to_end(compute_potential(price, (2, 2), (57, 57), heuristic=heuristic))
-        assert part[57, 57] == pytest.approx(whole[57, 57], rel=1e-3)
-        assert np.isfinite(part).sum() <= np.isfinite(whole).sum()
+        directed_potential = run_to_end(compute_potential(price, (2, 2), (57, 57), heuristic=heuristic))
+        assert directed_potential[57, 57] == pytest.approx(full_potential[57, 57], rel=1e-3)
+        assert np.isfinite(directed_potential).sum() <= np.isfinite(full_potential).sum()
 
 
 # --- plans ------------------------------------------------------------------------------------------------------------
 
 
 def test_plan_in_open_space_is_straight():
-    path = planned(costmap(np.zeros((80, 80))), (0.55, 0.55), (7.05, 4.75, 1.0))
+    path = plan_path(costmap(np.zeros((80, 80))), (0.55, 0.55), (7.05, 4.75, 1.0))
     assert path[0, :2].tolist() == [0.55, 0.55]
     assert path[-1].tolist() == [7.05, 4.75, 1.0]
     assert length(path) == pytest.approx(hypot(6.5, 4.2), rel=0.01)
@@ -147,25 +147,25 @@ def test_plan_in_open_space_is_straight():
 
 @pytest.mark.parametrize("seed", range(25))
 def test_plans_avoid_obstacles_at_near_optimal_cost(seed):
-    scene = inflated(rooms(seed))
-    price = crossing_prices(scene.grid.cells)
+    robot = inflated_costmap(rooms(seed))
+    price = crossing_prices(robot.grid.cells)
     if not np.isfinite(price[[2, 57], [2, 57]]).all():
         return
     truth = dijkstra(price, (2, 2))[57, 57]
     try:
-        path = planned(scene, (0.25, 0.25), (5.75, 5.75), tolerance=0.0)
+        path = plan_path(robot, (0.25, 0.25), (5.75, 5.75), tolerance=0.0)
     except PlanError:
         assert not np.isfinite(run_to_end(compute_potential(price, (2, 2)))[57, 57])
         return
-    assert touched(scene, path) <= MAX_PASSABLE
+    assert highest_cost(robot, path) <= MAX_PASSABLE
     middles = (path[1:, :2] + path[:-1, :2]) / 2.0
-    cells = scene.grid.cells_of(middles)
+    cells = robot.grid.cells_of(middles)
     steps = np.hypot(*np.diff(path[:, :2], axis=0).T) / RESOLUTION
     assert (price[cells[:, 0], cells[:, 1]] * steps).sum() <= 1.06 * truth + 2 * NEUTRAL_COST
 
 
 def test_plan_passes_through_maze():
-    scene = drawn(
+    robot = costmap_of_text(
         "###########",
         "#.........#",
         "#.#######.#",
@@ -178,94 +178,94 @@ def test_plan_passes_through_maze():
         "#.........#",
         "###########",
     )
-    path = planned(scene, (0.95, 0.15), (0.55, 0.55))
-    assert touched(scene, path) == 0
+    path = plan_path(robot, (0.95, 0.15), (0.55, 0.55))
+    assert highest_cost(robot, path) == 0
     assert path[-1, :2].tolist() == [0.55, 0.55]
     assert length(path) > 2.5
 
 
 def test_plan_does_not_pass_between_diagonal_corners():
-    scene = drawn("...#..", "...#..", "...#..", "..#...", "..#...", "..#...")
+    robot = costmap_of_text("...#..", "...#..", "...#..", "..#...", "..#...", "..#...")
     with pytest.raises(PlanError, match=r"Failed to create plan with tolerance of: 0\.000000"):
-        planned(scene, (0.05, 0.05), (0.55, 0.55), tolerance=0.0)
+        plan_path(robot, (0.05, 0.05), (0.55, 0.55), tolerance=0.0)
 
 
 def test_unknown_cells_are_crossed_only_if_allowed():
-    scene = drawn("..??..", "..??..", "..??..")
-    assert length(planned(scene, (0.05, 0.15), (0.55, 0.15))) == pytest.approx(0.5, rel=0.05)
+    robot = costmap_of_text("..??..", "..??..", "..??..")
+    assert length(plan_path(robot, (0.05, 0.15), (0.55, 0.15))) == pytest.approx(0.5, rel=0.05)
     with pytest.raises(PlanError):
-        planned(scene, (0.05, 0.15), (0.55, 0.15), allow_unknown=False, tolerance=0.0)
+        plan_path(robot, (0.05, 0.15), (0.55, 0.15), allow_unknown=False, tolerance=0.0)
 
 
 def test_known_cells_are_preferred_to_unknown_cells():
-    scene = costmap(np.zeros((40, 40)))
-    scene.grid.cells[5:35, 15:25] = UNKNOWN
-    path = planned(scene, (0.55, 0.95), (3.55, 0.95))
-    assert (scene.cost_at(path[:, :2]) != UNKNOWN).all()
+    robot = costmap(np.zeros((40, 40)))
+    robot.grid.cells[5:35, 15:25] = UNKNOWN
+    path = plan_path(robot, (0.55, 0.95), (3.55, 0.95))
+    assert (robot.cost_at(path[:, :2]) != UNKNOWN).all()
 
 
 @settings(max_examples=40, deadline=None)
 @given(obstacles=st.integers(0, 10_000).map(lambda seed: np.random.default_rng(seed).random((25, 25)) < 0.3))
 def test_plan_never_touches_obstacle(obstacles):
     obstacles[[1, 23], [1, 23]] = False
-    scene = costmap(np.where(obstacles, LETHAL, 0))
+    robot = costmap(np.where(obstacles, LETHAL, 0))
     try:
-        path = planned(scene, (0.11, 0.19), (2.39, 2.31), tolerance=0.0)
+        path = plan_path(robot, (0.11, 0.19), (2.39, 2.31), tolerance=0.0)
     except PlanError:
         return
-    assert touched(scene, path) == 0
+    assert highest_cost(robot, path) == 0
 
 
 # --- goals that cannot be reached -------------------------------------------------------------------------------------
 
 
-def problem(scene, start, goal, **more) -> Problem:
-    with pytest.raises(PlanError) as caught:
-        planned(scene, start, goal, **more)
-    return caught.value.problem
+def problem(robot, start, goal, **settings) -> Problem:
+    with pytest.raises(PlanError) as error:
+        plan_path(robot, start, goal, **settings)
+    return error.value.problem
 
 
 def test_goal_near_wall_is_moved_within_tolerance():
     obstacles = np.zeros((40, 40), np.bool_)
     obstacles[:, 20] = True
-    scene = inflated(obstacles)
-    path = planned(scene, (0.55, 2.05), (1.85, 2.05))
+    robot = inflated_costmap(obstacles)
+    path = plan_path(robot, (0.55, 2.05), (1.85, 2.05))
     assert path[-1, 0] == pytest.approx(1.75)
-    assert touched(scene, path) <= MAX_PASSABLE
-    assert problem(scene, (0.55, 2.05), (1.85, 2.05), tolerance=0.0) is Problem.GOAL_OCCUPIED
+    assert highest_cost(robot, path) <= MAX_PASSABLE
+    assert problem(robot, (0.55, 2.05), (1.85, 2.05), tolerance=0.0) is Problem.GOAL_OCCUPIED
 
 
 def test_goal_inside_wall_is_rejected():
     obstacles = np.zeros((40, 40), np.bool_)
     obstacles[:, 18:23] = True
-    scene = inflated(obstacles)
-    scene.grid.cells[:, 19:22] = INSCRIBED  # a wall that was seen from outside
-    assert problem(scene, (0.55, 2.05), (1.85, 2.05)) is Problem.GOAL_OCCUPIED
-    assert problem(scene, (0.55, 2.05), (2.05, 2.05)) is Problem.GOAL_OCCUPIED
+    robot = inflated_costmap(obstacles)
+    robot.grid.cells[:, 19:22] = INSCRIBED  # a wall that was seen from outside
+    assert problem(robot, (0.55, 2.05), (1.85, 2.05)) is Problem.GOAL_OCCUPIED
+    assert problem(robot, (0.55, 2.05), (2.05, 2.05)) is Problem.GOAL_OCCUPIED
 
 
 def test_goal_behind_wall_is_not_replaced_by_one_before_it():
     obstacles = np.zeros((40, 40), np.bool_)
     obstacles[:, 20] = True
-    assert problem(inflated(obstacles), (0.55, 2.05), (2.35, 2.05), tolerance=1.0) is Problem.NO_VALID_PATH
+    assert problem(inflated_costmap(obstacles), (0.55, 2.05), (2.35, 2.05), tolerance=1.0) is Problem.NO_VALID_PATH
 
 
 def test_start_and_goal_outside_map_are_rejected():
-    scene = costmap(np.zeros((10, 10)))
-    assert problem(scene, (-0.1, 0.5), (0.5, 0.5)) is Problem.START_OUTSIDE_MAP
-    assert problem(scene, (0.5, 0.5), (0.5, 1.5)) is Problem.GOAL_OUTSIDE_MAP
+    robot = costmap(np.zeros((10, 10)))
+    assert problem(robot, (-0.1, 0.5), (0.5, 0.5)) is Problem.START_OUTSIDE_MAP
+    assert problem(robot, (0.5, 0.5), (0.5, 1.5)) is Problem.GOAL_OUTSIDE_MAP
 
 
 def test_start_in_obstacle_is_rejected_and_start_near_it_is_left():
     obstacles = np.zeros((40, 40), np.bool_)
     obstacles[20] = True
-    scene = inflated(obstacles)
-    assert problem(scene, (1.05, 2.05), (3.05, 3.55)) is Problem.START_OCCUPIED
-    path = planned(scene, (1.05, 2.15), (3.05, 2.45))
-    inside = path[scene.cost_at(path[:, :2]) == INSCRIBED]
-    assert (inside[:, 0] < 1.3).all()
+    robot = inflated_costmap(obstacles)
+    assert problem(robot, (1.05, 2.05), (3.05, 3.55)) is Problem.START_OCCUPIED
+    path = plan_path(robot, (1.05, 2.15), (3.05, 2.45))
+    inscribed_points = path[robot.cost_at(path[:, :2]) == INSCRIBED]
+    assert (inscribed_points[:, 0] < 1.3).all()
     assert length(path) < 3.0
-    assert touched(scene, path) <= INSCRIBED
+    assert highest_cost(robot, path) <= INSCRIBED
 
 
 # --- smoothing --------------------------------------------------------------------------------------------------------
@@ -280,8 +280,8 @@ def corner() -> np.ndarray:
 
 def bend(points: np.ndarray) -> float:
     ahead = np.diff(points, axis=0)
-    turns = np.diff(np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0])))
-    return float(np.abs(turns).max())
+    angles = np.diff(np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0])))
+    return float(np.abs(angles).max())
 
 
 def test_smoothing_rounds_corner_and_keeps_ends():
@@ -293,25 +293,25 @@ def test_smoothing_rounds_corner_and_keeps_ends():
 
 def test_smoothing_matches_relaxation():
     smooth_poses, _ = smooth_path(corner(), Smoothing(do_refinement=False))
-    relaxed, given = corner(), corner()
+    reference, original = corner(), corner()
     for _ in range(500):
-        middle = relaxed[:-2] + relaxed[2:]
-        relaxed[1:-1] += 0.2 * (given[1:-1] - relaxed[1:-1]) + 0.3 * (middle - 2.0 * relaxed[1:-1])
-    assert smooth_poses == pytest.approx(relaxed, abs=1e-9)
+        middle = reference[:-2] + reference[2:]
+        reference[1:-1] += 0.2 * (original[1:-1] - reference[1:-1]) + 0.3 * (middle - 2.0 * reference[1:-1])
+    assert smooth_poses == pytest.approx(reference, abs=1e-9)
 
 
 def test_smoothing_avoids_obstacles():
-    scene = costmap(np.zeros((25, 25)))
-    scene.grid.cells[1:10, 10:20] = LETHAL  # within the corner
-    smooth_poses, complete = smooth_path(corner(), Smoothing(), scene)
+    robot = costmap(np.zeros((25, 25)))
+    robot.grid.cells[1:10, 10:20] = LETHAL  # within the corner
+    smooth_poses, complete = smooth_path(corner(), Smoothing(), robot)
     assert not complete
-    assert (scene.cost_at(smooth_poses) == 0).all()
+    assert (robot.cost_at(smooth_poses) == 0).all()
 
 
 def test_smoothing_keeps_cusps():
-    there = np.column_stack((np.arange(0.0, 1.0, 0.1), np.zeros(10)))
-    back = np.column_stack((np.arange(0.8, 0.0, -0.1), np.linspace(0.02, 0.3, 8)))
-    points = np.concatenate((there, back))
+    way_out = np.column_stack((np.arange(0.0, 1.0, 0.1), np.zeros(10)))
+    way_back = np.column_stack((np.arange(0.8, 0.0, -0.1), np.linspace(0.02, 0.3, 8)))
+    points = np.concatenate((way_out, way_back))
     smooth_poses, _ = smooth_path(points, Smoothing())
     assert smooth_poses[9] == pytest.approx(points[9])
     loose, _ = smooth_path(points, Smoothing(enforce_path_inversion=False))

@@ -1,4 +1,4 @@
-"""Rooms of straight walls for tests: what a laser sees in them, and paths through them."""
+"""Rooms of straight walls for tests: simulated laser scans, and paths through the rooms."""
 
 from __future__ import annotations
 
@@ -15,70 +15,70 @@ AHEAD = (np.eye(3), np.zeros(3))
 
 
 def box(x, y, width, height):
-    """The four walls of a box about (x, y), of shape (4, 2, 2)."""
+    """Return the four walls of a box around (x, y), shape (4, 2, 2)."""
     left, right, bottom, top = x - width / 2, x + width / 2, y - height / 2, y + height / 2
     corners = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)]
     return list(pairwise(corners))
 
 
 def house(extra=()):
-    """A flat of 12 m x 9 m with a corridor around its middle, and furniture, of shape (n, 2, 2)."""
-    parts = [
+    """Return a flat of 12 m x 9 m with furniture and a corridor around its center, shape (n, 2, 2)."""
+    boxes = [
         box(0, 0, 12, 9),
         box(0, 0, 5, 3.4),
         box(-5, -3.8, 1.4, 0.8),
         box(4.5, 3.9, 1, 0.7),
         box(5.6, -1, 0.5, 1.2),
     ]
-    parts += [box(-2, 4.0, 0.6, 0.6), box(2.2, -4.1, 1.1, 0.4), box(-5.6, 1.2, 0.5, 0.9), *extra]
-    return np.array([wall for part in parts for wall in part], dtype=float)
+    boxes += [box(-2, 4.0, 0.6, 0.6), box(2.2, -4.1, 1.1, 0.4), box(-5.6, 1.2, 0.5, 0.9), *extra]
+    return np.array([wall for one_box in boxes for wall in one_box], dtype=float)
 
 
 def ranges_at(walls, pose, count=360, noise=0.01, rng=None, farthest=12.0):
-    """What a laser at a pose measures: ranges and angles, of shape (count,); infinite where there is nothing."""
+    """Return the ranges and angles of a laser at a pose, shape (count,); infinite without a wall in range."""
     angles = np.linspace(-pi, pi, count, endpoint=False)
     x, y = np.cos(angles + pose[2])[:, None], np.sin(angles + pose[2])[:, None]
     start, along = walls[:, 0] - pose[:2], walls[:, 1] - walls[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
-        turned = x * along[:, 1] - y * along[:, 0]
-        distance = (start[:, 0] * along[:, 1] - start[:, 1] * along[:, 0]) / turned
-        part = (start[:, 0] * y - start[:, 1] * x) / turned
-    ranges = np.where((distance > 0) & (part >= 0) & (part <= 1), distance, np.inf).min(axis=1)
+        cross_product = x * along[:, 1] - y * along[:, 0]
+        distance = (start[:, 0] * along[:, 1] - start[:, 1] * along[:, 0]) / cross_product
+        share = (start[:, 0] * y - start[:, 1] * x) / cross_product
+    ranges = np.where((distance > 0) & (share >= 0) & (share <= 1), distance, np.inf).min(axis=1)
     if rng is not None:
         ranges = ranges + rng.normal(0, noise, count)
     return np.where(ranges < farthest, ranges, np.inf), angles
 
 
 def scan_at(walls, pose, stamp_ns=0, rng=None, count=360, farthest=12.0):
-    """A scan from a pose of the robot."""
+    """Return the scan at a pose of the robot."""
     ranges, angles = ranges_at(walls, pose, count, rng=rng, farthest=farthest)
     return planar_scan(ranges, angles, (0.05, farthest), (0.0, 20.0), AHEAD, stamp_ns)
 
 
 def along(corners, step=0.1, turn=0.1):
-    """Poses along a path through corners, of shape (n, 3): straight ahead, and turning on the spot."""
+    """Return poses along a path through corners, shape (n, 3): straight lines, and turns in place."""
     poses = []
     heading = None
     for (x, y), (next_x, next_y) in pairwise(corners):
         length, towards = hypot(next_x - x, next_y - y), atan2(next_y - y, next_x - x)
         if heading is not None:
             difference = (towards - heading + pi) % (2 * pi) - pi
-            parts = np.linspace(0, 1, max(2, round(abs(difference) / turn)), endpoint=False)[1:]
-            poses += [(x, y, heading + part * difference) for part in parts]
+            shares = np.linspace(0, 1, max(2, round(abs(difference) / turn)), endpoint=False)[1:]
+            poses += [(x, y, heading + share * difference) for share in shares]
         heading = towards
-        parts = np.linspace(0, 1, max(2, round(length / step)), endpoint=False)
-        poses += [(x + part * (next_x - x), y + part * (next_y - y), heading) for part in parts]
+        shares = np.linspace(0, 1, max(2, round(length / step)), endpoint=False)
+        poses += [(x + share * (next_x - x), y + share * (next_y - y), heading) for share in shares]
     return np.array(poses)
 
 
 def drifting(poses, scale=1.02, yaw_per_meter=0.03, noise=0.0, rng=None):
-    """What odometry says of poses: too long a way, and a turn with it; noise is a part of each step."""
+    """Return the poses of drifting odometry: distances are scaled, turns have errors; noise is relative to the step."""
     result = [poses[0]]
-    for before, after in pairwise(poses):
-        step = relative_pose(before, after)
+    for old, new in pairwise(poses):
+        step = relative_pose(old, new)
         length = hypot(step[0], step[1])
-        wrong = np.array((scale * step[0], scale * step[1], step[2] + yaw_per_meter * length))
+        drifted_step = np.array((scale * step[0], scale * step[1], step[2] + yaw_per_meter * length))
         if rng is not None:
-            wrong += rng.normal(0, noise, 3) * (length + abs(step[2]))
-        result.append(compose(result[-1], wrong))
+            drifted_step += rng.normal(0, noise, 3) * (length + abs(step[2]))
+        result.append(compose(result[-1], drifted_step))
     return np.array(result)

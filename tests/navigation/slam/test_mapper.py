@@ -1,4 +1,4 @@
-"""Mapping simulated flats with odometry that drifts."""
+"""Mapping of simulated flats with drifting odometry."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from linkwright.navigation.slam.steps import run_to_end
 from tests.navigation.slam.scenes import along, box, drifting, house, scan_at
 
 HALF_A_SECOND = 500_000_000
-AROUND = [(-4, -3), (4, -3), (4, 3), (-4, 3), (-4, -3), (1, -3)]
-AROUND_IT = along(AROUND, step=0.25, turn=0.25)
+CORRIDOR_CORNERS = [(-4, -3), (4, -3), (4, 3), (-4, 3), (-4, -3), (1, -3)]
+AROUND_IT = along(CORRIDOR_CORNERS, step=0.25, turn=0.25)
 
 
-def mapped(walls, path, odometry, settings=None, farthest=12.0, count=180):
-    """A mapper that was shown a path, what came of its scans, and where they were really taken."""
+def map_path(walls, path, odometry, settings=None, farthest=12.0, count=180):
+    """Map a path; return the mapper, the outcome of each scan, and the true poses of the scans."""
     mapper = Mapper(settings or MapperSettings(), OccupancyMap(0.05))
     rng = np.random.default_rng(9)
     outcomes, true_poses = [], []
@@ -34,7 +34,7 @@ def mapped(walls, path, odometry, settings=None, farthest=12.0, count=180):
     return mapper, outcomes, np.array(true_poses)
 
 
-def furthest(errors):
+def max_error(errors):
     return float(np.hypot(errors[:, 0], errors[:, 1]).max())
 
 
@@ -42,9 +42,9 @@ def furthest(errors):
 def test_apartment_is_mapped_despite_odometry_drift(yaw_per_meter):
     path = AROUND_IT
     odometry = drifting(path, 1.03, yaw_per_meter, 0.02, np.random.default_rng(1))
-    mapper, outcomes, true_poses = mapped(house(), path, odometry)
+    mapper, outcomes, true_poses = map_path(house(), path, odometry)
     errors = relative_pose(true_poses, mapper.graph.poses)
-    assert furthest(errors) < 0.02
+    assert max_error(errors) < 0.02
     assert np.abs(errors[:, 2]).max() < 0.004
     assert all(outcome.is_matched for outcome in outcomes[1:])
     assert outcomes[-1].pose == pytest.approx(mapper.graph.poses[-1])
@@ -54,13 +54,13 @@ def test_loop_is_closed_after_odometry_slip_in_corridor():
     walls = np.array([wall for rectangle in (box(0, 0, 18, 12), box(0, 0, 13, 7)) for wall in rectangle], dtype=float)
     path = along([(-7, -4.8), (7.6, -4.8), (7.7, 4.8), (-7.7, 4.8), (-7.7, -4.8), (-4, -4.8)], step=0.2, turn=0.2)
     odometry = [path[0]]
-    for before, after in pairwise(path):
-        step = relative_pose(before, after)
-        step[0] *= 1.1 if before[1] > 4.7 and abs(step[2]) < 0.01 else 1.0  # along the second long side
+    for old, new in pairwise(path):
+        step = relative_pose(old, new)
+        step[0] *= 1.1 if old[1] > 4.7 and abs(step[2]) < 0.01 else 1.0  # along the second long side
         odometry.append(compose(odometry[-1], step))
     odometry = np.array(odometry)
-    _, without, _ = mapped(walls, path, odometry, MapperSettings(do_loop_closing=False), farthest=4.0)
-    mapper, outcomes, true_poses = mapped(
+    _, without_closing, _ = map_path(walls, path, odometry, MapperSettings(do_loop_closing=False), farthest=4.0)
+    mapper, outcomes, true_poses = map_path(
         walls, path, odometry, MapperSettings(loop_match_minimum_chain_size=5), farthest=4.0
     )
     assert sum(outcome.loop_count for outcome in outcomes) >= 1
@@ -69,17 +69,17 @@ def test_loop_is_closed_after_odometry_slip_in_corridor():
     true = relative_pose(true_poses[first], true_poses[-1])
     result = relative_pose(mapper.graph.poses[first], mapper.graph.poses[-1])
     assert result == pytest.approx(true, abs=0.06)
-    assert not any(outcome.loop_count for outcome in without)
-    assert furthest((without[-1].pose - true_poses[-1])[None]) > 0.8
+    assert not any(outcome.loop_count for outcome in without_closing)
+    assert max_error((without_closing[-1].pose - true_poses[-1])[None]) > 0.8
 
 
 def test_scans_are_processed_after_travel_or_rotation():
     mapper = Mapper(MapperSettings(), OccupancyMap(0.05))
-    here = np.zeros(3)
-    assert mapper.should_process(here, 0)
-    run_to_end(mapper.process(scan_at(house(), np.array([-4.0, -3.0, 0.0])), here))
+    pose = np.zeros(3)
+    assert mapper.should_process(pose, 0)
+    run_to_end(mapper.process(scan_at(house(), np.array([-4.0, -3.0, 0.0])), pose))
     second = 1_000_000_000
-    assert not mapper.should_process(here, 10 * second)
+    assert not mapper.should_process(pose, 10 * second)
     assert not mapper.should_process(np.array([0.3, 0.0, 0.0]), second)
     assert mapper.should_process(np.array([0.5, 0.0, 0.0]), second)
     assert not mapper.should_process(np.array([0.5, 0.0, 0.0]), second // 10)
@@ -101,12 +101,12 @@ def test_empty_world_follows_odometry_and_has_no_map():
 def test_poses_follow_odometry_without_scan_matching():
     path = along([(-4, -3), (4, -3), (4, 3)])
     odometry = drifting(path, 1.05, 0.02)
-    mapper, _, _ = mapped(house(), path, odometry, MapperSettings(use_scan_matching=False))
+    mapper, _, _ = map_path(house(), path, odometry, MapperSettings(use_scan_matching=False))
     assert mapper.graph.poses[-1] == pytest.approx(mapper.odometry[-1])
 
 
 def test_robot_is_localized_in_fixed_map():
-    mapper, _, _ = mapped(house(), AROUND_IT, AROUND_IT)
+    mapper, _, _ = map_path(house(), AROUND_IT, AROUND_IT)
     count, walls = len(mapper.scans), house()
     mapper.begin_session(np.array([3.2, -2.2, 1.3]))
     path = along([(4, -3), (4, 3), (-4, 3)])
@@ -122,7 +122,7 @@ def test_robot_is_localized_in_fixed_map():
 
 def test_second_session_continues_map():
     walls = house()
-    mapper, _, _ = mapped(walls, along(AROUND[:3]), along(AROUND[:3]))
+    mapper, _, _ = map_path(walls, along(CORRIDOR_CORNERS[:3]), along(CORRIDOR_CORNERS[:3]))
     count = len(mapper.scans)
     mapper.begin_session(np.array([3.8, 2.2, 1.8]))
     path = along([(4, 2.5), (4, 3), (-4, 3), (-4, -3)])
@@ -133,4 +133,4 @@ def test_second_session_continues_map():
         if mapper.should_process(text, number * HALF_A_SECOND):
             run_to_end(mapper.process(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), text))
             true_poses.append(pose)
-    assert furthest(relative_pose(np.array(true_poses), mapper.graph.poses[count:])) < 0.03
+    assert max_error(relative_pose(np.array(true_poses), mapper.graph.poses[count:])) < 0.03

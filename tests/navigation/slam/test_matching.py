@@ -1,4 +1,4 @@
-"""Matching scans of known places."""
+"""Scan matching at known poses."""
 
 from __future__ import annotations
 
@@ -64,15 +64,15 @@ def test_branch_and_bound_matches_exhaustive_search(reference):
     step = min(search.angle_resolution, 1.5 * 0.05 / np.quantile(np.hypot(*scan.points.T), 0.8))
     count = int(np.ceil(search.angle_offset / step - 1e-9))
     best = 0.0
-    for turn, row, column in product(range(-count, count + 1), range(-6, 7), range(-6, 7)):
-        yaw = guess[2] + turn * step
+    for angle_index, row, column in product(range(-count, count + 1), range(-6, 7), range(-6, 7)):
+        yaw = guess[2] + angle_index * step
         x = np.cos(yaw) * scan.points[:, 0] - np.sin(yaw) * scan.points[:, 1] + guess[0] - likelihood.corner[0]
         y = np.sin(yaw) * scan.points[:, 0] + np.cos(yaw) * scan.points[:, 1] + guess[1] - likelihood.corner[1]
         cells = np.floor(np.stack((y, x)) / search.cell).astype(int) + np.array([[row], [column]])
-        inside = (cells >= 0).all(axis=0) & (cells[0] < grid.shape[0]) & (cells[1] < grid.shape[1])
-        seen = np.where(inside, grid[np.where(inside, cells[0], 0), np.where(inside, cells[1], 0)], 0).mean()
+        is_inside = (cells >= 0).all(axis=0) & (cells[0] < grid.shape[0]) & (cells[1] < grid.shape[1])
+        score = np.where(is_inside, grid[np.where(is_inside, cells[0], 0), np.where(is_inside, cells[1], 0)], 0).mean()
         distance = max(1 - 0.2 * (row**2 + column**2) * 0.05**2 / 0.5, 0.5)
-        best = max(best, seen * distance * max(1 - 0.2 * (turn * step) ** 2, 0.9))
+        best = max(best, score * distance * max(1 - 0.2 * (angle_index * step) ** 2, 0.9))
     assert response == pytest.approx(best, abs=1e-6)
     assert np.abs(relative_pose(np.array([-2.0, -3.1, 0.2]), pose))[:2].max() < 0.05
 
@@ -90,17 +90,17 @@ def test_match_in_corridor_keeps_odometry_along_it():
 
 
 def test_empty_scan_is_not_matched(reference):
-    nothing = PlanarScan(np.zeros((3, 2)), np.zeros((0, 2)), np.zeros(2), 0)
-    assert run_to_end(match_scan(reference, nothing, np.zeros(3), Search())) is None
-    empty = Reference([nothing], np.zeros((1, 3)))
+    empty_scan = PlanarScan(np.zeros((3, 2)), np.zeros((0, 2)), np.zeros(2), 0)
+    assert run_to_end(match_scan(reference, empty_scan, np.zeros(3), Search())) is None
+    empty = Reference([empty_scan], np.zeros((1, 3)))
     assert run_to_end(match_scan(empty, scan_at(WALLS, np.array([-4.0, -3.0, 0.0])), np.zeros(3), Search())) is None
 
 
 def test_other_side_of_thin_wall_does_not_shift_match():
-    thin, rest = box(0, 1.05, 6, 0.1), box(0, 1, 8, 7)
-    walls = np.array([*thin, *rest], dtype=float)
-    seen = np.array([[-0.5, 2.0, 0.0], [0.5, 2.0, 0.0]])  # from above the wall
-    reference = Reference([scan_at(walls, pose) for pose in seen], seen)
+    thin_wall, room = box(0, 1.05, 6, 0.1), box(0, 1, 8, 7)
+    walls = np.array([*thin_wall, *room], dtype=float)
+    poses = np.array([[-0.5, 2.0, 0.0], [0.5, 2.0, 0.0]])  # from above the wall
+    reference = Reference([scan_at(walls, pose) for pose in poses], poses)
     scan = scan_at(walls, np.array([0.0, 0.0, 0.0]))  # from below it
     match = run_to_end(match_scan(reference, scan, np.zeros(3), Search(dimension=0.2)))
     assert match.pose == pytest.approx([0, 0, 0], abs=0.01)
@@ -109,16 +109,16 @@ def test_other_side_of_thin_wall_does_not_shift_match():
 def test_rotated_scan_is_found_with_larger_angle_search(reference):
     search = Search(dimension=0.1, angle_offset=0.01, smear_deviation=0.02)
     true = np.array([-1.8, -2.9, 0.0])
-    far = PlanarScan(
+    rotated_scan = PlanarScan(
         compose(np.array([100.0, 0, 0]), np.zeros(3))[None, :2].repeat(20, 0), np.zeros((0, 2)), np.zeros(2), 0
     )
-    assert run_to_end(match_scan(reference, far, true, search, expand=True)).response == 0
+    assert run_to_end(match_scan(reference, rotated_scan, true, search, expand=True)).response == 0
     assert run_to_end(match_scan(reference, scan_at(WALLS, true), true, search, expand=True)).response > 0.5
 
 
 def test_contradiction_share_separates_scans_of_different_rooms():
-    here, there = np.array([-4.0, -3.0, 0.3]), np.array([-3.2, -2.8, 1.0])
-    first, second = scan_at(WALLS, here), scan_at(WALLS, there)
-    assert contradiction_share(first, here, second, there) < 0.05
-    other = scan_at(WALLS, np.array([4.5, 0.0, 0.0]))
-    assert contradiction_share(first, here, other, there) > 0.2
+    pose, near_pose = np.array([-4.0, -3.0, 0.3]), np.array([-3.2, -2.8, 1.0])
+    first, second = scan_at(WALLS, pose), scan_at(WALLS, near_pose)
+    assert contradiction_share(first, pose, second, near_pose) < 0.05
+    other_scan = scan_at(WALLS, np.array([4.5, 0.0, 0.0]))
+    assert contradiction_share(first, pose, other_scan, near_pose) > 0.2

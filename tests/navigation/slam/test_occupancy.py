@@ -46,22 +46,22 @@ def test_truncated_ray_frees_cells_and_marks_no_end():
 
 def test_redrawn_scan_leaves_no_trace_at_old_pose():
     rng = np.random.default_rng(0)
-    walls, moved = house(), OccupancyMap(0.05)
+    walls, redrawn_map = house(), OccupancyMap(0.05)
     poses = np.array([[-4.0, -3.0, 0.1], [4.0, -3.0, 1.0], [4.0, 3.0, 2.0]])
     scans = [scan_at(walls, pose, rng=rng) for pose in poses]
     for number, scan in enumerate(scans):
-        moved.draw(number, scan, poses[number] + (0.4, -0.3, 0.2))
+        redrawn_map.draw(number, scan, poses[number] + (0.4, -0.3, 0.2))
     for number in (1, 0, 2):
-        moved.draw(number, scans[number], poses[number])
+        redrawn_map.draw(number, scans[number], poses[number])
     still = OccupancyMap(0.05)
     for number, scan in enumerate(scans):
         still.draw(number, scan, poses[number])
-    assert (moved.grid().cells == still.grid().cells).all()
-    assert (moved.grid().x, moved.grid().y) == (still.grid().x, still.grid().y)
+    assert (redrawn_map.grid().cells == still.grid().cells).all()
+    assert (redrawn_map.grid().x, redrawn_map.grid().y) == (still.grid().x, still.grid().y)
     for number in range(3):
-        moved.erase(number)
-    assert moved.grid() is None
-    assert moved.drawn_pose(0) is None
+        redrawn_map.erase(number)
+    assert redrawn_map.grid() is None
+    assert redrawn_map.drawn_pose(0) is None
 
 
 def test_map_matches_apartment():
@@ -71,12 +71,12 @@ def test_map_matches_apartment():
         pose = np.array([x, y, 0.3 * number])
         occupancy.draw(number, scan_at(walls, pose, count=720), pose)
     grid = occupancy.grid()
-    occupied = grid.centers_of(np.argwhere(grid.cells == OCCUPIED))
+    occupied_centers = grid.centers_of(np.argwhere(grid.cells == OCCUPIED))
     start, along = walls[:, 0], walls[:, 1] - walls[:, 0]
-    away = occupied[:, None] - start
-    part = np.clip((away * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
-    distances = np.linalg.norm(away - part[..., None] * along, axis=2).min(axis=1)
-    assert len(occupied) > 500
+    offsets = occupied_centers[:, None] - start
+    share = np.clip((offsets * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
+    distances = np.linalg.norm(offsets - share[..., None] * along, axis=2).min(axis=1)
+    assert len(occupied_centers) > 500
     assert distances.max() < 0.05 * 0.7072  # half the diagonal of a cell
     free = grid.cells == FREE
     assert free.sum() * 0.05**2 == pytest.approx(12 * 9 - 5 * 3.4, rel=0.1)

@@ -1,4 +1,4 @@
-"""Graphs of poses whose best poses are known."""
+"""Pose graphs with known solutions."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.navigation.slam.steps import run_to_end
 
 
 def square(noise=0.0, seed=0, side=10):
-    """Poses around a square, and a graph whose chain of edges drifts away from it."""
+    """Return the true poses around a square, and a graph whose chain of edges drifts."""
     rng = np.random.default_rng(seed)
     steps = [(1.0, 0.0, 0.0)] * side + [(0.0, 0.0, np.pi / 2)]
     true = [np.zeros(3)]
@@ -22,18 +22,18 @@ def square(noise=0.0, seed=0, side=10):
         true.append(compose(true[-1], np.array(step)))
     graph = PoseGraph()
     graph.add_node(true[0])
-    for number, (before, after) in enumerate(pairwise(true)):
-        measured = relative_pose(before, after) + rng.normal(0, noise, 3)
-        graph.add_node(compose(graph.poses[number], measured))
-        graph.add_edge(number, number + 1, measured, np.diag([1e2, 1e2, 1e3]))
+    for number, (old, new) in enumerate(pairwise(true)):
+        measurement = relative_pose(old, new) + rng.normal(0, noise, 3)
+        graph.add_node(compose(graph.poses[number], measurement))
+        graph.add_edge(number, number + 1, measurement, np.diag([1e2, 1e2, 1e3]))
     return np.array(true), graph
 
 
 def weighted_residuals(graph, poses):
     """The deviation of each edge, in standard deviations."""
-    left = relative_pose(np.array(graph.measured), relative_pose(poses[graph.first], poses[graph.second]))
-    left[:, 2] = wrap_angles(left[:, 2])
-    return left * np.sqrt([np.diag(matrix) for matrix in graph.information])
+    residual = relative_pose(np.array(graph.measured), relative_pose(poses[graph.first], poses[graph.second]))
+    residual[:, 2] = wrap_angles(residual[:, 2])
+    return residual * np.sqrt([np.diag(matrix) for matrix in graph.information])
 
 
 def errors(graph):
@@ -42,14 +42,14 @@ def errors(graph):
 
 def test_chain_without_loop_is_unchanged():
     _, graph = square(noise=0.02)
-    before = graph.poses.copy()
+    poses_before = graph.poses.copy()
     run_to_end(graph.solve())
-    assert graph.poses == pytest.approx(before, abs=1e-6)
-    assert errors(graph) == pytest.approx(np.zeros(len(before) - 1), abs=1e-6)
+    assert graph.poses == pytest.approx(poses_before, abs=1e-6)
+    assert errors(graph) == pytest.approx(np.zeros(len(poses_before) - 1), abs=1e-6)
 
 
 def test_loop_error_is_distributed_by_information():
-    """Three steps of 1 m with information 1, 2 and 4, and a measurement of 3.7 m: each gives as its variance says."""
+    """Three steps of 1 m with information 1, 2 and 4, and a measured total of 3.7 m: each changes by its variance."""
     graph = PoseGraph()
     graph.add_node(np.zeros(3))
     for number, information in enumerate((1.0, 2.0, 4.0)):
@@ -76,27 +76,27 @@ def test_closed_loop_matches_batch_least_squares():
 
     batch = load_scipy("optimize").least_squares(residuals, start[1:].ravel(), xtol=1e-14, ftol=1e-14, gtol=1e-14)
     assert (errors(graph).sum()) == pytest.approx(2 * batch.cost, rel=1e-6)
-    away = relative_pose(batch.x.reshape(-1, 3), graph.poses[1:])
-    assert away == pytest.approx(np.zeros(away.shape), abs=1e-4)
+    deviation = relative_pose(batch.x.reshape(-1, 3), graph.poses[1:])
+    assert deviation == pytest.approx(np.zeros(deviation.shape), abs=1e-4)
 
 
 def test_loop_closure_corrects_drifting_square():
     true, graph = square(noise=0.01, seed=2)
     last = len(true) - 1
-    before = np.hypot(*(graph.poses - true)[:, :2].T).max()
+    error_before = np.hypot(*(graph.poses - true)[:, :2].T).max()
     graph.add_edge(0, last, np.zeros(3), np.eye(3) * 1e6)
     run_to_end(graph.solve())
-    after = np.hypot(*(graph.poses - true)[:, :2].T).max()
+    error_after = np.hypot(*(graph.poses - true)[:, :2].T).max()
     assert graph.poses[last] == pytest.approx(true[0], abs=1e-3)
-    assert after < before / 2
+    assert error_after < error_before / 2
 
 
 def test_wrong_edge_among_right_ones_is_rejected():
     true, graph = square(noise=0.005, seed=3)
     last = len(true) - 1
     for first, second in ((0, last), (1, last - 1), (3, last), (0, 41), (2, last)):
-        measured = relative_pose(true[first], true[second])
-        graph.add_edge(first, second, measured, np.eye(3) * 1e4, is_doubtful=True)
+        measurement = relative_pose(true[first], true[second])
+        graph.add_edge(first, second, measurement, np.eye(3) * 1e4, is_doubtful=True)
     graph.add_edge(5, 25, np.array([1.0, 1.0, 0.0]), np.eye(3) * 1e4, is_doubtful=True)
     run_to_end(graph.solve())
     assert np.hypot(*(graph.poses - true)[:, :2].T).max() < 0.2

@@ -1,4 +1,4 @@
-"""What a laser publishes, as points around the robot."""
+"""Laser scans as points around the robot."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ def test_range_below_minimum_is_ignored():
 
 def test_laser_may_be_mounted_backward_or_upside_down():
     ranges, angles = np.array([2.0]), np.array([0.5])
-    behind = (np.diag([-1.0, -1.0, 1.0]), np.array([-0.2, 0.0, 0.3]))
-    scan = planar_scan(ranges, angles, (0.1, 30.0), (0.0, 20.0), behind, 0)
+    backward = (np.diag([-1.0, -1.0, 1.0]), np.array([-0.2, 0.0, 0.3]))
+    scan = planar_scan(ranges, angles, (0.1, 30.0), (0.0, 20.0), backward, 0)
     assert scan.points[0] == pytest.approx([-0.2 - 2 * np.cos(0.5), -2 * np.sin(0.5)])
     assert scan.origin == pytest.approx([-0.2, 0.0])
-    hanging = (np.diag([1.0, -1.0, -1.0]), np.zeros(3))
-    scan = planar_scan(ranges, angles, (0.1, 30.0), (0.0, 20.0), hanging, 0)
+    upside_down = (np.diag([1.0, -1.0, -1.0]), np.zeros(3))
+    scan = planar_scan(ranges, angles, (0.1, 30.0), (0.0, 20.0), upside_down, 0)
     assert scan.points[0] == pytest.approx([2 * np.cos(0.5), -2 * np.sin(0.5)])

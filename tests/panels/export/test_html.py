@@ -139,7 +139,7 @@ def test_export_format_is_recognized_by_suffix(name, known):
 
 
 async def test_html_contains_markers():
-    """Markers and the like, as they are now."""
+    """Markers and similar displays in their current state."""
     config = RvizConfig.for_model("base")
     config.insert(config.new_display("rviz_default_plugins/Marker", "Marker"))
     async with open_world(config) as world:

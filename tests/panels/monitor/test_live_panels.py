@@ -63,7 +63,7 @@ async def samples(client: Client) -> dict[int, np.ndarray]:
 
 async def test_topic_list_follows_graph():
     async with opened() as (world, client):
-        await client.send("watch_topics", listed=True, measured=[], opened=[])
+        await client.send("watch_topics", wants_list=True, measured_topics=[], opened_topics=[])
         await client.until("topic_list")
         node = world.graph.create_node("talker")
         node.create_publisher(FLOAT, "/speed", 10)
@@ -79,7 +79,7 @@ async def test_topic_list_follows_graph():
 
 async def test_topic_list_is_sent_immediately():
     async with opened() as (_, client):
-        await client.send("watch_topics", listed=True, measured=[], opened=[])
+        await client.send("watch_topics", wants_list=True, measured_topics=[], opened_topics=[])
         listed = await client.until("topic_list")
         assert "/tf" in [topic["name"] for topic in listed["topics"]]
 
@@ -88,7 +88,7 @@ async def test_topic_is_subscribed_only_while_page_watches():
     async with opened() as (world, client):
         publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         assert subscriptions(world, "/speed") == 0
-        await client.send("watch_topics", listed=False, measured=["/speed"], opened=["/speed"])
+        await client.send("watch_topics", wants_list=False, measured_topics=["/speed"], opened_topics=["/speed"])
         await eventually(lambda: subscriptions(world, "/speed") == 1)
         talking = asyncio.create_task(talk(publisher, 0.02))
         message = await client.until("topic_message")
@@ -102,7 +102,7 @@ async def test_topic_is_subscribed_only_while_page_watches():
                 break
         assert traffic["rate"] <= 60
         talking.cancel()
-        await client.send("watch_topics", listed=False, measured=[], opened=[])
+        await client.send("watch_topics", wants_list=False, measured_topics=[], opened_topics=[])
         await eventually(lambda: subscriptions(world, "/speed") == 0)
 
 
@@ -112,11 +112,11 @@ async def test_closed_page_leaves_no_subscriptions():
         before = {name: subscriptions(world, name) for name in ("/rosout", "/parameter_events", "/speed")}
         async with page(world.viewer) as client:
             await client.opened()
-            await client.send("watch_topics", listed=True, measured=["/speed"], opened=["/speed"])
+            await client.send("watch_topics", wants_list=True, measured_topics=["/speed"], opened_topics=["/speed"])
             await client.send("watch_series", series=[{"id": 1, "topic": "/speed", "path": "data"}])
-            await client.send("ask_fields", topic="/speed")
+            await client.send("request_fields", topic="/speed")
             await client.send("watch_node_graph", watched=True)
-            await client.send("watch_parameters", listed=True, node="/talker")
+            await client.send("watch_parameters", wants_list=True, node="/talker")
             await client.send("watch_log", watched=True)
             target = {"topic": "/cmd_vel", "kind": "auto", "frame_id": ""}
             await client.send("aim_teleop", target=target)
@@ -136,11 +136,11 @@ async def test_two_pages_share_subscription():
     async with opened() as (world, first), page(world.viewer) as second:
         world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10).publish(FLOAT())
         for client in (first, second):
-            await client.send("watch_topics", listed=False, measured=["/speed"], opened=[])
+            await client.send("watch_topics", wants_list=False, measured_topics=["/speed"], opened_topics=[])
         await eventually(lambda: subscriptions(world, "/speed") == 1)
-        await first.send("watch_topics", listed=False, measured=[], opened=[])
-        await second.send("watch_topics", listed=True, measured=["/speed"], opened=[])
-        await first.send("watch_topics", listed=True, measured=[], opened=[])
+        await first.send("watch_topics", wants_list=False, measured_topics=[], opened_topics=[])
+        await second.send("watch_topics", wants_list=True, measured_topics=["/speed"], opened_topics=[])
+        await first.send("watch_topics", wants_list=True, measured_topics=[], opened_topics=[])
         for client in (first, second):
             await client.until("topic_list")  # what was asked for before is done
         assert subscriptions(world, "/speed") == 1
@@ -150,7 +150,7 @@ async def test_latched_message_is_shown():
     async with opened() as (world, client):
         lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         world.graph.create_node("talker").create_publisher(FLOAT, "/map_scale", lasting).publish(FLOAT(data=0.05))
-        await client.send("watch_topics", listed=False, measured=[], opened=["/map_scale"])
+        await client.send("watch_topics", wants_list=False, measured_topics=[], opened_topics=["/map_scale"])
         message = await client.until("topic_message")
         assert message["fields"][0]["value"] == "0.05"
 
@@ -159,7 +159,7 @@ async def test_best_effort_publisher_is_received():
     async with opened() as (world, client):
         node = world.graph.create_node("talker")
         node.create_publisher(FLOAT, "/speed", 10)
-        await client.send("watch_topics", listed=False, measured=[], opened=["/speed"])
+        await client.send("watch_topics", wants_list=False, measured_topics=[], opened_topics=["/speed"])
         await eventually(lambda: subscriptions(world, "/speed") == 1)
         weak = node.create_publisher(FLOAT, "/speed", QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
         await eventually(lambda: weak.get_subscription_count() == 1)
@@ -173,11 +173,11 @@ async def test_unknown_and_mixed_topic_types_are_reported():
         node.create_publisher(FLOAT, "/mixed", 10)
         node.create_publisher(TWIST, "/mixed", 10)
         node.create_publisher("no_such_msgs/msg/Thing", "/strange", 10)
-        await client.send("watch_topics", listed=False, measured=["/mixed", "/strange"], opened=[])
+        await client.send("watch_topics", wants_list=False, measured_topics=["/mixed", "/strange"], opened_topics=[])
         mixed, strange = (await client.until("topic_figures"))["traffic"]
         assert "more than one type: geometry_msgs/msg/Twist, std_msgs/msg/Float64" in mixed["error"]
         assert "no_such_msgs" in strange["error"]
-        await client.send("ask_fields", topic="/strange")
+        await client.send("request_fields", topic="/strange")
         assert "no_such_msgs" in (await client.until("topic_fields"))["error"]
 
 
@@ -246,7 +246,7 @@ async def test_topic_appearing_later_is_plotted():
 async def test_topic_fields_are_sent_again_with_element_names():
     async with opened() as (world, client):
         publisher = world.graph.create_node("talker").create_publisher(JOINT_STATE, "/joint_states", 10)
-        await client.send("ask_fields", topic="/joint_states")
+        await client.send("request_fields", topic="/joint_states")
         first = await client.until("topic_fields")
         assert first["kind"] == "sensor_msgs/msg/JointState"
         assert {"path": "position[0]", "kind": "double"} in first["fields"]
@@ -293,7 +293,7 @@ def tuned(world: World):
 async def test_parameters_are_shown_with_descriptors():
     async with opened() as (world, client):
         tuned(world)
-        await client.send("watch_parameters", listed=True, node="/tuned")
+        await client.send("watch_parameters", wants_list=True, node="/tuned")
         assert "/tuned" in (await client.until("parameter_nodes"))["nodes"]
         shown = await client.until("node_parameters")
         rows = {row["name"]: row for row in shown["parameters"]}
@@ -318,14 +318,14 @@ async def test_parameters_are_shown_with_descriptors():
 async def test_invalid_node_name_has_no_parameters():
     async with opened() as (world, client):
         tuned(world)
-        await client.send("watch_parameters", listed=True, node="no name")
+        await client.send("watch_parameters", wants_list=True, node="no name")
         answer = await client.until("node_parameters", node="no name")
         assert answer["parameters"] == []
         assert "is not a valid service name" in answer["error"]
         await client.socket.send_json(
             {"type": "set_parameter", "node": "no name", "name": "a", "kind": "bool", "values": ["true"]}
         )
-        await client.send("watch_parameters", listed=False, node="/tuned")
+        await client.send("watch_parameters", wants_list=False, node="/tuned")
         assert (await client.until("node_parameters", node="/tuned"))["error"] is None
         assert "failed" not in world.logged()
 
@@ -333,7 +333,7 @@ async def test_invalid_node_name_has_no_parameters():
 async def test_parameters_are_set_or_rejected_with_reason():
     async with opened() as (world, client):
         node = tuned(world)
-        await client.send("watch_parameters", listed=False, node="/tuned")
+        await client.send("watch_parameters", wants_list=False, node="/tuned")
         await client.until("node_parameters")
 
         async def put(name, kind, *values):
@@ -357,7 +357,7 @@ async def test_parameters_are_set_or_rejected_with_reason():
 async def test_parameter_changes_by_other_nodes_are_shown():
     async with opened() as (world, client):
         node = tuned(world)
-        await client.send("watch_parameters", listed=False, node="/tuned")
+        await client.send("watch_parameters", wants_list=False, node="/tuned")
         await client.until("node_parameters")
         node.set_parameters([Parameter("speed.most", value=2.0)])
         changed = await client.until("node_parameters")
@@ -373,7 +373,7 @@ async def test_parameter_changes_by_other_nodes_are_shown():
 async def test_parameters_are_dumped_as_yaml():
     async with opened() as (world, client):
         tuned(world)
-        await client.send("watch_parameters", listed=False, node="/tuned")
+        await client.send("watch_parameters", wants_list=False, node="/tuned")
         await client.send("dump_parameters", node="/tuned")
         dump = await client.until("parameter_dump")
         assert dump["file"] == "tuned.yaml"

@@ -73,7 +73,7 @@ async def enabled(folder: Path, command: tuple[str, ...] = SHELL) -> AsyncIterat
 
 async def open_terminal(client: Any) -> Reader:
     await client.send("open_terminal", **SIZE)
-    await client.until("terminals", why_not="")
+    await client.until("terminals", refusal_reason="")
     return Reader(client)
 
 
@@ -103,10 +103,10 @@ async def test_requests_without_permission_are_rejected(tmp_path: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         await client.send("open_terminal", **SIZE)
         refused = await client.until("terminals")
-        assert "--terminal" in refused["why_not"]
+        assert "--terminal" in refused["refusal_reason"]
         assert (refused["folder"], refused["terminals"]) == ("", [])
         await client.send("write_terminal", terminal=1, text="touch /tmp/x\r", is_binary=False)
-        assert "--terminal" in (await client.until("terminals"))["why_not"]
+        assert "--terminal" in (await client.until("terminals"))["refusal_reason"]
         assert world.viewer.add_feature(TerminalFeature)._terminals == {}
 
 
@@ -121,7 +121,7 @@ async def test_pages_on_other_machines_are_rejected(tmp_path: Path, monkeypatch:
     async with enabled(tmp_path) as world, page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
-        assert "on the machine of the program" in (await client.until("terminals"))["why_not"]
+        assert "on the machine of the program" in (await client.until("terminals"))["refusal_reason"]
         assert world.viewer.add_feature(TerminalFeature)._terminals == {}
 
 
@@ -130,9 +130,9 @@ async def test_pages_of_other_users_are_rejected(tmp_path: Path, monkeypatch: py
     async with enabled(tmp_path) as world, page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
-        assert "the user who started the program" in (await client.until("terminals"))["why_not"]
+        assert "the user who started the program" in (await client.until("terminals"))["refusal_reason"]
         await client.send("write_terminal", terminal=1, text="touch x\r", is_binary=False)
-        assert "the user who started the program" in (await client.until("terminals"))["why_not"]
+        assert "the user who started the program" in (await client.until("terminals"))["refusal_reason"]
         assert world.viewer.add_feature(TerminalFeature)._terminals == {}
 
 
@@ -275,7 +275,7 @@ async def test_number_of_terminals_is_limited(tmp_path: Path) -> None:
         for _ in range(MAX_TERMINALS + 1):
             await client.send("open_terminal", **SIZE)
         refused = await client.until(
-            "terminals", why_not=f"there are already {MAX_TERMINALS} terminals: close one first"
+            "terminals", refusal_reason=f"there are already {MAX_TERMINALS} terminals: close one first"
         )
         assert len(refused["terminals"]) == MAX_TERMINALS
 
@@ -284,7 +284,7 @@ async def test_shell_start_failure_is_reported(tmp_path: Path) -> None:
     async with enabled(tmp_path / "gone") as world, page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
-        assert "No such file" in (await client.until("terminals"))["why_not"]
+        assert "No such file" in (await client.until("terminals"))["refusal_reason"]
 
 
 async def test_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -295,7 +295,7 @@ async def test_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.Monk
     async with enabled(tmp_path) as world, page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
-        assert "[learn]" in (await client.until("terminals"))["why_not"]
+        assert "[learn]" in (await client.until("terminals"))["refusal_reason"]
 
 
 async def test_unread_input_is_limited(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ def start(test, kind, **parameters):
 
 
 async def measure(test, rpy=(0.0, 0.0, 0.0), rates=(0.0, 0.0, 0.0), magnetic=False, acceleration=None):
-    """What an IMU turned in some way measures, each hundredth of a second."""
+    """Publish a rotated IMU's measurements every hundredth of a second."""
     back = quaternion_inverse(quaternion_from_rpy(rpy))
     if magnetic:
         field = get_message("sensor_msgs/msg/MagneticField")()

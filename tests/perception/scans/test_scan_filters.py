@@ -43,7 +43,7 @@ def scan(*ranges, intensities=(), angle_min=0.0, increment=0.1, time_increment=0
     )
 
 
-def nowhere(target, source, time_ns):
+def no_transform(target, source, time_ns):
     return None
 
 
@@ -51,44 +51,46 @@ def ranges(expected):
     return pytest.approx(np.array(expected, np.float32), nan_ok=True)
 
 
-def applied(scan_filter, given, lookup=nowhere):
-    return list(scan_filter.apply(given, lookup).ranges)
+def filtered_ranges(scan_filter, message, lookup=no_transform):
+    return list(scan_filter.apply(message, lookup).ranges)
 
 
 def test_range_filter_replaces_ranges_beyond_thresholds():
-    assert applied(RangeFilter(1.0, 5.0), scan(0.5, 1.0, 3.0, 5.0, inf, nan)) == ranges([nan, nan, 3.0, nan, nan, nan])
+    assert filtered_ranges(RangeFilter(1.0, 5.0), scan(0.5, 1.0, 3.0, 5.0, inf, nan)) == ranges(
+        [nan, nan, 3.0, nan, nan, nan]
+    )
     replacing = RangeFilter(use_message_range_limits=True, lower_replacement_value=-inf, upper_replacement_value=inf)
-    assert applied(replacing, scan(0.05, 3.0, 11.0)) == ranges([-inf, 3.0, inf])
+    assert filtered_ranges(replacing, scan(0.05, 3.0, 11.0)) == ranges([-inf, 3.0, inf])
 
 
 def test_intensity_filter_removes_ranges_outside_limits():
-    given = scan(1.0, 2.0, 3.0, intensities=(5.0, 50.0, 500.0))
-    assert applied(IntensityFilter(10.0, 100.0), given) == ranges([nan, 2.0, nan])
-    given = scan(1.0, 2.0, 3.0, intensities=(5.0, 50.0, 500.0))
-    assert applied(IntensityFilter(10.0, 100.0, invert=True), given) == ranges([1.0, nan, 3.0])
-    assert applied(IntensityFilter(10.0, 100.0), scan(1.0, 2.0)) == ranges([1.0, 2.0])
+    message = scan(1.0, 2.0, 3.0, intensities=(5.0, 50.0, 500.0))
+    assert filtered_ranges(IntensityFilter(10.0, 100.0), message) == ranges([nan, 2.0, nan])
+    message = scan(1.0, 2.0, 3.0, intensities=(5.0, 50.0, 500.0))
+    assert filtered_ranges(IntensityFilter(10.0, 100.0, invert=True), message) == ranges([1.0, nan, 3.0])
+    assert filtered_ranges(IntensityFilter(10.0, 100.0), scan(1.0, 2.0)) == ranges([1.0, 2.0])
 
 
 def test_interpolation_filter_fills_gaps_with_mean():
-    assert applied(InterpolationFilter(), scan(2.0, inf, nan, 4.0)) == ranges([2.0, 3.0, 3.0, 4.0])
-    assert applied(InterpolationFilter(), scan(inf, 4.01, 0.0)) == ranges([7.0, 4.01, 7.0])
+    assert filtered_ranges(InterpolationFilter(), scan(2.0, inf, nan, 4.0)) == ranges([2.0, 3.0, 3.0, 4.0])
+    assert filtered_ranges(InterpolationFilter(), scan(inf, 4.01, 0.0)) == ranges([7.0, 4.01, 7.0])
 
 
 def test_mask_filter_removes_rays_of_its_frame():
     scan_filter = MaskFilter({"laser": [0, 2, 99], "other": [1]})
-    assert applied(scan_filter, scan(1.0, 2.0, 3.0)) == ranges([nan, 2.0, nan])
+    assert filtered_ranges(scan_filter, scan(1.0, 2.0, 3.0)) == ranges([nan, 2.0, nan])
 
 
 def test_array_filter_applies_median_and_mean_of_last_scans():
     median = {"filter1": {"type": "filters/MultiChannelMedianFilterFloat", "params": {"number_of_observations": 3}}}
     mean = {"filter1": {"type": "filters/MultiChannelMeanFilterFloat", "params": {"number_of_observations": 2}}}
     scan_filter = ArrayFilter(median, mean)
-    scan_filter.apply(scan(1.0, 5.0, intensities=(1.0, 1.0)), nowhere)
-    scan_filter.apply(scan(9.0, 6.0, intensities=(2.0, 4.0)), nowhere)
-    last = scan_filter.apply(scan(2.0, 7.0, intensities=(4.0, 8.0)), nowhere)
+    scan_filter.apply(scan(1.0, 5.0, intensities=(1.0, 1.0)), no_transform)
+    scan_filter.apply(scan(9.0, 6.0, intensities=(2.0, 4.0)), no_transform)
+    last = scan_filter.apply(scan(2.0, 7.0, intensities=(4.0, 8.0)), no_transform)
     assert list(last.ranges) == ranges([2.0, 6.0])
     assert list(last.intensities) == ranges([3.0, 6.0])
-    assert list(scan_filter.apply(scan(8.0), nowhere).ranges) == ranges([8.0])
+    assert list(scan_filter.apply(scan(8.0), no_transform).ranges) == ranges([8.0])
     with pytest.raises(
         LinkwrightError, match="filter 'Magic' does not exist for arrays, or does not support 1 observations"
     ):
@@ -97,7 +99,7 @@ def test_array_filter_applies_median_and_mean_of_last_scans():
 
 def test_angular_bounds_filter_crops_scan():
     given = scan(0.0, 1.0, 2.0, 3.0, 4.0, intensities=range(5), time_increment=0.5)
-    result = AngularBoundsFilter(0.05, 0.35).apply(given, nowhere)
+    result = AngularBoundsFilter(0.05, 0.35).apply(given, no_transform)
     assert list(result.ranges) == ranges([1.0, 2.0, 3.0])
     assert list(result.intensities) == ranges([1.0, 2.0, 3.0])
     assert (result.angle_min, result.angle_max, result.stamp_ns) == (
@@ -105,12 +107,12 @@ def test_angular_bounds_filter_crops_scan():
         pytest.approx(0.3),
         5_500_000_000,
     )
-    assert AngularBoundsFilter(2.0, 3.0).apply(scan(1.0), nowhere) is None
+    assert AngularBoundsFilter(2.0, 3.0).apply(scan(1.0), no_transform) is None
 
 
 def test_angular_bounds_in_place_filter_removes_rays():
     given = scan(1.0, 2.0, 3.0, intensities=(7.0, 8.0, 9.0))
-    result = AngularBoundsInPlaceFilter(0.05, 0.15).apply(given, nowhere)
+    result = AngularBoundsInPlaceFilter(0.05, 0.15).apply(given, no_transform)
     assert list(result.ranges) == ranges([1.0, 11.0, 3.0])
     assert list(result.intensities) == ranges([7.0, 0.0, 9.0])
 
@@ -118,33 +120,35 @@ def test_angular_bounds_in_place_filter_removes_rays():
 def test_sector_filter_may_cross_pi():
     behind = SectorFilter(angle_min=2.5, angle_max=-2.5, range_min=0.2, range_max=2.0)
     given = scan(1.0, 1.0, 3.0, 1.0, angle_min=-3.0, increment=1.9)  # -3.0, -1.1, 0.8, 2.7
-    assert applied(behind, given) == ranges([11.0, 1.0, 3.0, 11.0])
+    assert filtered_ranges(behind, given) == ranges([11.0, 1.0, 3.0, 11.0])
     given = scan(1.0, 1.0, 3.0, 1.0, angle_min=-3.0, increment=1.9)
     behind.invert = True
-    assert applied(behind, given) == ranges([1.0, 11.0, 11.0, 1.0])
+    assert filtered_ranges(behind, given) == ranges([1.0, 11.0, 11.0, 1.0])
 
 
-def turned(target, source, time_ns):
-    """The laser looks to the left of the body, half a meter ahead of its middle."""
+def laser_turned_left(target, source, time_ns):
+    """Return the transform of a laser that looks left, half a meter in front of the body's center."""
     assert (target, source, time_ns) == ("base_link", "laser", 5_000_000_000)
     return (0.5, 0.0, 0.3, *quaternion_from_rpy((0.0, 0.0, pi / 2)))
 
 
 def test_box_filter_transforms_points_to_its_frame():
-    box = BoxFilter("base_link", min_x=0.0, max_x=1.0, min_y=0.0, max_y=2.0, min_z=0.0, max_z=1.0)
-    assert applied(box, scan(1.0, 3.0, nan, increment=0.0), turned) == ranges([nan, 3.0, nan])
-    box.invert = True
-    assert applied(box, scan(1.0, 3.0, inf, increment=0.0), turned) == ranges([1.0, nan, inf])
-    assert box.apply(scan(1.0), nowhere) is None
+    box_filter = BoxFilter("base_link", min_x=0.0, max_x=1.0, min_y=0.0, max_y=2.0, min_z=0.0, max_z=1.0)
+    assert filtered_ranges(box_filter, scan(1.0, 3.0, nan, increment=0.0), laser_turned_left) == ranges([nan, 3.0, nan])
+    box_filter.invert = True
+    assert filtered_ranges(box_filter, scan(1.0, 3.0, inf, increment=0.0), laser_turned_left) == ranges([1.0, nan, inf])
+    assert box_filter.apply(scan(1.0), no_transform) is None
 
 
 def test_footprint_and_polygon_filters_remove_inner_points():
-    assert applied(FootprintFilter(0.6), scan(0.5, 0.7, increment=0.0), turned) == ranges([nan, 0.7])
+    assert filtered_ranges(FootprintFilter(0.6), scan(0.5, 0.7, increment=0.0), laser_turned_left) == ranges([nan, 0.7])
     triangle = PolygonFilter("[[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]]")
-    assert applied(triangle, scan(0.5, 1.5, increment=0.0), turned) == ranges([nan, 1.5])
+    assert filtered_ranges(triangle, scan(0.5, 1.5, increment=0.0), laser_turned_left) == ranges([nan, 1.5])
     square = "[[0.4, 0.4], [0.4, -0.4], [-0.4, -0.4], [-0.4, 0.4]]"
-    assert applied(PolygonFilter(square), scan(0.3, increment=0.0), turned) == ranges([0.3])
-    assert applied(PolygonFilter(square, polygon_padding=0.2), scan(0.3, increment=0.0), turned) == ranges([nan])
+    assert filtered_ranges(PolygonFilter(square), scan(0.3, increment=0.0), laser_turned_left) == ranges([0.3])
+    assert filtered_ranges(
+        PolygonFilter(square, polygon_padding=0.2), scan(0.3, increment=0.0), laser_turned_left
+    ) == ranges([nan])
     with pytest.raises(LinkwrightError, match="must have three or more corners"):
         PolygonFilter("[[0.0, 0.0]]")
 
@@ -152,20 +156,24 @@ def test_footprint_and_polygon_filters_remove_inner_points():
 def test_shadows_filter_removes_points_between_edge_and_wall():
     scan_filter = ScanShadowsFilter(min_angle=10.0, max_angle=170.0, window=1, neighbors=1)
     near, wall = [1.0] * 5, [3.0] * 5
-    distances = applied(scan_filter, scan(*near, 2.0, *wall, increment=0.01))
+    distances = filtered_ranges(scan_filter, scan(*near, 2.0, *wall, increment=0.01))
     assert distances == ranges([1.0] * 5 + [nan, nan] + [3.0] * 4)
     flat = scan(*(1.0 / np.cos(np.arange(-5, 6) * 0.01)), angle_min=-0.05, increment=0.01)
-    assert not np.isnan(applied(scan_filter, flat)).any()
+    assert not np.isnan(filtered_ranges(scan_filter, flat)).any()
     starts = ScanShadowsFilter(10.0, 170.0, 1, 0, remove_shadow_start_point=True)
-    assert np.flatnonzero(np.isnan(applied(starts, scan(*near, 2.0, *wall, increment=0.01)))).tolist() == [4, 5, 6]
+    assert np.flatnonzero(np.isnan(filtered_ranges(starts, scan(*near, 2.0, *wall, increment=0.01)))).tolist() == [
+        4,
+        5,
+        6,
+    ]
     with pytest.raises(LinkwrightError, match=r"min_angle \(95\) must be 0 to 90 degrees, and max_angle \(170\)"):
         ScanShadowsFilter(95.0, 170.0, 1)
 
 
 def test_speckle_filter_removes_points_without_near_ranges():
     given = scan(1.0, 1.02, 1.5, 1.9, 1.05, 1.06, 5.0, 1.0)
-    assert applied(SpeckleFilter(), given) == ranges([1.0, 1.02, nan, nan, 1.05, 1.06, 5.0, nan])
-    assert SpeckleFilter().apply(scan(1.0, 1.0, 1.0), nowhere) is None
+    assert filtered_ranges(SpeckleFilter(), given) == ranges([1.0, 1.02, nan, nan, 1.05, 1.06, 5.0, nan])
+    assert SpeckleFilter().apply(scan(1.0, 1.0, 1.0), no_transform) is None
     with pytest.raises(LinkwrightError, match=r"filter_type \(3\) must be 0 or 1, and filter_window \(2\)"):
         SpeckleFilter(filter_type=3)
 
@@ -173,7 +181,7 @@ def test_speckle_filter_removes_points_without_near_ranges():
 def test_speckle_filter_by_radius_counts_near_points():
     scan_filter = SpeckleFilter(filter_type=1, max_range_difference=0.2, filter_window=2)
     given = scan(1.0, 1.0, 1.0, 1.9, 1.0, nan, nan, 1.5, nan, nan, increment=0.05)
-    distances = applied(scan_filter, given)
+    distances = filtered_ranges(scan_filter, given)
     assert np.isnan(distances[7])
     assert distances[1] == 1.0
 
@@ -181,7 +189,7 @@ def test_speckle_filter_by_radius_counts_near_points():
 @settings(max_examples=60)
 @given(st.lists(st.sampled_from([0.5, 1.0, 1.05, 1.5, 3.0, inf, nan]), min_size=5, max_size=12), st.integers(1, 3))
 def test_speckle_filter_matches_reference_loop(values, window):
-    distances = applied(SpeckleFilter(filter_window=window), scan(*values))
+    distances = filtered_ranges(SpeckleFilter(filter_window=window), scan(*values))
     mask = [value > 2.0 for value in values]
     for start in range(len(values) - window + 1):
         group = values[start : start + window]

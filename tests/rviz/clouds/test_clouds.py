@@ -34,7 +34,7 @@ RED, MAGENTA, GREEN, BLUE = (255, 0, 0, 255), (255, 0, 255, 255), (0, 255, 0, 25
 
 
 def cloud(array: np.ndarray, frame: str = "base"):
-    """A message with the fields of a structured array."""
+    """Return a message with the fields of a structured array."""
     message = PointCloud2()
     message.header.frame_id = frame
     message.width, message.height = array.size, 1

@@ -1,4 +1,4 @@
-"""What was not saved when the program ended."""
+"""Unsaved changes at the end of the program."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""PointCloud2, LaserScan, DepthCloud and the displays of single numbers, from the topic to what pages are sent."""
+"""PointCloud2, LaserScan, DepthCloud and the displays of single numbers, from topics to pages."""
 
 from __future__ import annotations
 
@@ -190,8 +190,8 @@ async def test_page_receives_fields_of_selected_point():
         publisher.publish(colored_cloud())
         await world.settle()
         identity = world.display("PointCloud2").id
-        await client.send("ask_point", display=identity, key="", index=7)
-        await client.send("ask_point", display=identity, key="", index=1)
+        await client.send("request_point", display=identity, key="", index=7)
+        await client.send("request_point", display=identity, key="", index=1)
         answer = await client.until("point_fields")
         assert (answer["index"], answer["fields"]) == (1, {"intensity": 1.0, "rgb": "#10203000"})
 

@@ -192,7 +192,7 @@ async def test_images_are_shown_without_waiting_if_detector_is_silent(monkeypatc
 
 
 async def threshold_status(world) -> tuple[str, str]:
-    """What the display says of its threshold, once it does."""
+    """Wait for the display's status of its threshold, and return it."""
     await eventually(lambda: "Threshold" in world.status("Detections"))
     return world.status("Detections")["Threshold"]
 

@@ -25,7 +25,7 @@ async def opened(world):
 
 
 async def rows_with(client, identity: str) -> dict[str, dict]:
-    """The rows of a display once there is one with this id: frames are heard of one after the other."""
+    """Return the rows of a display when it has one with this ID: frames are discovered one by one."""
     while True:
         rows = rows_by_id((await client.until("display_properties"))["properties"])
         if identity in rows:
@@ -42,7 +42,7 @@ def test_display_classes_are_found_by_unique_names():
 
 
 def test_data_displays_are_imported_lazily():
-    """The program answers a browser sooner without them."""
+    """Without these imports, the program answers a browser sooner."""
     code = "import sys, linkwright.viewer.viewer; print(*sys.modules)"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     rooms = ("clouds", "image_compression", "markers", "displays.base.topic_display")

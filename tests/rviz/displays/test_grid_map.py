@@ -27,7 +27,7 @@ def config(extra: str = "") -> RvizConfig:
 
 
 def grid(resolution: float = 1.0, **layers: list[list[float]]) -> Any:
-    """A map of layers; rows go along -x, columns along -y, as in grid_map."""
+    """Return a map of layers; rows go along -x, columns along -y, as in grid_map."""
     (rows, columns) = np.shape(next(iter(layers.values())))
     grid_map = GridMap(layers=list(layers))
     grid_map.header.frame_id = "base"
@@ -42,8 +42,8 @@ def grid(resolution: float = 1.0, **layers: list[list[float]]) -> Any:
 
 
 @asynccontextmanager
-async def shown(extra: str = ""):
-    """A display, and a function that publishes a map and gives the content sent."""
+async def open_display(extra: str = ""):
+    """Return a display, and a function that publishes a map and returns the sent content."""
     async with open_world(config(extra)) as world:
         world.move_arm()
         publisher = world.graph.create_node("mapper").create_publisher(GridMap, "/grid_map", 10)
@@ -59,7 +59,7 @@ async def shown(extra: str = ""):
 
 
 async def test_grid_map_properties_match_rviz():
-    async with shown() as (world, _):
+    async with open_display() as (world, _):
         rows = {row.name: row.value for row in world.display("GridMap").row().properties}
         assert rows == {
             "Topic": "/grid_map",
@@ -74,12 +74,12 @@ async def test_grid_map_properties_match_rviz():
             "Invert Rainbow": False,
             "Autocompute Intensity Bounds": True,
         }
-    async with shown(", Use ColorMap: false") as (world, _):
+    async with open_display(", Use ColorMap: false") as (world, _):
         assert {"Use ColorMap", "Min Color"} <= {row.name for row in world.display("GridMap").row().properties}
 
 
 async def test_first_cell_has_largest_x_and_y():
-    async with shown() as (world, publish_and_settle):
+    async with open_display() as (world, publish_and_settle):
         grid_map = grid(0.5, elevation=[[1, 2, 3], [4, 5, 6]])
         grid_map.info.pose.position.x = 10.0
         content = await publish_and_settle(grid_map)
@@ -91,7 +91,7 @@ async def test_first_cell_has_largest_x_and_y():
 
 
 async def test_circular_buffer_start_index_is_applied():
-    async with shown() as (_, publish_and_settle):
+    async with open_display() as (_, publish_and_settle):
         grid_map = grid(elevation=[[4, 3], [2, 1]])
         grid_map.outer_start_index = grid_map.inner_start_index = 1
         content = await publish_and_settle(grid_map)
@@ -99,7 +99,7 @@ async def test_circular_buffer_start_index_is_applied():
 
 
 async def test_nan_cells_are_not_drawn():
-    async with shown() as (_, publish_and_settle):
+    async with open_display() as (_, publish_and_settle):
         grid_map = grid(elevation=[[1, NAN], [2, 3]], certain=[[1, 1], [1, NAN]])
         content = await publish_and_settle(grid_map)
         assert content["colors"].reshape(-1, 4)[:, 3].tolist() == [255, 0, 255, 255]
@@ -110,7 +110,7 @@ async def test_nan_cells_are_not_drawn():
 
 
 async def test_rainbow_two_color_and_flat_color_modes():
-    async with shown() as (world, publish_and_settle):
+    async with open_display() as (world, publish_and_settle):
         content = await publish_and_settle(grid(elevation=[[0, 10]], other=[[5, 0]]))
         first, last = content["colors"].reshape(-1, 4)[:, :3].tolist()
         assert (first, last) == ([204, 0, 255], [255, 0, 0])
@@ -137,13 +137,13 @@ async def test_rainbow_two_color_and_flat_color_modes():
 
 async def test_color_layer_is_unpacked():
     packed = np.array([0x00FF8000, 0x000000FF], dtype=np.uint32).view(np.float32).tolist()
-    async with shown(", Color Transformer: ColorLayer, Color Layer: color") as (_, publish_and_settle):
+    async with open_display(", Color Transformer: ColorLayer, Color Layer: color") as (_, publish_and_settle):
         content = await publish_and_settle(grid(elevation=[[0, 0]], color=[packed]))
         assert content["colors"].reshape(-1, 4)[:, :3].tolist() == [[255, 128, 0], [0, 0, 255]]
 
 
 async def test_large_map_is_subsampled_with_warning():
-    async with shown() as (world, publish_and_settle):
+    async with open_display() as (world, publish_and_settle):
         content = await publish_and_settle(grid(elevation=np.zeros((900, 900)).tolist()))
         assert (content["rows"], content["columns"]) == (450, 450)
         assert world.status("GridMap")["Size"] == ("warn", "The map is large: 1 in 2 rows and columns is drawn")
@@ -161,7 +161,7 @@ async def test_large_map_is_subsampled_with_warning():
     ],
 )
 async def test_invalid_grid_map_is_reported(broken, text):
-    async with shown() as (world, publish_and_settle):
+    async with open_display() as (world, publish_and_settle):
         grid_map = grid(elevation=[[1, 2], [3, 4]])
         for name, value in broken.items():
             setattr(grid_map if name == "layers" else grid_map.info, name, value)

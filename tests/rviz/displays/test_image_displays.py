@@ -1,4 +1,4 @@
-"""Image and Camera, from the topic to what pages are sent."""
+"""Image and Camera, from topics to pages."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ def marker(name: str, *controls: Control, x: float = 0.0, frame: str = "base") -
 
 
 class Server:
-    """What interactive_markers' InteractiveMarkerServer says on its topics."""
+    """A fake of interactive_markers' InteractiveMarkerServer with its topics."""
 
     def __init__(self, graph, *markers: InteractiveMarker) -> None:
         node = graph.create_node("handle_server")
@@ -73,7 +73,7 @@ class Server:
 
 
 def shown(world) -> dict[str, dict]:
-    """By kind and name, what a page would be sent."""
+    """Return a page's content by kind and name."""
     (display,) = world.viewer.displays
     return {f"{content.fields['kind']} {content.fields['name']}": content.fields for content in contents(display)}
 

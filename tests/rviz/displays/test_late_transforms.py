@@ -1,4 +1,4 @@
-"""Displays of healthy sensors whose transforms come after their messages: how often their status changes."""
+"""Displays of healthy sensors whose transforms arrive after their messages: the changes of their status."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Visualization Manager:
 
 
 def message(cls: str, stamp_ns: int) -> Any:
-    """What a driver publishes: stamped now, in a frame that moves."""
+    """Return a driver's message: stamped with the current time, in a moving frame."""
     if cls == "LaserScan":
         instance = scan([1.0, 2.0, 3.0])
     elif cls == "PointCloud2":
@@ -50,7 +50,7 @@ def message(cls: str, stamp_ns: int) -> Any:
 
 
 def levels_of(display: ViewerDisplay, monkeypatch: pytest.MonkeyPatch) -> dict[str, list[str]]:
-    """Of each row the levels that it had, one after the other."""
+    """Return the successive levels of each row."""
     facts: dict[str, list[str]] = {}
     set_status = display.set_status
 
@@ -72,7 +72,7 @@ async def every(period: float, call: Callable[[], object]) -> None:
 
 
 async def drive(world: World, tf_delay: float) -> None:
-    """A robot whose transforms come at 20 Hz, later than the messages of its sensors."""
+    """Publish a robot's transforms at 20 Hz, later than the messages of its sensors."""
     driver, now_ns = world.graph.create_node("driver"), world.graph.timebase.now_ns
     publishers = {cls: driver.create_publisher(type(message(cls, 0)), f"/{cls}", 10) for cls in SENSORS}
     here = {("odom", "base"): (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)}

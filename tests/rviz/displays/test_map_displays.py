@@ -1,4 +1,4 @@
-"""Map and GridCells, from the topic to what pages are sent."""
+"""Map and GridCells, from topics to pages."""
 
 from __future__ import annotations
 

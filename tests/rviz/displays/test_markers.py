@@ -49,7 +49,7 @@ def marker(number: int = 0, *, ns: str = "a", kind: int = Marker.CUBE, frame: st
 
 
 class Watcher:
-    """A page that has seen what the store had when it looked last."""
+    """A simulated page with the store's content at its last update."""
 
     def __init__(self, store: MarkerStore) -> None:
         self.store = store
@@ -63,7 +63,7 @@ class Watcher:
         content = unpack(frame).fields
         if content["everything"]:
             self.markers.clear()
-        for identity in content["gone"]:
+        for identity in content["removed_ids"]:
             self.markers.pop(identity, None)
         self.markers.update({marker["id"]: marker for marker in content["markers"]})
         return content
@@ -146,7 +146,7 @@ async def test_markers_are_deleted_individually_and_all():
         publisher.publish(MarkerArray(markers=[marker(1, action=Marker.DELETE)]))
         await world.settle()
         change = page.look()
-        assert (change["everything"], change["gone"], change["markers"]) == (False, ["a/1"], [])
+        assert (change["everything"], change["removed_ids"], change["markers"]) == (False, ["a/1"], [])
         publisher.publish(MarkerArray(markers=[marker(0, ns="b", action=Marker.DELETEALL)]))
         await world.settle()
         page.look()
@@ -215,7 +215,7 @@ async def test_late_page_receives_all_markers():
 
 
 def test_page_receives_all_markers_after_missing_too_many_changes(monkeypatch):
-    monkeypatch.setattr("linkwright.rviz.markers.shapes._MOST_GONE", 2)
+    monkeypatch.setattr("linkwright.rviz.markers.shapes._MAX_REMOVED_IDS", 2)
     store = MarkerStore("d")
     page = Watcher(store)
     shapes = [read_marker(marker(number), index()).shape for number in range(5)]

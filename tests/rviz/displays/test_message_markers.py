@@ -53,7 +53,7 @@ class Gauge(MessageMarkersDisplay):
 
 @pytest.fixture(autouse=True)
 def installed(monkeypatch):
-    """The display is registered under its name."""
+    """Register the display under its name."""
     monkeypatch.setattr(catalog, "has_display", lambda cls: cls == Gauge.CLASS)
     monkeypatch.setattr(catalog, "_display_class", lambda cls: Gauge)
 

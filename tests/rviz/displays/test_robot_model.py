@@ -383,7 +383,7 @@ async def test_mesh_errors_of_pages_are_shown_in_status(tmp_path):
 
 
 def published(world: World, node: str, text: str):
-    """A node that publishes a description."""
+    """Return a node that publishes a description."""
     publisher = world.graph.create_node(node)
     publisher.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data=text))
     return publisher

@@ -51,7 +51,7 @@ def point_at(stamp_ns: int, frame: str) -> PointStamped:
 
 
 def points(world) -> list[list[float]]:
-    """Of the frames that a page would be sent, in the fixed frame, oldest first."""
+    """Return the points of the frames for a page, in the fixed frame, oldest first."""
     shown = sorted(contents(world.display("PointStamped")), key=lambda content: content.key)
     assert all(content.fields["kind"] == "point_marks" for content in shown)
     return [
@@ -90,7 +90,7 @@ async def test_message_waits_for_its_transform():
 
 @skipping
 async def test_slightly_late_transforms_are_not_an_error():
-    """Drivers publish their data before tf has the pose of that moment: that is how it is, not a fault."""
+    """Drivers publish their data before tf has the pose of that time; this is normal."""
     async with open_world(config()) as world:
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         world.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})

@@ -16,7 +16,7 @@ from tests.waiting import eventually
 
 
 class Rig:
-    """A stream, and everything it says."""
+    """A stream with a record of its output."""
 
     def __init__(self) -> None:
         self.graph = Graph(clock=LoopClock())
@@ -67,11 +67,11 @@ class Rig:
         await asyncio.sleep(0)
 
     def pose(self, name: str) -> list[float]:
-        """The pose of a frame in the last transforms sent."""
+        """Return the pose of a frame in the last transforms sent."""
         return self.sent()[-1].poses[self.stream.current_frames[0].names.index(name)].tolist()
 
     def ages(self, name: str) -> list[float]:
-        """The ages of a frame in all transforms sent with the last table."""
+        """Return the ages of a frame in all transforms sent with the last table."""
         table = self.stream.current_frames[0]
         return [message.ages[table.names.index(name)] for message in self.sent() if message.revision == table.revision]
 

@@ -94,7 +94,7 @@ async def test_fade_time_is_shortest_of_tf_displays():
 
 async def test_display_choices_are_sent():
     async with opened() as (_, client):
-        await client.send("ask_display_choices")
+        await client.send("request_display_choices")
         message = (await client.until("display_choices"))["classes"]
         classes = {choice["cls"]: choice["messages"] for choice in message}
         assert classes["rviz_default_plugins/PointStamped"] == ["geometry_msgs/msg/PointStamped"]
@@ -134,7 +134,7 @@ async def test_display_for_topic_uses_qos_of_publishers():
     async with opened() as (world, client):
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         publisher = world.graph.create_node("sensor").create_publisher(PointStamped, "/found", qos)
-        await client.send("ask_display_choices")
+        await client.send("request_display_choices")
         topics = (await client.until("display_choices"))["topics"]
         cls = "rviz_default_plugins/PointStamped"
         assert {"topic": "/found", "message": "geometry_msgs/msg/PointStamped", "classes": [cls]} in topics
@@ -149,7 +149,7 @@ async def test_robot_model_is_added_by_description_topic():
         node = world.graph.create_node("robot_state_publisher")
         publisher = node.create_publisher(String, "/other/robot_description", qos)
         publisher.publish(String(data='<robot name="other"><link name="base"/></robot>'))
-        await client.send("ask_display_choices")
+        await client.send("request_display_choices")
         topics = (await client.until("display_choices"))["topics"]
         offered = next(topic for topic in topics if topic["topic"] == "/other/robot_description")
         cls = "rviz_default_plugins/RobotModel"

@@ -35,7 +35,7 @@ async def test_page_may_have_own_displays(monkeypatch):
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         async with own_page(world) as own:
             opening = await own.opened()
-            assert (opening["configuration"]["own"], opening["configuration"]["path"]) == (True, None)
+            assert (opening["configuration"]["is_own"], opening["configuration"]["path"]) == (True, None)
             ids = [display["id"] for display in opening["tree"]["displays"]]
             assert ids == [f"display-{n}" for n in range(5, 9)]
             assert publisher.get_subscription_count() == 2
@@ -58,7 +58,7 @@ async def test_page_may_have_own_displays(monkeypatch):
 
 
 async def test_number_of_lingering_own_displays_is_limited(monkeypatch):
-    monkeypatch.setattr(manager, "MOST_LINGERING", 2)
+    monkeypatch.setattr(manager, "MAX_LINGERING", 2)
     async with opened() as (world, _):
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         for number in range(5):
@@ -74,4 +74,4 @@ async def test_page_with_invalid_key_shares_displays():
     async with opened() as (world, _):
         for key in ("short", "../../../etc/passwd", "x" * 100):
             async with own_page(world, key) as client:
-                assert (await client.opened())["configuration"]["own"] is False
+                assert (await client.opened())["configuration"]["is_own"] is False

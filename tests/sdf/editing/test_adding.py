@@ -11,7 +11,7 @@ from linkwright.geometry.single import Pose
 from linkwright.geometry.solids import shape_properties
 from linkwright.sdf.editing import Change, EditError, add_include, add_light, add_shape, change, delete
 from linkwright.sdf.editing.shapes import solid_properties
-from tests.sdf.editing.texts import PLAIN, inside, simulators_refuse, world_text
+from tests.sdf.editing.texts import PLAIN, is_rejected_by_simulators, world_text, world_with
 
 POSE = (1.0, 2.0, 3.0, 0.0, 0.0, 0.5)
 SIZES = {"box": (1, 2, 3), "cylinder": (0.1, 2), "sphere": (0.3,), "wall": (4, 0.2, 1), "ramp": (2, 1, 0.5)}
@@ -19,22 +19,22 @@ SIZES = {"box": (1, 2, 3), "cylinder": (0.1, 2), "sphere": (0.3,), "wall": (4, 0
 
 @pytest.mark.parametrize("kind", SIZES)
 def test_added_shape_is_read_back(kind):
-    before = world_text(PLAIN)
-    text, name = add_shape(before, kind, POSE, SIZES[kind])
+    world = world_text(PLAIN)
+    text, name = add_shape(world, kind, POSE, SIZES[kind])
     entity = text.entities[name]
     assert (entity.shape.kind, entity.shape.size) == (kind, SIZES[kind])
     assert entity.pose.pose == Pose(POSE[:3], POSE[3:])
     assert entity.is_static == (kind in ("wall", "ramp"))
-    assert not simulators_refuse(text)
+    assert not is_rejected_by_simulators(text)
     assert delete(text, [name]).text == PLAIN
-    usual, name = add_shape(before, kind, POSE)
+    usual, name = add_shape(world, kind, POSE)
     larger = change(usual, [Change(name, size=SIZES[kind], static=False)])
     assert larger.entities[name].shape.size == SIZES[kind]
     assert change(text, [Change(name, static=False)]).entities[name].shape.size == SIZES[kind]
 
 
 def test_added_shape_weighs_one_kilogram_with_solid_inertia():
-    text, name = add_shape(inside(), "cylinder", POSE, (0.5, 2.0))
+    text, name = add_shape(world_with(), "cylinder", POSE, (0.5, 2.0))
     inertial = text.entities[name].model.links[0].inertial
     assert inertial.mass == 1.0
     assert inertial.inertia.izz == pytest.approx(0.125)
@@ -49,10 +49,10 @@ def test_added_ramp_has_mass_properties_of_wedge():
         shape_properties(Box((step, size[1], h))).moved(Pose((-1 + (index + 0.5) * step, 0.0, h / 2 - size[2] / 2)))
         for index, h in enumerate(heights.tolist())
     ]
-    whole, wanted = combine(slices), solid_properties("ramp", size)
-    assert whole.mass == pytest.approx(wanted.mass)
-    assert whole.center == pytest.approx(wanted.center, abs=1e-5)
-    assert whole.inertia == pytest.approx(wanted.inertia, rel=1e-3, abs=1e-6)
+    combined, expected = combine(slices), solid_properties("ramp", size)
+    assert combined.mass == pytest.approx(expected.mass)
+    assert combined.center == pytest.approx(expected.center, abs=1e-5)
+    assert combined.inertia == pytest.approx(expected.inertia, rel=1e-3, abs=1e-6)
 
 
 def test_added_elements_follow_last_with_same_indentation():
@@ -68,11 +68,11 @@ def test_added_elements_follow_last_with_same_indentation():
 
 @pytest.mark.parametrize("kind", ["point", "directional", "spot"])
 def test_added_light_has_its_type(kind):
-    text, name = add_light(inside(), kind, POSE)
+    text, name = add_light(world_with(), kind, POSE)
     light = text.entities[name].light
     assert (name, light.type) == (f"{kind}_light", kind)
     assert (light.spot is not None) == (kind == "spot")
-    assert not simulators_refuse(text)
+    assert not is_rejected_by_simulators(text)
 
 
 def test_added_include_gets_unique_name(tmp_path):
@@ -95,7 +95,7 @@ def test_added_include_gets_unique_name(tmp_path):
 @pytest.mark.parametrize("pose", [(1, 2, 3), (1, 2, 3, 4, 5, float("inf")), ()])
 def test_invalid_pose_is_rejected(pose):
     with pytest.raises(EditError, match="a pose must have six finite numbers"):
-        add_shape(inside(), "box", pose)
+        add_shape(world_with(), "box", pose)
 
 
 def test_world_with_attribute_values_is_rejected(tmp_path):

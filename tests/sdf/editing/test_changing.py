@@ -9,18 +9,18 @@ import pytest
 
 from linkwright.geometry.single import rotate
 from linkwright.sdf.editing import Change, EditError, change, copy, delete
-from tests.sdf.editing.texts import BOX, PLAIN, inside, world_text
+from tests.sdf.editing.texts import BOX, PLAIN, world_text, world_with
 
 
-def difference(before: str, after: str) -> list[str]:
+def difference(old: str, new: str) -> list[str]:
     """Return the removed and the added lines, without surrounding spaces."""
-    lines = difflib.ndiff(before.splitlines(), after.splitlines())
+    lines = difflib.ndiff(old.splitlines(), new.splitlines())
     return [f"{line[0]} {line[1:].strip()}" for line in lines if line[0] in "+-"]
 
 
-def changed(text: str, *changes: Change) -> list[str]:
-    before = world_text(text)
-    return difference(before.text, change(before, changes).text)
+def lines_changed_by(text: str, *changes: Change) -> list[str]:
+    original = world_text(text)
+    return difference(original.text, change(original, changes).text)
 
 
 def test_world_entities_are_listed():
@@ -35,18 +35,18 @@ def test_world_entities_are_listed():
 
 
 def test_pose_change_replaces_only_changed_numbers():
-    assert changed(PLAIN, Change("box", pose=(2.0, 1.5, 0.25, 0, 0, pi / 2))) == [
+    assert lines_changed_by(PLAIN, Change("box", pose=(2.0, 1.5, 0.25, 0, 0, pi / 2))) == [
         "- <pose>2 0 0.250 0 0 0</pose>",
         "+ <pose>2 1.5 0.250 0 0 1.570796327</pose>",
     ]
 
 
 def test_missing_pose_is_inserted():
-    assert changed(PLAIN, Change("ground_plane", pose=(0, 0, -1, 0, 0, 0))) == [
+    assert lines_changed_by(PLAIN, Change("ground_plane", pose=(0, 0, -1, 0, 0, 0))) == [
         "- <include><uri>model://ground_plane</uri></include>",
         "+ <include><uri>model://ground_plane</uri><pose>0 0 -1 0 0 0</pose></include>",
     ]
-    text = inside('    <model name="m">\n      <link name="l"/>\n    </model>\n')
+    text = world_with('    <model name="m">\n      <link name="l"/>\n    </model>\n')
     moved = change(text, [Change("m", pose=(1, 0, 0, 0, 0, 0))])
     assert '<model name="m">\n      <pose>1 0 0 0 0 0</pose>\n      <link name="l"/>\n' in moved.text
 
@@ -66,7 +66,7 @@ def test_missing_pose_is_inserted():
     ],
 )
 def test_pose_notation_is_kept(written, result):
-    text = inside(f'<model name="m">{written}<link name="l"/></model>')
+    text = world_with(f'<model name="m">{written}<link name="l"/></model>')
     moved = change(text, [Change("m", pose=(4, 2, 3, 0, 0, pi / 4))])
     assert result in moved.text
     place = moved.entities["m"].world_pose
@@ -74,35 +74,35 @@ def test_pose_notation_is_kept(written, result):
 
 
 def test_world_pose_is_converted_to_pose_frame():
-    text = inside(
+    text = world_with(
         '<frame name="f"><pose>1 0 0 0 0 1.5707963267948966</pose></frame>',
         '<model name="m"><pose relative_to="f">1 0 0 0 0 0</pose><link name="l"/></model>',
         '<model name="n" placement_frame="tip"><pose relative_to="m">0 0 1 0 0 0</pose><link name="l"/>',
         '<link name="tip"><pose>0 0 5 0.5 0 0</pose></link></model>',
         '<light name="lamp" type="spot"><pose relative_to="m">0 0 2 0 0 0</pose></light>',
     )
-    wanted = {
+    expected = {
         "n": (7, 8, 9, 0.1, pi / 2, 0.3),
         "m": (1, 2, 3, 0.1, 0.2, 0.3),
         "lamp": (4, 5, 6, 0, 0, 1),
     }
-    moved = change(text, [Change(name, pose=pose) for name, pose in wanted.items()])
-    for name, pose in wanted.items():
+    moved = change(text, [Change(name, pose=pose) for name, pose in expected.items()])
+    for name, pose in expected.items():
         assert moved.entities[name].world_pose[:3] == pytest.approx(pose[:3], abs=1e-8)
     assert moved.text.count("relative_to") == 3
-    again = change(moved, [Change(name, pose=pose) for name, pose in wanted.items()])
-    for name, entity in again.entities.items():
+    changed_again = change(moved, [Change(name, pose=pose) for name, pose in expected.items()])
+    for name, entity in changed_again.entities.items():
         assert entity.world_pose == pytest.approx(moved.entities[name].world_pose, abs=1e-8)
 
 
 def test_unknown_pose_frame_is_reported():
-    text = inside('<model name="m"><pose relative_to="none">1 0 0 0 0 0</pose><link name="l"/></model>')
+    text = world_with('<model name="m"><pose relative_to="none">1 0 0 0 0 0</pose><link name="l"/></model>')
     with pytest.raises(EditError, match="'m' is relative to 'none', which cannot be placed"):
         change(text, [Change("m", pose=(0, 0, 0, 0, 0, 0))])
 
 
 def test_resizing_changes_collision_visual_and_inertia():
-    assert [line for line in changed(PLAIN, Change("box", size=(0.5, 0.5, 1.0))) if line[0] == "+"] == [
+    assert [line for line in lines_changed_by(PLAIN, Change("box", size=(0.5, 0.5, 1.0))) if line[0] == "+"] == [
         "+ <mass>4</mass>",
         "+ <inertia><ixx>0.416667</ixx><iyy>0.416667</iyy><izz>0.166667</izz></inertia>",
         *["+ <geometry><box><size>0.5 0.5 1</size></box></geometry>"] * 2,
@@ -128,10 +128,10 @@ def test_color_replaces_material_script():
         "<material><script><uri>file://media/gazebo.material</uri><name>Gazebo/Red</name></script></material>",
     )
     assert world_text(text).entities["box"].shape.color == (1, 0, 0, 1)
-    after = change(world_text(text), [Change("box", color=(0, 1, 0, 0.5))])
-    assert "<material><ambient>0 1 0 0.5</ambient><diffuse>0 1 0 0.5</diffuse></material>" in after.text
-    assert after.entities["box"].shape.color == (0, 1, 0, 0.5)
-    assert changed(PLAIN, Change("lamp", color=(1, 0, 0, 1)))[-1] == "+ <diffuse>1 0 0 1</diffuse>"
+    recolored = change(world_text(text), [Change("box", color=(0, 1, 0, 0.5))])
+    assert "<material><ambient>0 1 0 0.5</ambient><diffuse>0 1 0 0.5</diffuse></material>" in recolored.text
+    assert recolored.entities["box"].shape.color == (0, 1, 0, 0.5)
+    assert lines_changed_by(PLAIN, Change("lamp", color=(1, 0, 0, 1)))[-1] == "+ <diffuse>1 0 0 1</diffuse>"
 
 
 def test_static_flag_is_set_and_cleared():
@@ -149,15 +149,15 @@ def test_static_flag_is_set_and_cleared():
 
 
 def test_renaming_updates_references():
-    text = inside(
+    text = world_with(
         '<model name="a"><link name="l"/></model><model name="ab"><link name="l"/></model>',
         '<model name="b"><pose relative_to="a::l">0 0 1 0 0 0</pose><link name="l"/></model>',
         "<frame name='f' attached_to='a'><pose relative_to='ab'>0 0 0 0 0 0</pose></frame>",
         '<joint name="j" type="revolute"><parent>a::l</parent><child> b </child>',
         '<axis><xyz expressed_in="a">0 0 1</xyz></axis></joint>',
     )
-    after = change(text, [Change("a", new_name='c "1"')])
-    lines = difference(text.text.replace("><", ">\n<"), after.text.replace("><", ">\n<"))
+    renamed = change(text, [Change("a", new_name='c "1"')])
+    lines = difference(text.text.replace("><", ">\n<"), renamed.text.replace("><", ">\n<"))
     assert [line for line in lines if line[0] == "+"] == [
         '+ <model name="c &quot;1&quot;">',
         '+ <pose relative_to="c &quot;1&quot;::l">0 0 1 0 0 0</pose>',
@@ -165,11 +165,11 @@ def test_renaming_updates_references():
         "+ <parent>c &quot;1&quot;::l</parent>",
         '+ <xyz expressed_in="c &quot;1&quot;">0 0 1</xyz>',
     ]
-    assert change(after, [Change('c "1"', new_name="a")]).text == text.text
+    assert change(renamed, [Change('c "1"', new_name="a")]).text == text.text
 
 
 @pytest.mark.parametrize(
-    ("name", "why"),
+    ("name", "reason"),
     [
         ("lamp", "an entity named 'lamp' already exists"),
         (" ", "a name cannot be empty"),
@@ -178,15 +178,15 @@ def test_renaming_updates_references():
         ("__x__", "SDF reserves it"),
     ],
 )
-def test_invalid_names_are_rejected(name, why):
-    with pytest.raises(EditError, match=why):
+def test_invalid_names_are_rejected(name, reason):
+    with pytest.raises(EditError, match=reason):
         change(world_text(PLAIN), [Change("box", new_name=name)])
 
 
 def test_include_is_renamed_without_other_changes():
-    after = change(world_text(PLAIN), [Change("ground_plane", new_name="floor", static=True)])
-    assert "<include><uri>model://ground_plane</uri><name>floor</name></include>" in after.text
-    assert list(after.entities) == ["floor", "box", "lamp"]
+    renamed = change(world_text(PLAIN), [Change("ground_plane", new_name="floor", static=True)])
+    assert "<include><uri>model://ground_plane</uri><name>floor</name></include>" in renamed.text
+    assert list(renamed.entities) == ["floor", "box", "lamp"]
 
 
 def test_copies_get_unique_names_and_offset():
@@ -195,9 +195,9 @@ def test_copies_get_unique_names_and_offset():
     assert text.entities["box_2"].world_pose == pytest.approx((3, 0, 0.25, 0, 0, 0, 1))
     assert text.entities["lamp_2"].world_pose[:3] == (1, 0, 3)
     assert BOX.replace("'box'", "'box_2'").replace(">2 0 0.250", ">3 0 0.250") in text.text
-    again, names = copy(text, ["box_2", "box"], (0, 1, 0))
+    with_copies, names = copy(text, ["box_2", "box"], (0, 1, 0))
     assert names == ["box_3", "box_4"]
-    assert delete(again, ["box_2", "box_3", "box_4", "lamp_2", "ground_plane_2"]).text == PLAIN
+    assert delete(with_copies, ["box_2", "box_3", "box_4", "lamp_2", "ground_plane_2"]).text == PLAIN
 
 
 def test_deleting_removes_only_lines_of_entity():
@@ -207,7 +207,7 @@ def test_deleting_removes_only_lines_of_entity():
 
 
 def test_referenced_entity_is_deleted_only_with_its_references():
-    text = inside(
+    text = world_with(
         '<model name="a"><link name="l"/></model>',
         '<model name="b"><pose relative_to="a">0 0 1 0 0 0</pose><link name="l"/></model>',
     )
@@ -218,8 +218,8 @@ def test_referenced_entity_is_deleted_only_with_its_references():
 
 def test_line_endings_are_preserved():
     text = world_text(PLAIN.replace("\n", "\r\n"))
-    after, _ = copy(change(text, [Change("lamp", color=(1, 1, 1, 1)), Change("box", static=True)]), ["box"], (1, 0, 0))
-    assert "\n" not in after.text.replace("\r\n", "")
+    edited, _ = copy(change(text, [Change("lamp", color=(1, 1, 1, 1)), Change("box", static=True)]), ["box"], (1, 0, 0))
+    assert "\n" not in edited.text.replace("\r\n", "")
 
 
 def test_xml_with_entities_can_be_edited():
@@ -228,9 +228,9 @@ def test_xml_with_entities_can_be_edited():
         "<model name='m'><link name='l'><collision name='c'><geometry><box><size>&size;</size></box></geometry>"
         "</collision></link></model></world></sdf>"
     )
-    after = change(world_text(text), [Change("m", size=(2.0, 2.0, 2.0), pose=(1, 0, 0, 0, 0, 0))])
-    assert "<size>2 2 2</size>" in after.text
-    assert "<model name='m'><pose>1 0 0 0 0 0</pose><link" in after.text
+    edited = change(world_text(text), [Change("m", size=(2.0, 2.0, 2.0), pose=(1, 0, 0, 0, 0, 0))])
+    assert "<size>2 2 2</size>" in edited.text
+    assert "<model name='m'><pose>1 0 0 0 0 0</pose><link" in edited.text
     entity = text.replace("'1 1 1'", "'<box/>'").replace("<size>&size;</size>", "<size>1 1 1</size>&size;")
     assert change(world_text(entity), [Change("m", static=True)]).entities["m"].is_static
 

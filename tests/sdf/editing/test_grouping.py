@@ -7,67 +7,67 @@ import pytest
 from linkwright.sdf.editing import EditError, WorldText, add_shape, change, group, ungroup
 from linkwright.sdf.editing.changing import Change
 from linkwright.sdf.frames import placed_links
-from tests.sdf.editing.texts import BOX, PLAIN, inside, world_text
+from tests.sdf.editing.texts import BOX, PLAIN, world_text, world_with
 
 OTHER = BOX.replace("'box'", "'crate'").replace(">2 0 0.250 0 0 0<", ">4 1 0.25 0 0 1.5<")
 TWO = PLAIN.replace(BOX, f"{BOX}    <!-- between -->\n{OTHER}")
 
 
-def links(world: WorldText) -> dict[str, tuple[float, ...]]:
+def link_poses(world: WorldText) -> dict[str, tuple[float, ...]]:
     return {placed_link.name: placed_link.pose for placed_link in placed_links(world.world)}
 
 
 def test_group_is_a_model_and_members_keep_poses():
-    before = world_text(TWO)
-    after = group(before, ["crate", "box"], "pile")
-    assert after.entities["pile"].member_names == ("box", "crate")
-    assert list(after.entities) == ["ground_plane", "pile", "lamp"]
-    assert "    <model name=\"pile\">\n      <pose>3 0.5 0.25 0 0 0</pose>\n      <model name='box'>" in after.text
-    assert "    <!-- between -->\n" in after.text
-    there, now = links(before), links(after)
-    assert now["pile::box::link"] == pytest.approx(there["box::link"])
-    assert now["pile::crate::link"] == pytest.approx(there["crate::link"])
+    original = world_text(TWO)
+    grouped = group(original, ["crate", "box"], "pile")
+    assert grouped.entities["pile"].member_names == ("box", "crate")
+    assert list(grouped.entities) == ["ground_plane", "pile", "lamp"]
+    assert "    <model name=\"pile\">\n      <pose>3 0.5 0.25 0 0 0</pose>\n      <model name='box'>" in grouped.text
+    assert "    <!-- between -->\n" in grouped.text
+    poses_before, poses_after = link_poses(original), link_poses(grouped)
+    assert poses_after["pile::box::link"] == pytest.approx(poses_before["box::link"])
+    assert poses_after["pile::crate::link"] == pytest.approx(poses_before["crate::link"])
 
 
 def test_ungrouping_restores_text():
-    before = PLAIN.replace(BOX, BOX + OTHER).replace("0.250", "0.25")
-    text, names = ungroup(group(world_text(before), ["box", "crate"], "pile"), "pile")
+    original = PLAIN.replace(BOX, BOX + OTHER).replace("0.250", "0.25")
+    text, names = ungroup(group(world_text(original), ["box", "crate"], "pile"), "pile")
     assert names == ["box", "crate"]
-    assert text.text == before
+    assert text.text == original
 
 
 def test_nested_and_rotated_groups_keep_link_poses():
     text, _ = add_shape(group(world_text(TWO), ["box", "crate"], "pile"), "box", (0, 0, 1, 0.1, 0.2, 0.3))
     text = change(text, [Change("pile", pose=(1, 1, 1, 0.5, 0.6, 0.7))])
     text = group(text, ["pile", "box"], "heap")
-    there = links(text)
+    poses_before = link_poses(text)
     text, names = ungroup(text, "heap")
     assert set(names) == {"pile", "box"}
     text, names = ungroup(text, "pile")
     assert names == ["box_2", "crate"]  # 'box' is another now
-    now = links(text)
-    assert now["box_2::link"] == pytest.approx(there["heap::pile::box::link"], abs=1e-8)
-    assert now["crate::link"] == pytest.approx(there["heap::pile::crate::link"], abs=1e-8)
+    poses_after = link_poses(text)
+    assert poses_after["box_2::link"] == pytest.approx(poses_before["heap::pile::box::link"], abs=1e-8)
+    assert poses_after["crate::link"] == pytest.approx(poses_before["heap::pile::crate::link"], abs=1e-8)
 
 
 def test_relative_poses_are_preserved():
-    text = inside(
+    text = world_with(
         '<frame name="f"><pose>1 0 0 0 0 1.5</pose></frame>\n',
         '<model name="a"><pose relative_to="f">1 0 0 0 0 0</pose><link name="l"/></model>\n',
         '<model name="b" placement_frame="l"><pose relative_to="a">0 0 1 0 0 0</pose>',
         '<link name="l"><pose>0 3 0 0 0 0</pose></link></model>\n',
         '<model name="c"><pose relative_to="b::l">0 0 1 0 0 0</pose><link name="l"/></model>\n',
     )
-    there = links(text)
+    poses_before = link_poses(text)
     grouped = group(text, ["a", "b"], "g")
     assert '<pose relative_to="a">0 0 1 0 0 0</pose>' in grouped.text
     assert '<pose relative_to="g::b::l">0 0 1 0 0 0</pose>' in grouped.text
-    now = links(grouped)
-    for name, moved in (("a::l", "g::a::l"), ("b::l", "g::b::l"), ("c::l", "c::l")):
-        assert now[moved] == pytest.approx(there[name], abs=1e-8)
-    apart, _ = ungroup(grouped, "g")
-    for name, pose in links(apart).items():
-        assert pose == pytest.approx(there[name], abs=1e-8)
+    poses_after = link_poses(grouped)
+    for name, new_name in (("a::l", "g::a::l"), ("b::l", "g::b::l"), ("c::l", "c::l")):
+        assert poses_after[new_name] == pytest.approx(poses_before[name], abs=1e-8)
+    ungrouped, _ = ungroup(grouped, "g")
+    for name, pose in link_poses(ungrouped).items():
+        assert pose == pytest.approx(poses_before[name], abs=1e-8)
 
 
 def test_included_models_can_be_grouped_and_static_group_is_static():
@@ -76,13 +76,13 @@ def test_included_models_can_be_grouped_and_static_group_is_static():
     grouped = group(text, ["ground_plane", wall], "floor")
     assert grouped.entities["floor"].is_static
     assert grouped.entities["floor"].member_names == ("wall", "ground_plane")
-    apart, names = ungroup(grouped, "floor")
+    ungrouped, names = ungroup(grouped, "floor")
     assert sorted(names) == ["ground_plane", "wall"]
-    assert all(apart.entities[name].is_static for name in names)
+    assert all(ungrouped.entities[name].is_static for name in names)
 
 
 @pytest.mark.parametrize(
-    ("names", "why"),
+    ("names", "reason"),
     [
         (["box"], "at least two models"),
         (["box", "box"], "at least two models"),
@@ -91,8 +91,8 @@ def test_included_models_can_be_grouped_and_static_group_is_static():
         (["box", "none"], "there is no model or light 'none' in the world's file"),
     ],
 )
-def test_invalid_group_is_rejected(names, why):
-    with pytest.raises(EditError, match=why):
+def test_invalid_group_is_rejected(names, reason):
+    with pytest.raises(EditError, match=reason):
         group(world_text(TWO), names, "g")
 
 
@@ -102,6 +102,6 @@ def test_ungrouping_other_models_is_rejected():
     with pytest.raises(EditError, match="'ground_plane' is not a group"):
         ungroup(world_text(PLAIN), "ground_plane")
     grouped = group(world_text(TWO), ["box", "crate"], "g").text
-    used = grouped.replace("    <light", '    <frame name="f" attached_to="g"/>\n    <light')
+    with_frame = grouped.replace("    <light", '    <frame name="f" attached_to="g"/>\n    <light')
     with pytest.raises(EditError, match="another element refers to it"):
-        ungroup(world_text(used), "g")
+        ungroup(world_text(with_frame), "g")

@@ -6,9 +6,9 @@ import pytest
 
 from linkwright.sdf.editing import Change, add_shape, change, copy, delete, group
 from linkwright.sdf.frames import placed_links
-from tests.sdf.editing.texts import inside
+from tests.sdf.editing.texts import world_with
 
-SAVED = inside(
+SAVED = world_with(
     '    <model name="m"><pose>9 9 9 0 0 0</pose><link name="a"/><link name="b"/></model>\n',
     '    <model name="n"><link name="a"/></model>\n',
     '    <model name="old"><link name="a"/></model>\n',
@@ -45,16 +45,16 @@ def test_moving_changes_pose_in_model_and_state():
     assert links(moved)["m::b"][:3] == pytest.approx((1, 2, 0))
     assert '<model name="m"><pose>1 1 0 0 0 1.570796327</pose>' in moved.text
     assert "<pose>1 1 0 0 -0 1.570796327</pose>\n" in moved.text
-    inserted = change(SAVED, [Change("new", pose=(0, 3, 0, 0, 0, 0))])
-    assert inserted.entities["new"].world_pose[:3] == (0, 3, 0)
+    moved_insertion = change(SAVED, [Change("new", pose=(0, 3, 0, 0, 0, 0))])
+    assert moved_insertion.entities["new"].world_pose[:3] == (0, 3, 0)
 
 
 def test_renaming_and_deleting_change_state():
     assert change(SAVED, [Change("m", new_name="k")]).entities["k"].world_pose[:3] == (1, 0, 0)
-    gone = delete(SAVED, ["m", "lamp", "new"])
-    assert list(gone.entities) == ["n"]
-    assert gone.state.first("model").attributes == {"name": "n"}
-    assert gone.state.first("light") is None
+    deleted = delete(SAVED, ["m", "lamp", "new"])
+    assert list(deleted.entities) == ["n"]
+    assert deleted.state.first("model").attributes == {"name": "n"}
+    assert deleted.state.first("light") is None
 
 
 def test_added_entity_avoids_names_deleted_in_state():
@@ -65,8 +65,8 @@ def test_added_entity_avoids_names_deleted_in_state():
 
 
 def test_copies_and_groups_start_at_poses_of_state():
-    copied, names = copy(SAVED, ["n"], (0, 1, 0))
-    assert copied.entities[names[0]].world_pose[:3] == (5, 1, 0)
+    with_copy, names = copy(SAVED, ["n"], (0, 1, 0))
+    assert with_copy.entities[names[0]].world_pose[:3] == (5, 1, 0)
     grouped = group(SAVED, ["m", "n"], "g")
     assert links(grouped)["g::n::a"][:3] == (5, 0, 0)
     assert links(grouped)["g::m::a"][:3] == (1, 0, 0)

@@ -48,19 +48,19 @@ PLAIN = f"""\
 
 
 def world_text(text: str, models: str = "") -> WorldText:
-    """Return the world of a text, with the models of the program and of a folder."""
+    """Return a world that finds the built-in models, and those in `models`."""
     packages = PackageFinder(start=Path("/nonexistent"), environment={})
     return WorldText(text, Path("/nowhere/w.world"), ResourceFinder(packages, {"GZ_SIM_RESOURCE_PATH": models}))
 
 
-def simulators_refuse(world: WorldText) -> bool:
-    """Return whether the text, or a file that it includes, has an error."""
+def is_rejected_by_simulators(world: WorldText) -> bool:
+    """Return whether the world, or a file that it includes, has an error."""
     document, findings = parse_as_gazebo(world.text, str(world.path))
     reading = read(document)
-    included = resolve_includes(reading.sdf, world.path, world.finder)
-    return has_errors([*findings, *reading.diagnostics, *included.diagnostics])
+    includes = resolve_includes(reading.sdf, world.path, world.finder)
+    return has_errors([*findings, *reading.diagnostics, *includes.diagnostics])
 
 
-def inside(*parts: str, version: str = "1.9") -> WorldText:
-    """Return a world with some parts."""
+def world_with(*parts: str, version: str = "1.9") -> WorldText:
+    """Return a world with these elements."""
     return world_text(f'<sdf version="{version}">\n  <world name="w">\n{"".join(parts)}  </world>\n</sdf>\n')

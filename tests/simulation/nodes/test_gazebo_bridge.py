@@ -1,4 +1,4 @@
-"""parameter_bridge and image_bridge: what is written differently on the two sides is handed on."""
+"""parameter_bridge and image_bridge: conversion between topics whose names or types differ between gz and ROS."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ from tests.remote_publishers import RemotePublisher, RemoteTransport
 SCAN = "/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan"
 
 
-def record_messages(stage, kind, topic):
+def record_messages(stage, message_type, topic):
     messages = []
-    stage.node.create_subscription(get_message(kind), topic, messages.append, 10)
+    stage.node.create_subscription(get_message(message_type), topic, messages.append, 10)
     return messages
 
 
-def publisher(stage, kind, topic):
-    return stage.node.create_publisher(get_message(kind), topic, 10)
+def publisher(stage, message_type, topic):
+    return stage.node.create_publisher(get_message(message_type), topic, 10)
 
 
 @pytest.mark.parametrize(
-    ("word", "topic"),
+    ("argument", "topic"),
     [
         (SCAN, BridgedTopic("/scan", "/scan", "sensor_msgs/msg/LaserScan", "gz.msgs.LaserScan", "GZ_TO_ROS")),
         (
@@ -49,14 +49,14 @@ def publisher(stage, kind, topic):
         ),
     ],
 )
-def test_bridge_argument_is_parsed(word, topic):
-    assert parse_bridge_argument(word) == topic
+def test_bridge_argument_is_parsed(argument, topic):
+    assert parse_bridge_argument(argument) == topic
 
 
-@pytest.mark.parametrize("word", ["", "/scan", "/scan@", "/scan@sensor_msgs/msg/LaserScan", "@a@b", "/scan@a["])
-def test_malformed_bridge_argument_is_rejected(word):
+@pytest.mark.parametrize("argument", ["", "/scan", "/scan@", "/scan@sensor_msgs/msg/LaserScan", "@a@b", "/scan@a["])
+def test_malformed_bridge_argument_is_rejected(argument):
     with pytest.raises(LinkwrightError, match="does not describe a topic to bridge"):
-        parse_bridge_argument(word)
+        parse_bridge_argument(argument)
 
 
 def test_shipped_bridge_file_is_read():
@@ -94,8 +94,8 @@ async def test_topic_of_same_name_is_not_duplicated(stage):
 
 
 async def test_topics_exist_before_simulation(stage):
-    words = (SCAN, "/odom@nav_msgs/msg/Odometry[gz.msgs.Odometry", "/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist")
-    ParameterBridge(stage.graph, NodeOptions(arguments=[*words, "/both@std_msgs/msg/String@gz.msgs.StringMsg"]))
+    arguments = (SCAN, "/odom@nav_msgs/msg/Odometry[gz.msgs.Odometry", "/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist")
+    ParameterBridge(stage.graph, NodeOptions(arguments=[*arguments, "/both@std_msgs/msg/String@gz.msgs.StringMsg"]))
     topics = dict(stage.graph.get_topic_names_and_types())
     assert {"/scan", "/odom", "/cmd_vel", "/both"} <= topics.keys()
     counts = {name: (stage.node.count_publishers(name), stage.node.count_subscribers(name)) for name in topics}
@@ -104,31 +104,31 @@ async def test_topics_exist_before_simulation(stage):
 
 @pytest.mark.parametrize("types", ["", "@gz.msgs.WorldControl@gz.msgs.Boolean"])
 async def test_service_is_reported_and_topics_are_bridged(stage, logged, types):
-    words = [f"/world/empty/control@ros_gz_interfaces/srv/ControlWorld{types}", SCAN]
-    ParameterBridge(stage.graph, NodeOptions(arguments=words))
+    arguments = [f"/world/empty/control@ros_gz_interfaces/srv/ControlWorld{types}", SCAN]
+    ParameterBridge(stage.graph, NodeOptions(arguments=arguments))
     assert "/scan" in stage.graph.topics()
     assert logged("WARN") == ["/world/empty/control is not bridged: services of gz are not supported"]
 
 
 async def test_remapped_topic_is_bridged(stage):
-    kind = "nav_msgs/msg/Odometry"
-    moved = record_messages(stage, kind, "/odom")
-    word = f"/model/mbot/odometry@{kind}[gz.msgs.Odometry"
-    ParameterBridge(stage.graph, NodeOptions(arguments=[word], remappings=[("/model/mbot/odometry", "/odom")]))
-    publisher(stage, kind, "/model/mbot/odometry").publish(get_message(kind)(child_frame_id="base"))
+    message_type = "nav_msgs/msg/Odometry"
+    odometry = record_messages(stage, message_type, "/odom")
+    argument = f"/model/mbot/odometry@{message_type}[gz.msgs.Odometry"
+    ParameterBridge(stage.graph, NodeOptions(arguments=[argument], remappings=[("/model/mbot/odometry", "/odom")]))
+    publisher(stage, message_type, "/model/mbot/odometry").publish(get_message(message_type)(child_frame_id="base"))
     await stage.graph.settle()
-    assert [message.child_frame_id for message in moved] == ["base"]
+    assert [message.child_frame_id for message in odometry] == ["base"]
 
 
 async def test_bidirectional_bridge_does_not_loop(stage):
-    kind = "std_msgs/msg/String"
-    ros, gz = record_messages(stage, kind, "/ros"), record_messages(stage, kind, "/gz")
-    word = f"/gz@{kind}@gz.msgs.StringMsg"
-    ParameterBridge(stage.graph, NodeOptions(arguments=[word], remappings=[("/gz", "/ros")]))
-    to_ros, to_gz = publisher(stage, kind, "/gz"), publisher(stage, kind, "/ros")
+    message_type = "std_msgs/msg/String"
+    ros, gz = record_messages(stage, message_type, "/ros"), record_messages(stage, message_type, "/gz")
+    argument = f"/gz@{message_type}@gz.msgs.StringMsg"
+    ParameterBridge(stage.graph, NodeOptions(arguments=[argument], remappings=[("/gz", "/ros")]))
+    to_ros, to_gz = publisher(stage, message_type, "/gz"), publisher(stage, message_type, "/ros")
     for number in range(3):
-        to_ros.publish(get_message(kind)(data=f"up {number}"))
-        to_gz.publish(get_message(kind)(data=f"down {number}"))
+        to_ros.publish(get_message(message_type)(data=f"up {number}"))
+        to_gz.publish(get_message(message_type)(data=f"down {number}"))
         await stage.graph.settle()
     expected = sorted(f"{way} {number}" for way in ("up", "down") for number in range(3))
     assert sorted(message.data for message in ros) == expected
@@ -153,76 +153,81 @@ async def test_twist_stamped_is_converted_to_twist(stage, tmp_path: Path):
 
 
 async def test_unknown_type_is_reported_and_other_topics_are_bridged(stage, logged):
-    kind = "std_msgs/msg/String"
-    ros = record_messages(stage, kind, "/ros")
-    words = ["/a@strange_msgs/msg/Thing[gz.msgs.Thing", f"/gz@{kind}[gz.msgs.StringMsg"]
-    ParameterBridge(stage.graph, NodeOptions(arguments=words, remappings=[("/gz", "/ros")]))
-    publisher(stage, kind, "/gz").publish(get_message(kind)(data="hello"))
+    message_type = "std_msgs/msg/String"
+    ros = record_messages(stage, message_type, "/ros")
+    arguments = ["/a@strange_msgs/msg/Thing[gz.msgs.Thing", f"/gz@{message_type}[gz.msgs.StringMsg"]
+    ParameterBridge(stage.graph, NodeOptions(arguments=arguments, remappings=[("/gz", "/ros")]))
+    publisher(stage, message_type, "/gz").publish(get_message(message_type)(data="hello"))
     await stage.graph.settle()
     assert logged("WARN") == ["/a is not bridged: there is no type strange_msgs/msg/Thing"]
     assert [message.data for message in ros] == ["hello"]
 
 
 async def test_image_bridge_forwards_images(stage):
-    kind = "sensor_msgs/msg/Image"
-    images = record_messages(stage, kind, "/camera/color")
+    message_type = "sensor_msgs/msg/Image"
+    images = record_messages(stage, message_type, "/camera/color")
     bridge = ImageBridge(stage.graph, NodeOptions(arguments=["/camera"], remappings=[("/camera", "/camera/color")]))
-    publisher(stage, kind, "/camera").publish(get_message(kind)(width=4))
+    publisher(stage, message_type, "/camera").publish(get_message(message_type)(width=4))
     await stage.graph.settle()
     assert [message.width for message in images] == [4]
     bridge.close()
 
 
 async def test_lazy_bridge_subscribes_only_while_it_has_subscribers(stage, tmp_path: Path):
-    kind = "std_msgs/msg/String"
+    message_type = "std_msgs/msg/String"
     path = tmp_path / "bridge.yaml"
     path.write_text(
-        f"- ros_topic_name: ros\n  gz_topic_name: gz\n  ros_type_name: {kind}\n  gz_type_name: gz.msgs.StringMsg\n"
+        f"- ros_topic_name: ros\n  gz_topic_name: gz\n  ros_type_name: {message_type}\n"
+        "  gz_type_name: gz.msgs.StringMsg\n"
         "  direction: GZ_TO_ROS\n  lazy: true\n  publisher_queue: 3\n  subscriber_queue: 4\n",
         encoding="utf-8",
     )
     ParameterBridge(stage.graph, stage.options({"config_file": str(path)}))
-    source = publisher(stage, kind, "/gz")
+    source = publisher(stage, message_type, "/gz")
     await stage.graph.settle()
     assert source.get_subscription_count() == 0
-    heard_by = stage.node.create_subscription(get_message(kind), "/ros", lambda message: None, 10)
+    subscription = stage.node.create_subscription(get_message(message_type), "/ros", lambda message: None, 10)
     await stage.graph.settle()
     assert source.get_subscription_count() == 1
     (result,) = stage.node.get_publishers_info_by_topic("/ros")
     assert result.qos_profile.depth == 3
-    stage.node.destroy_subscription(heard_by)
+    stage.node.destroy_subscription(subscription)
     await stage.graph.settle()
     assert source.get_subscription_count() == 0
 
 
 async def test_parameters_override_qos(stage):
-    kind = "tf2_msgs/msg/TFMessage"
-    word = f"/model/robot/pose_static@{kind}[gz.msgs.Pose_V"
+    message_type = "tf2_msgs/msg/TFMessage"
+    argument = f"/model/robot/pose_static@{message_type}[gz.msgs.Pose_V"
     overrides = {"qos_overrides": {"/tf_static": {"publisher": {"durability": "transient_local"}}}}
     options = NodeOptions(
-        arguments=[word], remappings=[("/model/robot/pose_static", "/tf_static")], parameters=overrides
+        arguments=[argument], remappings=[("/model/robot/pose_static", "/tf_static")], parameters=overrides
     )
     ParameterBridge(stage.graph, options)
-    publisher(stage, kind, "/model/robot/pose_static").publish(get_message(kind)())
+    publisher(stage, message_type, "/model/robot/pose_static").publish(get_message(message_type)())
     await stage.graph.settle()
-    late = []
+    messages = []
     latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    stage.node.create_subscription(get_message(kind), "/tf_static", late.append, latched)
+    stage.node.create_subscription(get_message(message_type), "/tf_static", messages.append, latched)
     await stage.graph.settle()
-    assert len(late) == 1
+    assert len(messages) == 1
 
 
 async def test_poses_are_converted_to_requested_type(stage, logged):
     transform = get_message("geometry_msgs/msg/TransformStamped")()
     transform.header.frame_id, transform.transform.translation.x = "robot", 2.0
-    kinds = ("Pose", "PoseStamped", "Transform", "PoseArray")
-    results = {kind: record_messages(stage, f"geometry_msgs/msg/{kind}", f"/{kind}") for kind in kinds}
-    words = [f"/one@geometry_msgs/msg/{kind}[gz.msgs.Pose" for kind in kinds[:3]]
-    for kind, word in zip(kinds[:3], words, strict=True):
-        name = f"bridge_{kind.lower()}"
-        ParameterBridge(stage.graph, NodeOptions(name=name, arguments=[word], remappings=[("/one", f"/{kind}")]))
-    word = "/many@geometry_msgs/msg/PoseArray[gz.msgs.Pose_V"
-    ParameterBridge(stage.graph, NodeOptions(arguments=[word], remappings=[("/many", "/PoseArray")]))
+    type_names = ("Pose", "PoseStamped", "Transform", "PoseArray")
+    results = {
+        type_name: record_messages(stage, f"geometry_msgs/msg/{type_name}", f"/{type_name}") for type_name in type_names
+    }
+    arguments = [f"/one@geometry_msgs/msg/{type_name}[gz.msgs.Pose" for type_name in type_names[:3]]
+    for type_name, argument in zip(type_names[:3], arguments, strict=True):
+        name = f"bridge_{type_name.lower()}"
+        ParameterBridge(
+            stage.graph, NodeOptions(name=name, arguments=[argument], remappings=[("/one", f"/{type_name}")])
+        )
+    argument = "/many@geometry_msgs/msg/PoseArray[gz.msgs.Pose_V"
+    ParameterBridge(stage.graph, NodeOptions(arguments=[argument], remappings=[("/many", "/PoseArray")]))
     publisher(stage, "geometry_msgs/msg/TransformStamped", "/one").publish(transform)
     publisher(stage, "tf2_msgs/msg/TFMessage", "/many").publish(
         get_message("tf2_msgs/msg/TFMessage")(transforms=[transform])
@@ -231,24 +236,24 @@ async def test_poses_are_converted_to_requested_type(stage, logged):
     assert results["Pose"][0].position.x == results["PoseStamped"][0].pose.position.x == 2.0
     assert results["Transform"][0].translation.x == results["PoseArray"][0].poses[0].position.x == 2.0
     assert results["PoseStamped"][0].header.frame_id == results["PoseArray"][0].header.frame_id == "robot"
-    word = "/one@geometry_msgs/msg/Pose]gz.msgs.Pose"
-    ParameterBridge(stage.graph, NodeOptions(name="back", arguments=[word]))
+    argument = "/one@geometry_msgs/msg/Pose]gz.msgs.Pose"
+    ParameterBridge(stage.graph, NodeOptions(name="back", arguments=[argument]))
     assert logged("WARN") == [
         "/one is not bridged: geometry_msgs/msg/Pose cannot be converted to geometry_msgs/msg/TransformStamped"
     ]
 
 
 async def test_gz_topic_names_can_be_expanded_with_namespace(stage):
-    kind = "std_msgs/msg/String"
-    ros = record_messages(stage, kind, "/ros")
+    message_type = "std_msgs/msg/String"
+    ros = record_messages(stage, message_type, "/ros")
     options = NodeOptions(
-        arguments=[f"chatter@{kind}[gz.msgs.StringMsg"],
+        arguments=[f"chatter@{message_type}[gz.msgs.StringMsg"],
         namespace="/demo",
         parameters={"expand_gz_topic_names": True},
         remappings=[("chatter", "/ros")],
     )
     ParameterBridge(stage.graph, options)
-    publisher(stage, kind, "/demo/chatter").publish(get_message(kind)(data="hello"))
+    publisher(stage, message_type, "/demo/chatter").publish(get_message(message_type)(data="hello"))
     await stage.graph.settle()
     assert [message.data for message in ros] == ["hello"]
 
@@ -256,47 +261,49 @@ async def test_gz_topic_names_can_be_expanded_with_namespace(stage):
 @pytest.mark.parametrize(("encoding", "pixel"), [("rgb8", [200, 100, 50]), ("bgr8", [50, 100, 200]), ("mono8", [120])])
 async def test_compressed_images_are_published_while_subscribed(stage, encoding, pixel):
     images = pytest.importorskip("PIL.Image")
-    kind = "sensor_msgs/msg/Image"
+    message_type = "sensor_msgs/msg/Image"
     ImageBridge(stage.graph, NodeOptions(arguments=["/camera"]))
-    camera = publisher(stage, kind, "/camera")
+    camera = publisher(stage, message_type, "/camera")
     await stage.graph.settle()
     assert camera.get_subscription_count() == 0
     compressed = record_messages(stage, "sensor_msgs/msg/CompressedImage", "/camera/compressed")
     await stage.graph.settle()
     step = 8 * len(pixel)
-    camera.publish(get_message(kind)(width=8, height=8, encoding=encoding, step=step, data=pixel * 64))
+    camera.publish(get_message(message_type)(width=8, height=8, encoding=encoding, step=step, data=pixel * 64))
     await stage.graph.settle()
-    camera.publish(get_message(kind)(width=8, height=8, encoding="16UC1", step=16, data=[0] * 128))
+    camera.publish(get_message(message_type)(width=8, height=8, encoding="16UC1", step=16, data=[0] * 128))
     await stage.graph.settle()
     (frame,) = compressed
     assert frame.format.startswith(f"{encoding}; jpeg compressed")
-    shown = images.open(BytesIO(bytes(frame.data)))
-    shown_pixel = shown.getpixel((4, 4))
+    decoded = images.open(BytesIO(bytes(frame.data)))
+    decoded_pixel = decoded.getpixel((4, 4))
     expected = [120] if encoding == "mono8" else [200, 100, 50]
-    assert list(shown_pixel if isinstance(shown_pixel, tuple) else (shown_pixel,)) == pytest.approx(expected, abs=6)
+    assert list(decoded_pixel if isinstance(decoded_pixel, tuple) else (decoded_pixel,)) == pytest.approx(
+        expected, abs=6
+    )
 
 
 @pytest.mark.parametrize(
-    ("more", "message"),
+    ("setting", "message"),
     [("publisher_queue: many", "'publisher_queue' is not an integer of 0 or more"), ("lazy: 3", "'lazy' is neither")],
 )
-def test_invalid_topic_settings_are_rejected(more, message, tmp_path: Path):
+def test_invalid_topic_settings_are_rejected(setting, message, tmp_path: Path):
     path = tmp_path / "bridge.yaml"
-    path.write_text(f"- topic_name: a\n  ros_type_name: b/msg/C\n  gz_type_name: c\n  {more}\n", encoding="utf-8")
+    path.write_text(f"- topic_name: a\n  ros_type_name: b/msg/C\n  gz_type_name: c\n  {setting}\n", encoding="utf-8")
     with pytest.raises(LinkwrightError, match=message):
         read_bridge_file(str(path))
 
 
 @pytest.mark.parametrize("ros_type", ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"])
 async def test_lost_publisher_stops_drive_behind_bridge(stage, ros_type):
-    word = f"/cmd_vel@{ros_type}]gz.msgs.Twist"
-    bridge = ParameterBridge(stage.graph, NodeOptions(arguments=[word, "--ros-args", "-r", "/cmd_vel:=/drive"]))
-    driven = record_messages(stage, "geometry_msgs/msg/Twist", "/cmd_vel")
+    argument = f"/cmd_vel@{ros_type}]gz.msgs.Twist"
+    bridge = ParameterBridge(stage.graph, NodeOptions(arguments=[argument, "--ros-args", "-r", "/cmd_vel:=/drive"]))
+    commands = record_messages(stage, "geometry_msgs/msg/Twist", "/cmd_vel")
     driver = RemotePublisher(RemoteTransport(stage.graph), "/drive", msg_type=ros_type)
     message = get_message(ros_type)()
     getattr(message, "twist", message).linear.x = 0.3
     driver.send(message)
-    driver.be_lost()
+    driver.disappear()
     await stage.graph.settle()
-    assert [twist.linear.x for twist in driven] == [0.3, 0.0]
+    assert [twist.linear.x for twist in commands] == [0.3, 0.0]
     bridge.close()

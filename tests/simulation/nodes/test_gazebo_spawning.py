@@ -1,4 +1,4 @@
-"""spawn_entity.py and create, against a simulator that only takes note of what it is asked for."""
+"""spawn_entity.py and create, with a simulator that only records requests."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ ROBOT = "<robot name='r'><link name='base'/></robot>"
 
 
 class Simulator:
-    """Takes note of requests.
+    """Services of a simulator that record the requests.
 
     Attributes:
         spawned: the requests for entities.
-        deleted: the names of those that were to be taken out.
-        put: the states that were asked for.
+        deleted: the names of the entities to delete.
+        new_states: the requested states.
         names: the models of the world.
         calls: other services that were called.
     """
@@ -34,14 +34,14 @@ class Simulator:
     def __init__(self, stage: Stage, namespace: str = "") -> None:
         self.spawned: list[Any] = []
         self.deleted: list[str] = []
-        self.put: list[Any] = []
+        self.new_states: list[Any] = []
         self.names = ["ground"]
         self.calls: list[str] = []
         self.refuses = False
         node = stage.graph.create_node("gazebo", namespace=namespace or "/")
         node.create_service(get_service("gazebo_msgs/srv/SpawnEntity"), "spawn_entity", self._spawn)
         node.create_service(get_service("gazebo_msgs/srv/DeleteEntity"), "delete_entity", self._delete)
-        node.create_service(get_service("gazebo_msgs/srv/SetEntityState"), "set_entity_state", self._put)
+        node.create_service(get_service("gazebo_msgs/srv/SetEntityState"), "set_entity_state", self._set_state)
         node.create_service(get_service("gazebo_msgs/srv/GetModelList"), "get_model_list", self._list)
         node.create_service(get_service("std_srvs/srv/Empty"), "unpause_physics", self._unpause)
 
@@ -56,8 +56,8 @@ class Simulator:
         response.success = request.name in self.names
         return response
 
-    def _put(self, request: Any, response: Any) -> Any:
-        self.put.append(request.state)
+    def _set_state(self, request: Any, response: Any) -> Any:
+        self.new_states.append(request.state)
         response.success = request.state.name in self.names
         return response
 
@@ -70,18 +70,18 @@ class Simulator:
         return response
 
 
-def spawn_entity(stage: Stage, *words: str, **options: Any) -> SpawnEntity:
-    return SpawnEntity(stage.graph, NodeOptions(arguments=list(words), **options))
+def spawn_entity(stage: Stage, *arguments: str, **options: Any) -> SpawnEntity:
+    return SpawnEntity(stage.graph, NodeOptions(arguments=list(arguments), **options))
 
 
-def create(stage: Stage, *words: str, **parameters: Any) -> Create:
-    return Create(stage.graph, NodeOptions(arguments=list(words), parameters=parameters))
+def create(stage: Stage, *arguments: str, **parameters: Any) -> Create:
+    return Create(stage.graph, NodeOptions(arguments=list(arguments), parameters=parameters))
 
 
 async def test_published_description_is_spawned_at_pose(stage, logged):
     simulator = Simulator(stage)
-    place = ("-x", "1.5", "-y", "-2", "-z", "0.1", "-Y", str(math.pi / 2))
-    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", *place)
+    pose_arguments = ("-x", "1.5", "-y", "-2", "-z", "0.1", "-Y", str(math.pi / 2))
+    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", *pose_arguments)
     await stage.graph.settle()
     assert simulator.spawned == []
     await stage.describe(ROBOT)
@@ -138,9 +138,9 @@ async def test_rejected_spawn_exits_with_status_1(stage, logged):
 async def test_robot_and_gazebo_namespaces_are_applied(stage):
     simulator = Simulator(stage, "/sim")
     await stage.describe(ROBOT)
-    words = ("-topic", "/robot_description", "-entity", "a", "-gazebo_namespace", "/sim")
-    spawn_entity(stage, *words, namespace="/one")
-    spawn_entity(stage, *words, "-robot_namespace", "two")
+    arguments = ("-topic", "/robot_description", "-entity", "a", "-gazebo_namespace", "/sim")
+    spawn_entity(stage, *arguments, namespace="/one")
+    spawn_entity(stage, *arguments, "-robot_namespace", "two")
     await stage.graph.settle()
     assert [request.robot_namespace for request in simulator.spawned] == ["/one", "two"]
 
@@ -224,7 +224,7 @@ async def test_create_accepts_parameters_and_ignores_unknown_options(stage):
 
 
 @pytest.mark.parametrize(
-    ("words", "message"),
+    ("arguments", "message"),
     [
         (["-topic", "t"], "the following arguments are required: -entity"),
         (["-entity", "a"], "one of the arguments -file -topic -database -stdin is required"),
@@ -233,16 +233,16 @@ async def test_create_accepts_parameters_and_ignores_unknown_options(stage):
         (["-entity", "a", "-topic", "t", "-wonder"], "unrecognized arguments: -wonder"),
     ],
 )
-def test_invalid_spawn_arguments_are_rejected(words, message):
-    with pytest.raises(LinkwrightError) as caught:
-        parse_arguments(words)
-    (finding,) = caught.value.diagnostics
+def test_invalid_spawn_arguments_are_rejected(arguments, message):
+    with pytest.raises(LinkwrightError) as error:
+        parse_arguments(arguments)
+    (finding,) = error.value.diagnostics
     assert finding.code == "NODE810"
     assert message in str(finding.message)
 
 
 @pytest.mark.parametrize(
-    ("words", "code"),
+    ("arguments", "code"),
     [
         (["-name", "a"], "NODE812"),
         (["-string", ROBOT, "-name", "a", "-x", "far"], "NODE812"),
@@ -250,10 +250,10 @@ def test_invalid_spawn_arguments_are_rejected(words, message):
         (["-file", "model://nothing", "-name", "a"], "NODE811"),
     ],
 )
-async def test_create_reports_errors(stage, words, code):
-    with pytest.raises(LinkwrightError) as caught:
-        create(stage, *words)
-    assert caught.value.diagnostics[0].code == code
+async def test_create_reports_errors(stage, arguments, code):
+    with pytest.raises(LinkwrightError) as error:
+        create(stage, *arguments)
+    assert error.value.diagnostics[0].code == code
 
 
 @pytest.mark.parametrize(("name", "status"), [("ground", 0), ("nothing", 1)])
@@ -268,14 +268,14 @@ async def test_remove_and_delete_entity_delete_model_and_exit(stage, name, statu
 
 async def test_set_entity_pose_moves_model_and_exits(stage):
     simulator = Simulator(stage)
-    words = ["--name", "ground", "--pos", "-1", "2", "3", "--euler", "0", "0", str(math.pi)]
-    turned = SetEntityPose(stage.graph, NodeOptions(arguments=words))
+    arguments = ["--name", "ground", "--pos", "-1", "2", "3", "--euler", "0", "0", str(math.pi)]
+    turned = SetEntityPose(stage.graph, NodeOptions(arguments=arguments))
     plain = SetEntityPose(
         stage.graph, NodeOptions(arguments=["--name", "link", "--type", "2", "--quat", "1", "0", "0", "0"])
     )
     await stage.graph.settle()
     assert (turned.finished.result(), plain.finished.result()) == (0, 1)
-    first, second = simulator.put
+    first, second = simulator.new_states
     position = first.pose.position
     assert (position.x, position.y, position.z) == (-1.0, 2.0, 3.0)
     assert first.pose.orientation.z == pytest.approx(1.0)
@@ -283,7 +283,7 @@ async def test_set_entity_pose_moves_model_and_exits(stage):
 
 
 @pytest.mark.parametrize(
-    ("node", "words"),
+    ("node", "arguments"),
     [
         (Remove, []),
         (DeleteEntity, ["--id", "3"]),
@@ -291,7 +291,7 @@ async def test_set_entity_pose_moves_model_and_exits(stage):
         (SetEntityPose, ["--name", "a", "--type", "5"]),
     ],
 )
-async def test_missing_or_invalid_arguments_are_reported(stage, node, words):
+async def test_missing_or_invalid_arguments_are_reported(stage, node, arguments):
     with pytest.raises(LinkwrightError) as error:
-        node(stage.graph, NodeOptions(arguments=words))
+        node(stage.graph, NodeOptions(arguments=arguments))
     assert error.value.diagnostics[0].code == "NODE812"

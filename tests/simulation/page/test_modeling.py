@@ -1,4 +1,4 @@
-"""Modeling of a world in the page: requests of pages change the file of the world and the simulation."""
+"""Editing of a world in the page: messages of pages change the world's file and the simulation."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ SERVICES = {
 POSE = [1, 2, 3, 0, 0, 0.5]
 
 
-class Simulation:
-    """What a simulator is for those who model its world; keeps what it was asked."""
+class FakeSimulator:
+    """The services of a simulator for an edited world; it records the requests."""
 
     def __init__(self, world, path: Path | None, *, loads: bool) -> None:
         self.node = world.graph.create_node("gazebo")
@@ -34,34 +34,36 @@ class Simulation:
         latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.description = self.node.create_publisher(STRING, "/world_description", latched)
         self.description.publish(STRING(data=PLAIN))
-        self.asked: list[tuple[str, object]] = []
+        self.requests: list[tuple[str, object]] = []
         self.refusal = ""
-        for name, kind in SERVICES.items():
+        for name, service_type in SERVICES.items():
             if loads or name != "/load_world":
                 self.node.create_service(
-                    get_service(kind), name, lambda request, response, name=name: self._take(name, request, response)
+                    get_service(service_type),
+                    name,
+                    lambda request, response, name=name: self._record(name, request, response),
                 )
 
-    def _take(self, name, request, response):
-        self.asked.append((name, request))
+    def _record(self, name, request, response):
+        self.requests.append((name, request))
         if name == "/load_world":
             response.result.error_message = self.refusal
         return response
 
-    async def loaded(self, count: int = 1):
-        """The resource that the world was loaded from last."""
+    async def last_loaded(self, count: int = 1):
+        """Wait until the world was loaded some times, and return the last resource."""
         await eventually(lambda: self.count("/load_world") >= count)
-        return self.asked[-1][1].world_resource
+        return self.requests[-1][1].world_resource
 
     def count(self, name: str) -> int:
-        return [service for service, _ in self.asked].count(name)
+        return [service for service, _ in self.requests].count(name)
 
 
 @asynccontextmanager
 async def modeling_session(path: Path | None = None, *, loads: bool = True):
-    """A simulation whose world stands in a file, and a page that edits it."""
+    """Run a simulation of the world in a file, with a page that edits it."""
     async with open_world() as world:
-        simulation = Simulation(world, path, loads=loads)
+        simulation = FakeSimulator(world, path, loads=loads)
         async with page(world.viewer) as client:
             await client.until("modeling_state", available=True)
             await client.send("set_modeling", active=True)
@@ -90,7 +92,7 @@ async def test_modeling_is_unavailable_without_simulation():
 async def test_modeling_pauses_and_resets_simulation(tmp_path):
     path = write_world(tmp_path)
     async with modeling_session(path) as (simulation, client, _):
-        assert [name for name, _ in simulation.asked] == ["/pause_physics", "/reset_simulation"]
+        assert [name for name, _ in simulation.requests] == ["/pause_physics", "/reset_simulation"]
         assert client.state["file"] == str(path)
         assert not client.state["unsaved"]
         assert [(entity["name"], entity["kind"]) for entity in client.state["entities"]] == [
@@ -104,7 +106,7 @@ async def test_modeling_pauses_and_resets_simulation(tmp_path):
         assert (box["pose"], box["parts"], lamp["color"]) == ([2, 0, 0.25, 0, 0, 0], [], [1, 1, 1, 1])
         await client.send("set_modeling", active=False)
         await client.until("modeling_state", active=False)
-        assert simulation.asked[-1][0] == "/unpause_physics"
+        assert simulation.requests[-1][0] == "/unpause_physics"
 
 
 async def test_changes_are_loaded_undone_and_saved(tmp_path):
@@ -114,12 +116,12 @@ async def test_changes_are_loaded_undone_and_saved(tmp_path):
         await client.send("change_entities", changes=[change("box", pose=[3, 0, 0.25, 0, 0, 0])])
         state = await client.until("modeling_state", unsaved=True)
         assert (state["can_undo"], state["can_redo"]) == (True, False)
-        resource = await simulation.loaded()
+        resource = await simulation.last_loaded()
         assert (resource.uri, resource.resource_string) == (str(path), PLAIN.replace(">2 0 0.250", ">3 0 0.250"))
         assert path.read_text() == PLAIN
         await client.send("undo_world")
         assert (await client.until("modeling_state", can_redo=True))["unsaved"] is False
-        assert (await simulation.loaded(2)).resource_string == PLAIN
+        assert (await simulation.last_loaded(2)).resource_string == PLAIN
         await client.send("redo_world")
         await client.until("modeling_state", can_redo=False, unsaved=True)
         await client.send("save_world", path=None)
@@ -131,8 +133,8 @@ async def test_changes_are_loaded_undone_and_saved(tmp_path):
 async def test_modeling_messages_edit_entities(tmp_path):
     async with modeling_session(write_world(tmp_path)) as (_, client, _):
 
-        async def names(kind: str, **fields) -> list[str]:
-            await client.send(kind, **fields)
+        async def names(service_type: str, **fields) -> list[str]:
+            await client.send(service_type, **fields)
             return [entity["name"] for entity in (await client.until("modeling_state"))["entities"]]
 
         for shape in ("box", "cylinder", "sphere", "wall", "ramp"):
@@ -153,7 +155,7 @@ async def test_modeling_messages_edit_entities(tmp_path):
         entities = {entity["name"]: entity for entity in (await client.until("modeling_state"))["entities"]}
         assert (entities["wall"]["size"], entities["wall"]["color"]) == ([1, 2, 3], [0, 0, 1, 1])
         assert (entities["slope"]["shape"], entities["slope"]["static"]) == ("ramp", False)
-        await client.send("ask_models")
+        await client.send("request_models")
         model_choices = (await client.until("model_choices"))["models"]
         assert {"name": "sun", "address": "model://sun"} in model_choices
 
@@ -197,7 +199,7 @@ async def test_world_without_file_is_saved_to_new_file(tmp_path):
     async with modeling_session() as (simulation, client, _):
         assert client.state["file"] is None
         await client.send("delete_entities", names=["box"])
-        assert (await simulation.loaded()).resource_string == PLAIN.replace(BOX, "")
+        assert (await simulation.last_loaded()).resource_string == PLAIN.replace(BOX, "")
         await client.send("save_world", path=None)
         assert "no file yet" in (await client.until("simulation_notice"))["text"]
         path = tmp_path / "new.world"

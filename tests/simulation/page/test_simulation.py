@@ -1,4 +1,4 @@
-"""The simulation bar, and what pages do to the models of a simulated world."""
+"""The simulation bar, and changes of a simulated world's models by pages."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ SERVICES = {
 }
 
 
-class Simulation:
-    """The topics and services of a simulator; keeps what it was asked, and says where every model is."""
+class FakeSimulator:
+    """The topics and services of a simulator; it records requests, and returns a fixed pose for each model."""
 
     def __init__(self, world) -> None:
         self.world = world
@@ -36,14 +36,14 @@ class Simulation:
         latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.state = self.node.create_publisher(STATE, "/simulation_state", latched)
         self.metrics = self.node.create_publisher(METRICS, "/performance_metrics", 10)
-        self.asked: list[tuple[str, object]] = []
+        self.requests: list[tuple[str, object]] = []
         for name, kind in SERVICES.items():
             self.node.create_service(
-                get_service(kind), name, lambda request, response, name=name: self._take(name, request, response)
+                get_service(kind), name, lambda request, response, name=name: self._record(name, request, response)
             )
 
-    def _take(self, name: str, request, response):
-        self.asked.append((name, request))
+    def _record(self, name: str, request, response):
+        self.requests.append((name, request))
         if hasattr(response, "success"):
             response.success = getattr(request, "name", "") != "nobody"
             if not response.success:
@@ -59,14 +59,14 @@ class Simulation:
         return response
 
     async def request(self, name: str, count: int = 1):
-        await eventually(lambda: [service for service, _ in self.asked].count(name) >= count)
-        return [request for service, request in self.asked if service == name][-1]
+        await eventually(lambda: [service for service, _ in self.requests].count(name) >= count)
+        return [request for service, request in self.requests if service == name][-1]
 
 
 @asynccontextmanager
-async def simulated():
+async def open_simulation():
     async with open_world() as world:
-        simulation = Simulation(world)
+        simulation = FakeSimulator(world)
         simulation.state.publish(STATE(state=1))
         async with page(world.viewer) as client:
             await client.until("simulation_status", present=True)
@@ -86,7 +86,7 @@ async def test_simulation_features_are_created_on_demand():
         assert not (await client.opened())["modeling_state"]["available"]
         needless = {"SimulationFeature", "ModelingFeature", "RecordingFeature", "ComparisonFeature", "PointsFeature"}
         assert not needless & kinds(world.viewer)
-        Simulation(world).state.publish(STATE(state=1))
+        FakeSimulator(world).state.publish(STATE(state=1))
         await client.until("simulation_status", present=True)
         assert needless & kinds(world.viewer) == {"SimulationFeature"}
         await client.send("stop_recording")
@@ -95,7 +95,7 @@ async def test_simulation_features_are_created_on_demand():
 
 
 async def test_status_reports_pause_and_real_time_factor():
-    async with simulated() as (simulation, client):
+    async with open_simulation() as (simulation, client):
         simulation.state.publish(STATE(state=2))
         await client.until("simulation_status", paused=True)
         message = METRICS(real_time_factor=0.5)
@@ -105,7 +105,7 @@ async def test_status_reports_pause_and_real_time_factor():
 
 
 async def test_status_reports_drivable_robot():
-    async with simulated() as (simulation, client):
+    async with open_simulation() as (simulation, client):
         simulation.node.create_subscription("geometry_msgs/msg/TwistStamped", "robot/cmd_vel", lambda _: None, 10)
         await client.until("simulation_status", drivable=True)
         simulation.node.destroy_node()
@@ -113,7 +113,7 @@ async def test_status_reports_drivable_robot():
 
 
 async def test_status_reports_end_of_simulation():
-    async with simulated() as (simulation, client):
+    async with open_simulation() as (simulation, client):
         simulation.node.destroy_node()
         await client.until("simulation_status", present=False)
 
@@ -128,7 +128,7 @@ async def test_status_reports_end_of_simulation():
     ],
 )
 async def test_simulation_buttons_call_services(action, service):
-    async with simulated() as (simulation, client):
+    async with open_simulation() as (simulation, client):
         await client.send("control_simulation", action=action)
         request = await simulation.request(service)
         assert getattr(request, "steps", 1) == 1
@@ -139,7 +139,7 @@ async def test_models_are_spawned_from_path(tmp_path):
     robot.write_text("<robot name='box'><link name='base'/></robot>")
     model = tmp_path / "ball.sdf"
     model.write_text("<sdf version='1.9'><model name='ball'><static>true</static><link name='l'/></model></sdf>")
-    async with simulated() as (simulation, client):
+    async with open_simulation() as (simulation, client):
         await client.send("spawn_model", address=str(robot), position=[1, 2, 3])
         request = await simulation.request("/spawn_entity")
         assert '<robot name="box">' in request.xml
@@ -156,7 +156,7 @@ async def test_models_are_spawned_from_path(tmp_path):
 async def test_duplicate_model_is_renamed_with_notice(tmp_path):
     robot = tmp_path / "robot.urdf"
     robot.write_text("<robot name='ground'><link name='base'/></robot>")
-    async with simulated() as (simulation, client):
+    async with open_simulation() as (simulation, client):
         await client.send("spawn_model", address=str(robot), position=[1, 2, 3])
         request = await simulation.request("/spawn_entity")
         assert (request.name, request.robot_namespace) == ("ground_3", "/ground_3")
@@ -164,7 +164,7 @@ async def test_duplicate_model_is_renamed_with_notice(tmp_path):
 
 
 async def test_rejected_request_is_reported():
-    async with simulated() as (_, client):
+    async with open_simulation() as (_, client):
         await client.send("delete_model", model="nobody")
         assert (await client.until("simulation_notice"))["text"] == "there is no model 'nobody'"
 
@@ -180,7 +180,7 @@ async def test_missing_service_is_reported():
 
 
 async def test_model_is_dragged_relative_to_its_pose():
-    async with simulated() as (simulation, client):
+    async with open_simulation() as (simulation, client):
         await client.send("drag_model", model="crate", begins=True, offset=[0, 0, 0])
         await simulation.request("/set_entity_state")
         await client.send("drag_model", model="crate", begins=False, offset=[2, 3, 0])
@@ -188,18 +188,18 @@ async def test_model_is_dragged_relative_to_its_pose():
         assert (state.name, state.reference_frame) == ("crate", "world")
         position, turn = state.pose.position, state.pose.orientation
         assert (position.x, position.y, position.z, turn.z) == (3.0, 3.0, 0.0, 1.0)
-        assert [name for name, _ in simulation.asked].count("/get_entity_state") == 1
+        assert [name for name, _ in simulation.requests].count("/get_entity_state") == 1
 
 
 async def test_immovable_model_is_reported_by_name():
-    async with simulated() as (_, client):
+    async with open_simulation() as (_, client):
         await client.send("drag_model", model="ground", begins=True, offset=[0, 0, 0])
         notice = await client.until("simulation_notice")
         assert notice["text"] == "'ground' cannot be moved: it is fixed to the world, or no longer exists"
 
 
 async def test_push_applies_wrench_at_point():
-    async with simulated() as (simulation, client):
+    async with open_simulation() as (simulation, client):
         await client.send("push_link", link="crate::link", point=[0, 0, 1], force=[5, 0, 0])
         request = await simulation.request("/apply_link_wrench")
         assert (request.link_name, request.reference_frame, request.reference_point.z) == ("crate::link", "world", 1.0)
@@ -208,4 +208,4 @@ async def test_push_applies_wrench_at_point():
         await client.send("push_link", link="crate::link", point=[0, 0], force=[5, 0, 0])
         await client.send("delete_model", model="crate")
         await simulation.request("/delete_entity")
-        assert [name for name, _ in simulation.asked].count("/apply_link_wrench") == 1
+        assert [name for name, _ in simulation.requests].count("/apply_link_wrench") == 1

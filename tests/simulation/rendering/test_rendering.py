@@ -1,4 +1,4 @@
-"""Pictures, whichever way they are made: colors, distances, and where in the picture things are."""
+"""Images of all renderers: colors, distances, and the positions of objects in the image."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.simulation.rendering.choice import METHODS, make_renderer
 from linkwright.simulation.rendering.renderer import Channels
 from linkwright.simulation.simulation import Simulation
 from tests.simulation.sensors.rooms import block
-from tests.simulation.worlds import model, simulated
+from tests.simulation.worlds import make_simulation, model
 
 CAMERA = Camera(horizontal_fov=pi / 2, image=ImageFormat(160, 120), clip=Clip(0.05, 50.0))
 LENS = Distortion(-0.25, 0.12, -0.01, 0.001, -0.002)
@@ -28,94 +28,100 @@ FLOOR = """
 </visual></link></model>"""
 
 
-def renderer_of(simulation: Simulation, way: str):
-    """A renderer of one way; a test of a way that the system lacks is skipped."""
+def renderer_of(simulation: Simulation, method: str):
+    """Return a renderer of one method; skip the test if this machine cannot create it."""
     try:
-        return make_renderer(simulation, way)
-    except Exception as error:  # noqa: BLE001 - a library that is not there fails in many ways
-        pytest.skip(f"no {way} here: {error}")
+        return make_renderer(simulation, method)
+    except Exception as error:  # noqa: BLE001 - missing libraries raise many types of errors
+        pytest.skip(f"{method} does not work here: {error}")
 
 
 @pytest.fixture(params=METHODS)
-def make(request: pytest.FixtureRequest):
-    """Makes a renderer one way; the ways that the system lacks are left out."""
+def make_new(request: pytest.FixtureRequest):
+    """Return a function that creates a renderer of one method; methods that fail here are skipped."""
     renderers = []
 
     def renderer(simulation: Simulation):
-        created = renderer_of(simulation, request.param)
-        renderers.append(created)
-        return created
+        new_renderer = renderer_of(simulation, request.param)
+        renderers.append(new_renderer)
+        return new_renderer
 
     yield renderer
     for open_renderer in renderers:
         open_renderer.close()
 
 
-def test_depth_of_walls_is_exact(make):
-    simulation = simulated(block("wall", "3.5 0 0 0 0 0", "1 20 20"), block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5"))
-    depth = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
+def test_depth_of_walls_is_exact(make_new):
+    simulation = make_simulation(
+        block("wall", "3.5 0 0 0 0 0", "1 20 20"), block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5")
+    )
+    depth = make_new(simulation).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
     assert depth.shape == (120, 160)
     assert depth.dtype == np.float32
     assert depth[60, 60] == pytest.approx(1.75, abs=1e-3)
     assert np.abs(depth[:, 100:] - 3.0).max() < 1e-3
 
 
-def test_depth_is_same_with_and_without_color(make):
-    simulation = simulated(FLOOR, block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5", color="1 0 0 1"))
-    renderer, optics, pose = make(simulation), optics_of(CAMERA), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-    both = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
+def test_depth_is_same_with_and_without_color(make_new):
+    simulation = make_simulation(FLOOR, block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5", color="1 0 0 1"))
+    renderer, optics, pose = make_new(simulation), optics_of(CAMERA), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    depth_and_color = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
     alone = renderer.render(optics, pose, Channels.DEPTH)
-    again = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
-    assert (alone.depth == both.depth).all()
+    repeated = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
+    assert (alone.depth == depth_and_color.depth).all()
     assert alone.color is None
-    assert (again.color == both.color).all()
+    assert (repeated.color == depth_and_color.color).all()
 
 
-def test_floor_extends_to_horizon(make):
+def test_floor_extends_to_horizon(make_new):
     pose = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     optics = optics_of(CAMERA)
-    depth = make(simulated(FLOOR)).render(optics, pose, Channels.DEPTH).depth
+    depth = make_new(make_simulation(FLOOR)).render(optics, pose, Channels.DEPTH).depth
     rows = np.arange(65, 120)
     expected = optics.fy / (rows + 0.5 - optics.cy)
     assert depth[65:, 80] == pytest.approx(expected, abs=1e-3)
     assert np.isinf(depth[:59]).all()
 
 
-def test_floor_depth_does_not_depend_on_light(make):
+def test_floor_depth_does_not_depend_on_light(make_new):
     pose, optics = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), optics_of(CAMERA)
     lamp = '<light name="lamp" type="point"><pose>3 0 2 0 0 0</pose><diffuse>1 1 1 1</diffuse></light>'
-    under_the_sun = make(simulated(FLOOR)).render(optics, pose, Channels.DEPTH | Channels.GEOMS)
-    under_a_lamp = make(simulated(FLOOR, lamp)).render(optics, pose, Channels.DEPTH | Channels.GEOMS)
+    under_the_sun = make_new(make_simulation(FLOOR)).render(optics, pose, Channels.DEPTH | Channels.GEOMS)
+    under_a_lamp = make_new(make_simulation(FLOOR, lamp)).render(optics, pose, Channels.DEPTH | Channels.GEOMS)
     assert under_a_lamp.depth[65:] == pytest.approx(under_the_sun.depth[65:], abs=1e-3)
     assert (under_a_lamp.geoms[65:] == under_the_sun.geoms[65:]).all()
 
 
-def test_floor_is_invisible_from_below(make):
-    rendered = make(simulated(FLOOR)).render(optics_of(CAMERA), (0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0), Channels.DEPTH)
-    assert np.isinf(rendered.depth).all()
+def test_floor_is_invisible_from_below(make_new):
+    image = make_new(make_simulation(FLOOR)).render(
+        optics_of(CAMERA), (0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0), Channels.DEPTH
+    )
+    assert np.isinf(image.depth).all()
 
 
-@pytest.mark.parametrize("place", ["2 2.2 0", "2 -2.2 0", "2 0 1.7", "2 0 -1.7"])
-def test_partly_visible_object_is_rendered(make, place):
-    simulation = simulated(block("thing", f"{place} 0 0 0", "0.9 0.9 0.9"))
-    geoms = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.GEOMS).geoms
+@pytest.mark.parametrize("position", ["2 2.2 0", "2 -2.2 0", "2 0 1.7", "2 0 -1.7"])
+def test_partly_visible_object_is_rendered(make_new, position):
+    simulation = make_simulation(block("thing", f"{position} 0 0 0", "0.9 0.9 0.9"))
+    geoms = make_new(simulation).render(optics_of(CAMERA), IDENTITY, Channels.GEOMS).geoms
     assert (geoms >= 0).any()
 
 
-def test_objects_outside_clip_range_are_not_rendered(make):
-    simulation = simulated(block("near", "0.3 0.1 0 0 0 0", "0.1 0.1 0.1"), block("far", "60 0 0 0 0 0", "1 90 90"))
+def test_objects_outside_clip_range_are_not_rendered(make_new):
+    simulation = make_simulation(
+        block("near", "0.3 0.1 0 0 0 0", "0.1 0.1 0.1"), block("far", "60 0 0 0 0 0", "1 90 90")
+    )
     optics = replace(optics_of(CAMERA), near=0.5)
-    rendered = make(simulation).render(optics, IDENTITY, Channels.DEPTH | Channels.COLOR)
+    rendered = make_new(simulation).render(optics, IDENTITY, Channels.DEPTH | Channels.COLOR)
     assert np.isinf(rendered.depth).all()
     assert (rendered.color == round(0.7 * 255)).all()
 
 
-def test_colors_match_objects(make):
-    simulation = simulated(
+def test_colors_match_objects(make_new):
+    simulation = make_simulation(
         block("left", "2 1 0 0 0 0", "0.1 1 1", color="1 0 0 1"),
         block("right", "2 -1 0 0 0 0", "0.1 1 1", color="0 1 0 1"),
     )
-    renderer = make(simulation)
+    renderer = make_new(simulation)
     color = renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color
     red, green = color[60, 40].astype(int), color[60, 120].astype(int)
     assert red[0] > 50
@@ -132,17 +138,17 @@ PANEL = """<model name="panel"><static>true</static><pose>2 0 0 0 0 0</pose><lin
 
 
 @pytest.mark.parametrize("kind", ["albedo", "emissive"])
-def test_meshes_are_textured(make, tmp_path, kind, request):
+def test_meshes_are_textured(make_new, tmp_path, kind, request):
     (tmp_path / "quad.obj").write_text(QUAD)
     image = Image.new("RGB", (64, 64), (255, 0, 0))
-    image.paste((0, 0, 255), (32, 0, 64, 64))  # its right half, which is the left one as seen from here
+    image.paste((0, 0, 255), (32, 0, 64, 64))  # the right half, on the left as seen by the camera
     image.save(tmp_path / "halves.png")
-    simulation = simulated(PANEL.format(folder=tmp_path, kind=kind, image="halves.png"))
+    simulation = make_simulation(PANEL.format(folder=tmp_path, kind=kind, image="halves.png"))
     assert not simulation.scene.diagnostics
-    color = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color.astype(int)
+    color = make_new(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color.astype(int)
     left, right = color[60, 60], color[60, 100]
     assert left[1] == right[1] == 0
-    if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one color a shape
+    if request.node.callspec.params["make_new"] in ("embree", "mujoco"):  # rays: one color a shape
         assert left[0] == left[2] > 50
         return
     assert left[2] > 50
@@ -156,7 +162,7 @@ def test_meshes_are_textured(make, tmp_path, kind, request):
 def test_missing_texture_is_reported_once(tmp_path):
     (tmp_path / "quad.obj").write_text(QUAD)
     panel = PANEL.format(folder=tmp_path, kind="albedo", image="none.png")
-    simulation = simulated(panel, panel.replace('name="panel"', 'name="other"'))
+    simulation = make_simulation(panel, panel.replace('name="panel"', 'name="other"'))
     (finding,) = simulation.scene.diagnostics
     assert finding.code == "SIM112"
     assert str(finding.message).startswith("an image is left out: ")
@@ -164,7 +170,7 @@ def test_missing_texture_is_reported_once(tmp_path):
 
 QUARTERS = ((255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 0))
 """The colors of an image: above left and right, below left and right."""
-WEARING = """<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><link name="link"><visual name="v">
+TEXTURED = """<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><link name="link"><visual name="v">
 <geometry>{shape}</geometry><material><pbr><metal><albedo_map>file://{image}</albedo_map></metal></pbr></material></visual></link></model>"""
 
 
@@ -177,23 +183,23 @@ WEARING = """<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><l
         ("<sphere><radius>0.6</radius></sphere>", 1.4, None),
     ],
 )
-def test_primitive_shapes_are_textured(make, tmp_path, shape, distance, order, request):
-    image = Image.new("RGB", (64, 64))
-    for place, quarter in enumerate(QUARTERS):
-        column, row = 32 * (place % 2), 32 * (place // 2)
-        image.paste(quarter, (column, row, column + 32, row + 32))
-    image.save(tmp_path / "quarters.png")
-    text = WEARING.format(shape=shape, image=tmp_path / "quarters.png")
-    simulation = simulated(text)
+def test_primitive_shapes_are_textured(make_new, tmp_path, shape, distance, order, request):
+    texture = Image.new("RGB", (64, 64))
+    for index, quarter in enumerate(QUARTERS):
+        column, row = 32 * (index % 2), 32 * (index // 2)
+        texture.paste(quarter, (column, row, column + 32, row + 32))
+    texture.save(tmp_path / "quarters.png")
+    text = TEXTURED.format(shape=shape, image=tmp_path / "quarters.png")
+    simulation = make_simulation(text)
     assert not simulation.scene.diagnostics
-    rendered = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
-    assert rendered.depth[60, 80] == pytest.approx(distance, abs=2e-3)
-    if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one color a shape
-        red, green, blue = rendered.color[60, 80].astype(int)
+    image = make_new(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
+    assert image.depth[60, 80] == pytest.approx(distance, abs=2e-3)
+    if request.node.callspec.params["make_new"] in ("embree", "mujoco"):  # rays: one color a shape
+        red, green, blue = image.color[60, 80].astype(int)
         assert red == green > 0
         assert blue == pytest.approx(red / 2, abs=2)
         return
-    color = rendered.color.astype(int)
+    color = image.color.astype(int)
     corners = [tuple(color[row, column] > 40) for row in (50, 70) for column in (70, 90)]
     known = [tuple(np.array(quarter) > 0) for quarter in QUARTERS]
     assert set(corners) <= set(known)
@@ -203,18 +209,18 @@ def test_primitive_shapes_are_textured(make, tmp_path, shape, distance, order, r
 
 
 def test_box_with_missing_texture_is_reported(tmp_path):
-    simulation = simulated(WEARING.format(shape="<box><size>1 1 1</size></box>", image=tmp_path / "none.png"))
+    simulation = make_simulation(TEXTURED.format(shape="<box><size>1 1 1</size></box>", image=tmp_path / "none.png"))
     assert [diagnostic.code for diagnostic in simulation.scene.diagnostics] == ["SIM112"]
     assert simulation.model.nmesh == 0
 
 
 @pytest.mark.parametrize("point", [(2.0, 0.5, 0.3), (2.0, -1.2, -0.6), (3.0, 2.0, 1.5)])
-def test_positions_match_pinhole_model(make, point):
+def test_positions_match_pinhole_model(make_new, point):
     x, y, z = point
     size = 0.2
-    simulation = simulated(block("thing", f"{x} {y} {z} 0 0 0", f"0.001 {size} {size}"))
+    simulation = make_simulation(block("thing", f"{x} {y} {z} 0 0 0", f"0.001 {size} {size}"))
     optics = optics_of(CAMERA)
-    geoms = make(simulation).render(optics, IDENTITY, Channels.GEOMS).geoms
+    geoms = make_new(simulation).render(optics, IDENTITY, Channels.GEOMS).geoms
     rows, columns = np.nonzero(geoms >= 0)
     assert len(rows) > 10
     focal = 160 / (2 * tan(pi / 4))
@@ -225,18 +231,18 @@ def test_positions_match_pinhole_model(make, point):
     assert rows.max() + 1 == pytest.approx(60 - focal * (z - size / 2) / near, abs=0.5 + 1e-6)
 
 
-def test_positions_match_lens_distortion_model(make):
+def test_positions_match_lens_distortion_model(make_new):
     size, x, y, z = 0.2, 2.0, 1.2, 0.8
-    simulation = simulated(block("thing", f"{x} {y} {z} 0 0 0", f"0.001 {size} {size}"))
+    simulation = make_simulation(block("thing", f"{x} {y} {z} 0 0 0", f"0.001 {size} {size}"))
     optics = optics_of(Camera(horizontal_fov=pi / 2, image=ImageFormat(160, 120), distortion=LENS))
-    geoms = make(simulation).render(optics, IDENTITY, Channels.GEOMS).geoms
+    geoms = make_new(simulation).render(optics, IDENTITY, Channels.GEOMS).geoms
     rows, columns = np.nonzero(geoms >= 0)
     (middle,) = optics.project(np.array([[-y, -z, x]]))
     assert columns.mean() + 0.5 == pytest.approx(middle[0], abs=0.5)
     assert rows.mean() + 0.5 == pytest.approx(middle[1], abs=0.5)
 
 
-def test_shapes_have_correct_extent(make):
+def test_shapes_have_correct_extent(make_new):
     shapes = (
         "<sphere><radius>0.5</radius></sphere>",
         "<cylinder><radius>0.5</radius><length>1</length></cylinder>",
@@ -249,14 +255,14 @@ def test_shapes_have_correct_extent(make):
             '<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><link name="link"><visual name="visual">'
             f"<geometry>{shape}</geometry></visual></link></model>"
         )
-        depth = make(simulated(text)).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
+        depth = make_new(make_simulation(text)).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
         assert 1.4 < depth[60, 80] < 2.0, shape
         assert np.isinf(depth[0, 0]), shape
 
 
-def test_spawned_and_moved_models_are_rendered(make):
-    simulation = simulated(FLOOR)
-    renderer, optics = make(simulation), optics_of(CAMERA)
+def test_spawned_and_moved_models_are_rendered(make_new):
+    simulation = make_simulation(FLOOR)
+    renderer, optics = make_new(simulation), optics_of(CAMERA)
     high = (0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 1.0)
     assert np.isinf(renderer.render(optics, high, Channels.DEPTH).depth[60, 80])
     geometry = "<geometry><box><size>1 1 1</size></box></geometry>"
@@ -267,30 +273,30 @@ def test_spawned_and_moved_models_are_rendered(make):
     assert np.isinf(renderer.render(optics, high, Channels.DEPTH).depth[60, 80])
 
 
-def test_camera_does_not_see_its_own_housing(make):
+def test_camera_does_not_see_its_own_housing(make_new):
     housing = "<geometry><box><size>0.06 0.06 0.06</size></box></geometry>"
     eye = f'<model name="eye"><link name="link"><visual name="v">{housing}</visual></link></model>'
-    simulation = simulated(block("wall", "3 0 0 0 0 0", "1 20 20"), eye)
-    depth = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
+    simulation = make_simulation(block("wall", "3 0 0 0 0 0", "1 20 20"), eye)
+    depth = make_new(simulation).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
     assert np.abs(depth - 2.5).max() < 1e-3
 
 
-def test_renderers_produce_same_image(make):
+def test_renderers_produce_same_image(make_new):
     wall = block("wall", "4 0 1 0 0 0", "0.1 3 2", color="0 0 1 1")
-    simulation = simulated(FLOOR, block("box", "2 0.4 0.3 0 0 0.5", "0.5 0.5 0.6"), wall)
+    simulation = make_simulation(FLOOR, block("box", "2 0.4 0.3 0 0 0.5", "0.5 0.5 0.6"), wall)
     pose, optics = (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0), optics_of(CAMERA)
     exact = make_renderer(simulation, "mujoco").render(optics, pose, Channels.COLOR | Channels.GEOMS)
-    other = make(simulation).render(optics, pose, Channels.COLOR | Channels.GEOMS)
-    assert (exact.geoms != other.geoms).mean() < 0.01
-    apart = np.abs(exact.color.astype(int) - other.color.astype(int)).max(axis=-1)
-    assert np.median(apart) <= 3
-    assert (apart > 20).mean() < 0.02
+    image = make_new(simulation).render(optics, pose, Channels.COLOR | Channels.GEOMS)
+    assert (exact.geoms != image.geoms).mean() < 0.01
+    difference = np.abs(exact.color.astype(int) - image.color.astype(int)).max(axis=-1)
+    assert np.median(difference) <= 3
+    assert (difference > 20).mean() < 0.02
 
 
 ROUND = "".join(
     f'<model name="{name}"><static>true</static><pose>{pose}</pose><link name="link"><visual name="visual"><geometry>'
-    f"<{name}><radius>0.3</radius>{more}</{name}></geometry></visual></link></model>"
-    for name, more, pose in (
+    f"<{name}><radius>0.3</radius>{extra}</{name}></geometry></visual></link></model>"
+    for name, extra, pose in (
         ("cylinder", "<length>0.8</length>", "1.5 0.7 0 0.5 0.4 0"),
         ("capsule", "<length>0.8</length>", "1.5 -0.7 0 0.5 -0.4 0"),
         ("sphere", "", "1.5 0 0 0.5 0.6 0.7"),
@@ -299,8 +305,8 @@ ROUND = "".join(
 
 
 @pytest.fixture(params=opengl.BACKENDS)
-def drawn(request: pytest.FixtureRequest):
-    """Draws a world by OpenGL: gives the picture and how many triangles and quads were drawn."""
+def draw_with_opengl(request: pytest.FixtureRequest):
+    """Return a function that draws a world with OpenGL, and counts the triangles and quads."""
 
     def draw(simulation: Simulation):
         from OpenGL import GL
@@ -310,9 +316,9 @@ def drawn(request: pytest.FixtureRequest):
             renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOR)
             (query,) = GL.glGenQueries(1, np.zeros(1, np.uint32))
             GL.glBeginQuery(GL.GL_PRIMITIVES_GENERATED, query)
-            rendered = renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
+            image = renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
             GL.glEndQuery(GL.GL_PRIMITIVES_GENERATED)
-            return rendered, int(GL.glGetQueryObjectuiv(query, GL.GL_QUERY_RESULT))
+            return image, int(GL.glGetQueryObjectuiv(query, GL.GL_QUERY_RESULT))
         finally:
             renderer.close()
 
@@ -320,26 +326,30 @@ def drawn(request: pytest.FixtureRequest):
 
 
 @pytest.mark.parametrize("light", ["", '<light name="lamp" type="point"><pose>0 1 1 0 0 0</pose></light>'])
-def test_round_shapes_match_mujoco(drawn, monkeypatch, light):
-    simulation = simulated(ROUND, light)
-    ours, few = drawn(simulation)
+def test_round_shapes_match_mujoco(draw_with_opengl, monkeypatch, light):
+    simulation = make_simulation(ROUND, light)
+    our_image, our_count = draw_with_opengl(simulation)
     monkeypatch.setattr(opengl, "_BUILT_IN", 0)
-    theirs, many = drawn(simulation)
-    apart = np.abs(ours.color.astype(int) - theirs.color).max(axis=-1)
-    assert (theirs.color != theirs.color[0, 0]).any(axis=-1).mean() > 0.1
-    assert (apart > 1).mean() < 1e-3
-    is_visible = np.isfinite(ours.depth) & np.isfinite(theirs.depth)
-    assert ours.depth[is_visible] == pytest.approx(theirs.depth[is_visible], abs=1e-3)
-    assert (np.isfinite(ours.depth) != is_visible).sum() < 20
-    assert few < many if not light else few != many  # squares of MuJoCo's, triangles of ours
+    mujoco_image, mujoco_count = draw_with_opengl(simulation)
+    difference = np.abs(our_image.color.astype(int) - mujoco_image.color).max(axis=-1)
+    assert (mujoco_image.color != mujoco_image.color[0, 0]).any(axis=-1).mean() > 0.1
+    assert (difference > 1).mean() < 1e-3
+    is_visible = np.isfinite(our_image.depth) & np.isfinite(mujoco_image.depth)
+    assert our_image.depth[is_visible] == pytest.approx(mujoco_image.depth[is_visible], abs=1e-3)
+    assert (np.isfinite(our_image.depth) != is_visible).sum() < 20
+    assert (
+        our_count < mujoco_count if not light else our_count != mujoco_count
+    )  # MuJoCo draws quads, Linkwright triangles
 
 
-def test_point_light_lights_nearby_objects(make):
+def test_point_light_lights_nearby_objects(make_new):
     lamp = (
         '<light name="lamp" type="point"><pose>1.5 1 0 0 0 0</pose><attenuation><range>9</range></attenuation></light>'
     )
-    simulation = simulated(block("one", "2 1 0 0 0 0", "0.1 1 1"), block("other", "2 -1 0 0 0 0", "0.1 1 1"), lamp)
-    color = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color
+    simulation = make_simulation(
+        block("one", "2 1 0 0 0 0", "0.1 1 1"), block("other", "2 -1 0 0 0 0", "0.1 1 1"), lamp
+    )
+    color = make_new(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color
     assert color[60, 40, 0] > color[60, 120, 0] + 20
 
 
@@ -356,42 +366,42 @@ def test_intrinsics_replace_field_of_view():
 
 
 def floating(name: str, pose: str, size: float = 0.5) -> str:
-    """A box that nothing pulls: it rests until it is put elsewhere."""
+    """Return a box without gravity: it rests until its pose is set."""
     return (
         f'<model name="{name}"><pose>{pose}</pose><link name="link"><gravity>false</gravity>'
         f'<visual name="v"><geometry><box><size>{size} {size} {size}</size></box></geometry></visual></link></model>'
     )
 
 
-def test_resting_and_moving_models_are_rendered_at_current_pose(make):
-    simulation = simulated(floating("one", "2 0 0 0 0 0"), floating("two", "3 1 0 0 0 0"))
-    renderer, optics = make(simulation), optics_of(CAMERA)
+def test_resting_and_moving_models_are_rendered_at_current_pose(make_new):
+    simulation = make_simulation(floating("one", "2 0 0 0 0 0"), floating("two", "3 1 0 0 0 0"))
+    renderer, optics = make_new(simulation), optics_of(CAMERA)
 
-    def seen():
-        """The world now, of a renderer that has seen it before and of one that has not."""
+    def depths():
+        """Return the depth image of the renderer so far, and that of a new renderer."""
         return tuple(
-            candidate.render(optics, IDENTITY, Channels.DEPTH).depth for candidate in (renderer, make(simulation))
+            candidate.render(optics, IDENTITY, Channels.DEPTH).depth for candidate in (renderer, make_new(simulation))
         )
 
-    for place in (None, (2.5, -0.5, 0.3, 0.0, 0.0, 0.0, 1.0), (-2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)):
-        if place is not None:
-            simulation.set_model_pose("one", place)
+    for pose in (None, (2.5, -0.5, 0.3, 0.0, 0.0, 0.0, 1.0), (-2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)):
+        if pose is not None:
+            simulation.set_model_pose("one", pose)
         for _ in range(3):
-            known, new = seen()
-            assert (known == new).all()
+            depth, new_depth = depths()
+            assert (depth == new_depth).all()
             simulation.advance(NANOSECONDS_PER_SECOND // 5)
-    assert np.isfinite(known).any()
+    assert np.isfinite(depth).any()
     simulation.reset()
-    known, new = seen()
-    assert known[60, 80] == pytest.approx(1.75, abs=1e-3)
-    assert (known == new).all()
+    depth, new_depth = depths()
+    assert depth[60, 80] == pytest.approx(1.75, abs=1e-3)
+    assert (depth == new_depth).all()
 
 
-def test_resting_housing_does_not_hide_camera_view(make):
-    simulation = simulated(floating("housing", "0 0 0 0 0 0", 0.06), block("wall", "3.5 0 0 0 0 0", "1 20 20"))
-    renderer, optics = make(simulation), optics_of(CAMERA)
-    beside = (-2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+def test_resting_housing_does_not_hide_camera_view(make_new):
+    simulation = make_simulation(floating("housing", "0 0 0 0 0 0", 0.06), block("wall", "3.5 0 0 0 0 0", "1 20 20"))
+    renderer, optics = make_new(simulation), optics_of(CAMERA)
+    behind_housing = (-2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
     for _ in range(3):
         assert renderer.render(optics, IDENTITY, Channels.DEPTH).depth[60, 80] == pytest.approx(3.0, abs=1e-3)
-        assert renderer.render(optics, beside, Channels.DEPTH).depth[60, 80] == pytest.approx(1.97, abs=1e-3)
+        assert renderer.render(optics, behind_housing, Channels.DEPTH).depth[60, 80] == pytest.approx(1.97, abs=1e-3)
         simulation.advance(NANOSECONDS_PER_SECOND // 5)

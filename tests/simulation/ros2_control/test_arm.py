@@ -1,4 +1,4 @@
-"""An arm in a simulated world follows trajectories by position, velocity and effort."""
+"""An arm in a simulated world: it follows trajectories by position, velocity and effort commands."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import pytest
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_action, get_service
 from tests.control.controllers.arm import SentGoal, trajectory
-from tests.simulation.test_plugins import SECOND, served
+from tests.simulation.test_plugins import SECOND, running_server
 
 ACTION = "control_msgs/action/FollowJointTrajectory"
 JOINTS = ("shoulder", "elbow")
 SUCCEEDED, CANCELED = 4, 5
 LENGTH, MASS = 0.5, 1.0
-"""Of each link, in m and kg."""
+"""The length of each link in m, and its mass in kg."""
 
 
-def model(parameters: Path) -> str:
-    """An arm of two links of 1 kg, which hang on the world at a height of 2 m and turn up and down."""
+def model(write_parameters: Path) -> str:
+    """Return an arm of two links of 1 kg, fixed to the world at a height of 2 m, that turn up and down."""
     inertia = "<ixx>0.001</ixx><iyy>0.02</iyy><izz>0.02</izz>"
     links = joints = ""
     for number, (name, parent) in enumerate(zip(JOINTS, ("world", "shoulder_link"), strict=True)):
@@ -34,15 +34,15 @@ def model(parameters: Path) -> str:
         )
     plugin = (
         '<plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">'
-        f"<parameters>{parameters}</parameters></plugin>"
+        f"<parameters>{write_parameters}</parameters></plugin>"
     )
     return f'<model name="arm"><pose>0 0 2 0 0 0</pose>{links}{joints}{plugin}</model>'
 
 
-def description(kind: str) -> str:
-    """The arm as its controllers see it: each joint is commanded by one kind of interface."""
-    interfaces = f"<command_interface name='{kind}'/>" + "".join(
-        f"<state_interface name='{interface}'/>" for interface in ("position", "velocity")
+def description(command_interface: str) -> str:
+    """Return the description for the controllers: all joints have one kind of command interface."""
+    interfaces = f"<command_interface name='{command_interface}'/>" + "".join(
+        f"<state_interface name='{state_interface}'/>" for state_interface in ("position", "velocity")
     )
     links = "".join(f"<link name='{link}'/>" for link in ("world", *(f"{joint}_link" for joint in JOINTS)))
     joints = "".join(
@@ -57,15 +57,15 @@ def description(kind: str) -> str:
     )
 
 
-def parameters(kind: str, folder: Path) -> Path:
-    """The parameter file of the controllers."""
+def write_parameters(interface: str, folder: Path) -> Path:
+    """Write the controllers' parameter file."""
     path = folder / "controllers.yaml"
-    gains = "{p: 50.0, i: 50.0}" if kind == "velocity" else "{p: 200.0, i: 200.0, d: 8.0}"
-    scale = ", ff_velocity_scale: 1.0" if kind == "velocity" else ""
+    gains = "{p: 50.0, i: 50.0}" if interface == "velocity" else "{p: 200.0, i: 200.0, d: 8.0}"
+    scale = ", ff_velocity_scale: 1.0" if interface == "velocity" else ""
     path.write_text(
         "controller_manager:\n  ros__parameters:\n    update_rate: 500\n"
         "    arm: {type: joint_trajectory_controller/JointTrajectoryController}\n"
-        f"arm:\n  ros__parameters:\n    joints: [shoulder, elbow]\n    command_interfaces: [{kind}]\n"
+        f"arm:\n  ros__parameters:\n    joints: [shoulder, elbow]\n    command_interfaces: [{interface}]\n"
         "    state_interfaces: [position, velocity]\n    constraints:\n      goal_time: 1.0\n"
         "      shoulder: {trajectory: 0.3, goal: 0.02}\n      elbow: {trajectory: 0.3, goal: 0.02}\n"
         f"    gains:\n      shoulder: {gains[:-1]}{scale}}}\n      elbow: {gains[:-1]}{scale}}}\n"
@@ -79,10 +79,10 @@ class Arm:
     def __init__(self, server: Any, graph: Any) -> None:
         self.server, self.graph, self.node = server, graph, graph.create_node("audience")
 
-    async def begin(self, kind: str, wait: float = 0.02) -> None:
-        """Start the controller; ``wait`` is what passes in the world after each call, in s."""
+    async def begin(self, interface: str, wait: float = 0.02) -> None:
+        """Start the controller; ``wait`` is the simulated time after each call, in s."""
         node = self.graph.create_node("robot_state_publisher")
-        node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data=description(kind)))
+        node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data=description(interface)))
         await self.advance(wait / 2)
         for service, fields in (
             ("LoadController", {"name": "arm"}),
@@ -98,26 +98,26 @@ class Arm:
             assert future.result().ok, service
 
     async def advance(self, seconds: float) -> None:
-        """Let time pass in chunks, between which messages are handed over."""
-        left = round(seconds * SECOND)
+        """Advance the time in steps, and deliver messages between them."""
+        remaining = round(seconds * SECOND)
         while True:
             await self.graph.settle()
-            self.server.advance(min(left, SECOND // 100))
-            left -= SECOND // 100
-            if left <= 0:
+            self.server.advance(min(remaining, SECOND // 100))
+            remaining -= SECOND // 100
+            if remaining <= 0:
                 break
         await self.graph.settle()
 
     def positions(self) -> list[float]:
         return [self.server.simulation.joint_state(f"arm::{joint}")[0] for joint in JOINTS]
 
-    def ask(self, *points: Any) -> SentGoal:
+    def call(self, *points: Any) -> SentGoal:
         goal = get_action(ACTION).Goal(trajectory=trajectory(*points))
         return SentGoal(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # it has a node
 
 
 async def test_controller_can_start_before_first_update(tmp_path):
-    async with served(model(parameters("position", tmp_path))) as (server, graph, log):
+    async with running_server(model(write_parameters("position", tmp_path))) as (server, graph, log):
         await Arm(server, graph).begin("position", wait=0.0)
         assert server.simulation.time == 0
         assert not [record.text for record in log if record.level.name in ("WARN", "ERROR")]
@@ -126,46 +126,46 @@ async def test_controller_can_start_before_first_update(tmp_path):
 STATE = "control_msgs/msg/JointTrajectoryControllerState"
 
 
-@pytest.mark.parametrize("kind", ["position", "velocity", "effort"])
-async def test_arm_follows_trajectory_against_gravity(kind, tmp_path):
-    async with served(model(parameters(kind, tmp_path))) as (server, graph, _):
+@pytest.mark.parametrize("interface", ["position", "velocity", "effort"])
+async def test_arm_follows_trajectory_against_gravity(interface, tmp_path):
+    async with running_server(model(write_parameters(interface, tmp_path))) as (server, graph, _):
         arm = Arm(server, graph)
-        await arm.begin(kind)
+        await arm.begin(interface)
         states: list[Any] = []
         graph.create_node("listener").create_subscription(STATE, "/arm/controller_state", states.append, 10)
-        future = arm.ask((2.0, [-0.6, 0.9], [0.0, 0.0]))
+        future = arm.call((2.0, [-0.6, 0.9], [0.0, 0.0]))
         await arm.advance(2.5)
         assert future.status == SUCCEEDED, future.result
         assert arm.positions() == pytest.approx([-0.6, 0.9], abs=0.02)
         errors = [abs(error) for state in states for error in state.error.positions]
         assert max(errors) < 0.2
-        wanted = [state.reference.positions[1] for state in states]
-        assert max(wanted) == pytest.approx(0.9, abs=0.01)
+        references = [state.reference.positions[1] for state in states]
+        assert max(references) == pytest.approx(0.9, abs=0.01)
         await arm.advance(1.0)
         assert arm.positions() == pytest.approx([-0.6, 0.9], abs=0.02)
 
 
 async def test_canceled_goal_stops_arm(tmp_path):
-    async with served(model(parameters("position", tmp_path))) as (server, graph, _):
+    async with running_server(model(write_parameters("position", tmp_path))) as (server, graph, _):
         arm = Arm(server, graph)
         await arm.begin("position")
-        future = arm.ask((2.0, [-0.6, 0.9]))
+        future = arm.call((2.0, [-0.6, 0.9]))
         await arm.advance(1.0)
         future.cancel()
         await arm.advance(0.1)
-        held = arm.positions()
+        stop_positions = arm.positions()
         await arm.advance(1.0)
         assert future.status == CANCELED
-        assert arm.positions() == pytest.approx(held, abs=0.01)
-        assert held == pytest.approx([-0.3, 0.45], abs=0.05)
+        assert arm.positions() == pytest.approx(stop_positions, abs=0.01)
+        assert stop_positions == pytest.approx([-0.3, 0.45], abs=0.05)
 
 
 async def test_trajectory_is_bitwise_reproducible(tmp_path):
     async def run() -> list[float]:
-        async with served(model(parameters("effort", tmp_path))) as (server, graph, _):
+        async with running_server(model(write_parameters("effort", tmp_path))) as (server, graph, _):
             arm = Arm(server, graph)
             await arm.begin("effort")
-            arm.ask((1.0, [-0.3, 0.4]))
+            arm.call((1.0, [-0.3, 0.4]))
             await arm.advance(1.5)
             return arm.positions()
 

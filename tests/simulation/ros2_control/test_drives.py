@@ -1,4 +1,4 @@
-"""Drives in a simulated world: controllers turn motors, wheels roll on the ground, and odometry is beside the truth."""
+"""Drives in a simulated world: controllers turn motors, wheels roll, and odometry is compared with the truth."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ import pytest
 
 from linkwright.control.odometry import yaw_of
 from linkwright.kinematics.planar import PlanarPose
-from tests.control.controllers.driving import stamped
-from tests.simulation.ros2_control.test_plugin import PLUGINS, Controlled
+from tests.control.controllers.driving import stamped_twist
+from tests.simulation.ros2_control.test_plugin import PLUGINS, ControlledRobot
 from tests.simulation.test_ackermann import BASE, RADIUS, TRACK, car
 from tests.simulation.test_gz_drives import LENGTH, WIDTH, mecanum
-from tests.simulation.test_plugins import served
+from tests.simulation.test_plugins import running_server
 from tests.simulation.worlds import GROUND, mbot
 
 TIMEOUT = 0.2
@@ -25,7 +25,7 @@ TIMEOUT = 0.2
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot: its model, which joints have which command, and the controller with its parameters."""
+    """A robot: its model, the command interface of each joint, and the controller with its parameters."""
 
     model: str
     text: str
@@ -35,9 +35,9 @@ class Robot:
     command: str = "/base/reference"
     odometry: str = "/base/odometry"
 
-    def described(self, plugin: str) -> str:
-        """Its description."""
-        moving = "".join(
+    def description(self, plugin: str) -> str:
+        """Return the robot's description."""
+        wheels = "".join(
             f"<link name='{name}_link'/><joint name='{name}' type='continuous'><parent link='base'/>"
             f"<child link='{name}_link'/></joint>"
             for name in self.joints
@@ -48,12 +48,12 @@ class Robot:
             for name, kind in self.joints.items()
         )
         return (
-            f"<robot name='{self.model}'><link name='base'/>{moving}<ros2_control name='drive' type='system'>"
+            f"<robot name='{self.model}'><link name='base'/>{wheels}<ros2_control name='drive' type='system'>"
             f"<hardware><plugin>{plugin}</plugin></hardware>{hardware}</ros2_control></robot>"
         )
 
     def controllers(self) -> str:
-        """Its parameter file; JSON is YAML."""
+        """Return the robot's parameter file; JSON is also YAML."""
         manager = {"update_rate": 100, "base": {"type": self.type}}
         return json.dumps(
             {
@@ -119,46 +119,50 @@ MECANUM = Robot(
 ALL = pytest.mark.parametrize("robot", [DIFFERENTIAL, ACKERMANN, MECANUM], ids=["differential", "ackermann", "mecanum"])
 
 
-class Drive(Controlled):
+class Drive(ControlledRobot):
     """A robot that is driven in a world."""
 
     def __init__(self, server: Any, graph: Any, robot: Robot) -> None:
         super().__init__(server, graph)
         self.robot = robot
         self._publisher = self.node.create_publisher("geometry_msgs/msg/TwistStamped", robot.command, 10)
-        self._told: list[Any] = []
-        self.node.create_subscription("nav_msgs/msg/Odometry", robot.odometry, self._told.append, 1000)
+        self._odometry: list[Any] = []
+        self.node.create_subscription("nav_msgs/msg/Odometry", robot.odometry, self._odometry.append, 1000)
 
     async def drive(self, seconds: float, *velocity: float) -> None:
-        """Tell a velocity as often as it has to be, for so long."""
+        """Publish a velocity command every 0.1 s."""
         for _ in range(round(seconds / 0.1)):
-            self._publisher.publish(stamped(self.server.simulation.time, *velocity))
+            self._publisher.publish(stamped_twist(self.server.simulation.time, *velocity))
             await self.advance(0.1)
 
     @property
     def truth(self) -> PlanarPose:
-        """Where the robot is in the world."""
+        """Return the robot's pose in the world."""
         pose = self.server.simulation.model_pose(self.robot.model)
         return PlanarPose(pose[0], pose[1], yaw_of(pose))
 
     @property
     def odometry(self) -> PlanarPose:
-        """Where its odometry says that it is."""
-        place = self._told[-1].pose.pose
-        turn = place.orientation
-        return PlanarPose(place.position.x, place.position.y, yaw_of((0.0, 0.0, 0.0, turn.x, turn.y, turn.z, turn.w)))
+        """Return the pose of the last odometry message."""
+        pose = self._odometry[-1].pose.pose
+        orientation = pose.orientation
+        return PlanarPose(
+            pose.position.x,
+            pose.position.y,
+            yaw_of((0.0, 0.0, 0.0, orientation.x, orientation.y, orientation.z, orientation.w)),
+        )
 
 
 @asynccontextmanager
-async def driven(robot: Robot, folder: Path) -> AsyncIterator[Drive]:
-    """A robot at rest in a world, whose controller is active."""
+async def start_drive(robot: Robot, folder: Path) -> AsyncIterator[Drive]:
+    """Run a world with the robot at rest, and its controller active."""
     file = folder / "controllers.yaml"
     file.write_text(robot.controllers())
     filename, name, hardware = PLUGINS["gz"]
     plugin = f'<plugin filename="{filename}" name="{name}"><parameters>{file}</parameters></plugin>'
-    async with served(GROUND, robot.text.replace("</model>", f"{plugin}</model>")) as (server, graph, log):
+    async with running_server(GROUND, robot.text.replace("</model>", f"{plugin}</model>")) as (server, graph, log):
         drive = Drive(server, graph, robot)
-        await drive.describe(robot.described(hardware))
+        await drive.describe(robot.description(hardware))
         await drive.start("base")
         await drive.advance(0.5)
         yield drive
@@ -167,7 +171,7 @@ async def driven(robot: Robot, folder: Path) -> AsyncIterator[Drive]:
 
 @ALL
 async def test_odometry_matches_truth_over_five_meters(robot, tmp_path):
-    async with driven(robot, tmp_path) as drive:
+    async with start_drive(robot, tmp_path) as drive:
         await drive.drive(5.0, 1.0)
         await drive.advance(1.0)
         truth, odometry = drive.truth, drive.odometry
@@ -177,7 +181,7 @@ async def test_odometry_matches_truth_over_five_meters(robot, tmp_path):
 
 @pytest.mark.parametrize("robot", [DIFFERENTIAL, ACKERMANN], ids=["differential", "ackermann"])
 async def test_odometry_matches_truth_on_arc(robot, tmp_path):
-    async with driven(robot, tmp_path) as drive:
+    async with start_drive(robot, tmp_path) as drive:
         await drive.drive(6.0, 0.4, 0.3)
         await drive.advance(1.0)
         truth, odometry = drive.truth, drive.odometry
@@ -187,7 +191,7 @@ async def test_odometry_matches_truth_on_arc(robot, tmp_path):
 
 @ALL
 async def test_robot_stops_when_commands_stop(robot, tmp_path):
-    async with driven(robot, tmp_path) as drive:
+    async with start_drive(robot, tmp_path) as drive:
         await drive.drive(1.0, 0.5)
         await drive.advance(0.09)
         moving = drive.truth
@@ -199,6 +203,6 @@ async def test_robot_stops_when_commands_stop(robot, tmp_path):
 
 
 async def test_wheels_of_robot_require_one_model_compilation(tmp_path):
-    """MuJoCo's model is made anew for motors; many robots would begin slowly if each wheel were to need one."""
-    async with driven(DIFFERENTIAL, tmp_path) as drive:
+    """Motors require that MuJoCo's model is compiled again; once per wheel, many robots would start slowly."""
+    async with start_drive(DIFFERENTIAL, tmp_path) as drive:
         assert drive.server.simulation.revision <= 1

@@ -1,11 +1,11 @@
-"""What joints of a world do by which interface commands them, and while none does."""
+"""The motion of joints for each kind of command interface, and without a controller."""
 
 from __future__ import annotations
 
 import pytest
 
-from tests.simulation.ros2_control.test_plugin import Controlled, controlled, description, wheel
-from tests.simulation.test_plugins import served
+from tests.simulation.ros2_control.test_plugin import ControlledRobot, description, robot_with_plugin, wheel
+from tests.simulation.test_plugins import running_server
 
 EFFORTS = (
     "controller_manager: {ros__parameters: {arm: {type: effort_controllers/JointGroupEffortController}}}\n"
@@ -19,7 +19,7 @@ POSITIONS = (
 
 @pytest.fixture
 def write_parameters(tmp_path):
-    """A file of parameters with a text."""
+    """Return a function that writes a parameter file."""
 
     def write(text: str):
         path = tmp_path / "controllers.yaml"
@@ -34,48 +34,48 @@ def angle(server) -> float:
 
 
 @pytest.mark.parametrize(
-    ("more", "way"),
+    ("interfaces", "min_angle"),
     [("", 0.5), ("<command_interface name='velocity'/>", 0.03)],  # the rotor of a motor turns with the joint
     ids=["effort", "effort and velocity"],
 )
-async def test_unclaimed_effort_joint_is_held_and_released_by_controller(write_parameters, more, way):
-    text = description(wheel("left_joint", "effort").replace("<state", f"{more}<state", 1))
-    async with served(controlled(write_parameters(EFFORTS))) as (server, graph, _):
-        world = Controlled(server, graph)
+async def test_unclaimed_effort_joint_is_held_and_released_by_controller(write_parameters, interfaces, min_angle):
+    text = description(wheel("left_joint", "effort").replace("<state", f"{interfaces}<state", 1))
+    async with running_server(robot_with_plugin(write_parameters(EFFORTS))) as (server, graph, _):
+        world = ControlledRobot(server, graph)
         await world.describe(text)
         server.simulation.push("mbot::left_wheel", (0.0, 0.0, 0.0), (0.0, 0.01, 0.0), by="test")
         await world.advance(0.3)
         assert angle(server) == pytest.approx(0.0, abs=0.01)
         await world.start("arm")
-        begin = angle(server)
+        start = angle(server)
         await world.command(0.01, topic="/arm/commands")
         await world.advance(0.3)
-        assert angle(server) - begin > way
-        assert (await world.ask("switch_controller", deactivate_controllers=["arm"], strictness=2)).ok
-        stopped = angle(server)
+        assert angle(server) - start > min_angle
+        assert (await world.call("switch_controller", deactivate_controllers=["arm"], strictness=2)).ok
+        stop_angle = angle(server)
         await world.advance(0.5)
-        assert angle(server) == pytest.approx(stopped, abs=0.3)
+        assert angle(server) == pytest.approx(stop_angle, abs=0.3)
 
 
-@pytest.mark.parametrize(("kind", "way"), [("effort", 0.5), ("velocity", 0.01)])
-async def test_unclaimed_joint_turns_freely_with_hold_joints_false(write_parameters, kind, way):
-    text = controlled(write_parameters(EFFORTS), more="<hold_joints>false</hold_joints>")
-    async with served(text) as (server, graph, _):
-        world = Controlled(server, graph)
-        await world.describe(description(wheel("left_joint", kind)))
+@pytest.mark.parametrize(("interface", "min_angle"), [("effort", 0.5), ("velocity", 0.01)])
+async def test_unclaimed_joint_turns_freely_with_hold_joints_false(write_parameters, interface, min_angle):
+    text = robot_with_plugin(write_parameters(EFFORTS), extra="<hold_joints>false</hold_joints>")
+    async with running_server(text) as (server, graph, _):
+        world = ControlledRobot(server, graph)
+        await world.describe(description(wheel("left_joint", interface)))
         server.simulation.push("mbot::left_wheel", (0.0, 0.0, 0.0), (0.0, 0.01, 0.0), by="test")
         await world.advance(0.3)
-        assert angle(server) > way
+        assert angle(server) > min_angle
 
 
 async def test_position_proportional_gain_approaches_gradually(write_parameters):
-    more = "<position_proportional_gain>0.1</position_proportional_gain>"
-    async with served(controlled(write_parameters(POSITIONS), "gz", more)) as (server, graph, _):
-        world = Controlled(server, graph)
+    gain = "<position_proportional_gain>0.1</position_proportional_gain>"
+    async with running_server(robot_with_plugin(write_parameters(POSITIONS), "gz", gain)) as (server, graph, _):
+        world = ControlledRobot(server, graph)
         await world.describe(description(wheel("left_joint", "position")))
         await world.start("arm")
         await world.command(1.0, topic="/arm/commands")
         await world.advance(0.08)
-        assert 0.3 < angle(server) < 1.0 - 0.9**10  # and 0.9 without the gain
+        assert 0.3 < angle(server) < 1.0 - 0.9**10  # without the gain it would be 0.9
         await world.advance(1.0)
         assert angle(server) == pytest.approx(1.0, abs=0.01)

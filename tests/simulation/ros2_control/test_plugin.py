@@ -7,7 +7,7 @@ import pytest
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_service
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.test_plugins import SECOND, robot, running_server
 from tests.simulation.worlds import GROUND, model
 
 FILE = """
@@ -49,8 +49,8 @@ def description(control: str, plugin: str = PLUGINS["classic"][2]) -> str:
     )
 
 
-class Controlled:
-    """A robot in a world with a manager."""
+class ControlledRobot:
+    """A simulated robot with a controller manager."""
 
     def __init__(self, server, graph) -> None:
         self.server, self.graph = server, graph
@@ -65,17 +65,21 @@ class Controlled:
         self.server.advance(round(seconds * SECOND))
         await self.graph.settle()
 
-    async def ask(self, service: str, manager: str = "/controller_manager", **fields):
-        kind = get_service("controller_manager_msgs/srv/" + "".join(word.capitalize() for word in service.split("_")))
-        future = self.node.create_client(kind, f"{manager}/{service}").call_async(kind.Request(**fields))
+    async def call(self, service: str, manager: str = "/controller_manager", **fields):
+        service_type = get_service(
+            "controller_manager_msgs/srv/" + "".join(part.capitalize() for part in service.split("_"))
+        )
+        future = self.node.create_client(service_type, f"{manager}/{service}").call_async(
+            service_type.Request(**fields)
+        )
         await self.advance(0.01)
         return future.result()
 
     async def start(self, *names: str, manager: str = "/controller_manager") -> None:
         for name in names:
-            assert (await self.ask("load_controller", manager, name=name)).ok
-            assert (await self.ask("configure_controller", manager, name=name)).ok
-        assert (await self.ask("switch_controller", manager, activate_controllers=list(names), strictness=2)).ok
+            assert (await self.call("load_controller", manager, name=name)).ok
+            assert (await self.call("configure_controller", manager, name=name)).ok
+        assert (await self.call("switch_controller", manager, activate_controllers=list(names), strictness=2)).ok
 
     async def command(self, *values: float, topic: str = "/wheels/commands") -> None:
         publisher = self.node.create_publisher("std_msgs/msg/Float64MultiArray", topic, 10)
@@ -83,10 +87,10 @@ class Controlled:
         await self.advance(0.02)
 
 
-def controlled(path, which: str = "classic", more: str = "", inside: str = "") -> str:
-    filename, name, _ = PLUGINS[which]
-    text = robot(f'<plugin filename="{filename}" name="{name}"><parameters>{path}</parameters>{more}</plugin>')
-    return text.replace("</link>", f"{inside}</link>", 1)
+def robot_with_plugin(path, plugin: str = "classic", extra: str = "", elements: str = "") -> str:
+    filename, name, _ = PLUGINS[plugin]
+    text = robot(f'<plugin filename="{filename}" name="{name}"><parameters>{path}</parameters>{extra}</plugin>')
+    return text.replace("</link>", f"{elements}</link>", 1)
 
 
 @pytest.fixture
@@ -96,32 +100,32 @@ def file(tmp_path):
     return path
 
 
-@pytest.mark.parametrize("which", PLUGINS)
-async def test_wheels_follow_commands_and_stop_with_controller(file, which):
-    async with served(GROUND, controlled(file, which)) as (server, graph, log):
-        world = Controlled(server, graph)
+@pytest.mark.parametrize("plugin", PLUGINS)
+async def test_wheels_follow_commands_and_stop_with_controller(file, plugin):
+    async with running_server(GROUND, robot_with_plugin(file, plugin)) as (server, graph, log):
+        world = ControlledRobot(server, graph)
         states = Recording(graph, server.node, "/joint_states")
-        await world.describe(description(wheel("left_joint") + wheel("right_joint"), PLUGINS[which][2]))
+        await world.describe(description(wheel("left_joint") + wheel("right_joint"), PLUGINS[plugin][2]))
         await world.start("broadcaster", "wheels")
         await world.command(2.0, 2.0)
         await world.advance(2.0)
         assert states.last.name == ["left_joint", "right_joint"]
         assert list(states.last.velocity) == pytest.approx([2.0, 2.0], abs=0.05)
-        before = server.simulation.model_pose("mbot")[0]
-        assert before > 0.15
-        assert (await world.ask("switch_controller", deactivate_controllers=["wheels"], strictness=2)).ok
+        x = server.simulation.model_pose("mbot")[0]
+        assert x > 0.15
+        assert (await world.call("switch_controller", deactivate_controllers=["wheels"], strictness=2)).ok
         await world.advance(0.5)
         assert list(states.last.velocity) == pytest.approx([0.0, 0.0], abs=0.05)
         assert not [record.text for record in log if record.level.name in ("WARN", "ERROR")]
 
 
 async def test_servos_of_all_joints_require_one_model_compilation(file):
-    async with served(controlled(file), options=None) as (server, graph, _):
-        world = Controlled(server, graph)
-        before = server.simulation.revision
+    async with running_server(robot_with_plugin(file), options=None) as (server, graph, _):
+        world = ControlledRobot(server, graph)
+        revision = server.simulation.revision
         wheels = wheel("left_joint", "position", "0.5") + wheel("right_joint", "position", "-0.4")
         await world.describe(description(wheels))
-        assert server.simulation.revision == before + 1
+        assert server.simulation.revision == revision + 1
         await world.advance(0.5)
         positions = [server.simulation.joint_state(f"mbot::{side}_joint")[0] for side in ("left", "right")]
         assert positions == pytest.approx([0.5, -0.4], abs=0.01)
@@ -133,9 +137,9 @@ async def test_positions_are_held_from_initial_values(file, tmp_path):
         "controller_manager: {ros__parameters: {arm: {type: position_controllers/JointGroupPositionController}}}\n"
         "arm: {ros__parameters: {joints: [left_joint]}}\n"
     )
-    more = f"<parameters>{positions}</parameters>"
-    async with served(controlled(file, more=more), options=None) as (server, graph, _):
-        world = Controlled(server, graph)
+    extra = f"<parameters>{positions}</parameters>"
+    async with running_server(robot_with_plugin(file, extra=extra), options=None) as (server, graph, _):
+        world = ControlledRobot(server, graph)
         await world.describe(description(wheel("left_joint", "position", "0.5")))
         assert server.simulation.joint_state("mbot::left_joint")[0] == pytest.approx(0.5, abs=0.01)
         await world.start("arm")
@@ -151,8 +155,8 @@ async def test_efforts_are_applied_and_measured(file, tmp_path):
         " broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}}}\n"
         "arm: {ros__parameters: {joints: [left_joint]}}\n"
     )
-    async with served(GROUND, controlled(efforts)) as (server, graph, _):
-        world = Controlled(server, graph)
+    async with running_server(GROUND, robot_with_plugin(efforts)) as (server, graph, _):
+        world = ControlledRobot(server, graph)
         states = Recording(graph, server.node, "/joint_states")
         await world.describe(description(wheel("left_joint", "effort")))
         await world.start("arm", "broadcaster")
@@ -165,8 +169,8 @@ async def test_efforts_are_applied_and_measured(file, tmp_path):
 async def test_imu_provides_state_interfaces(file):
     states = "<state_interface name='orientation.w'/><state_interface name='linear_acceleration.z'/>"
     sensor = f"<sensor name='imu'>{states}</sensor>"
-    async with served(GROUND, controlled(file, inside=IMU)) as (server, graph, _):
-        world = Controlled(server, graph)
+    async with running_server(GROUND, robot_with_plugin(file, elements=IMU)) as (server, graph, _):
+        world = ControlledRobot(server, graph)
         states = Recording(graph, server.node, "/dynamic_joint_states")
         await world.describe(description(wheel("left_joint") + sensor))
         await world.start("broadcaster")
@@ -178,12 +182,12 @@ async def test_imu_provides_state_interfaces(file):
 
 async def test_namespace_name_and_remappings_of_manager(file):
     file.write_text(FILE.replace("\ncontroller_manager:", "\n/r1/manager:").replace("\nwheels:", "\n/r1/wheels:"))
-    more = (
+    extra = (
         "<controller_manager_name>manager</controller_manager_name>"
         "<ros><namespace>r1</namespace><remapping>wheels/commands:=wanted</remapping></ros>"
     )
-    async with served(GROUND, controlled(file, more=more)) as (server, graph, _):
-        world = Controlled(server, graph)
+    async with running_server(GROUND, robot_with_plugin(file, extra=extra)) as (server, graph, _):
+        world = ControlledRobot(server, graph)
         await world.describe(description(wheel("left_joint") + wheel("right_joint")), "/r1/robot_description")
         await world.start("wheels", manager="/r1/manager")
         assert "/r1/wheels" in graph.node_names()
@@ -191,23 +195,23 @@ async def test_namespace_name_and_remappings_of_manager(file):
 
 async def test_joints_and_sensors_missing_in_model_are_reported(file):
     text = wheel("left_joint") + wheel("third_joint") + "<sensor name='ft'><state_interface name='force.x'/></sensor>"
-    async with served(GROUND, controlled(file)) as (server, graph, log):
-        world = Controlled(server, graph)
+    async with running_server(GROUND, robot_with_plugin(file)) as (server, graph, log):
+        world = ControlledRobot(server, graph)
         await world.describe(description(text))
         joint, sensor = (record.text for record in log if record.level.name == "WARN")
         assert joint == "Skipping joint in the URDF named 'third_joint' which is not in the gazebo model."
         assert sensor.startswith(
             "sensor 'ft' of <ros2_control> has no IMU or force-torque sensor of this name in the model"
         )
-        interfaces = await world.ask("list_hardware_interfaces")
+        interfaces = await world.call("list_hardware_interfaces")
         assert [command_interface.name for command_interface in interfaces.command_interfaces] == [
             "left_joint/velocity"
         ]
 
 
 async def test_reset_keeps_controllers_active(file):
-    async with served(GROUND, controlled(file)) as (server, graph, _):
-        world = Controlled(server, graph)
+    async with running_server(GROUND, robot_with_plugin(file)) as (server, graph, _):
+        world = ControlledRobot(server, graph)
         states = Recording(graph, server.node, "/joint_states")
         await world.describe(description(wheel("left_joint") + wheel("right_joint")))
         await world.start("broadcaster", "wheels")
@@ -221,8 +225,8 @@ async def test_reset_keeps_controllers_active(file):
 
 
 async def test_manager_is_removed_with_robot(file):
-    async with served(GROUND, controlled(file)) as (server, graph, _):
-        world = Controlled(server, graph)
+    async with running_server(GROUND, robot_with_plugin(file)) as (server, graph, _):
+        world = ControlledRobot(server, graph)
         await world.describe(description(wheel("left_joint") + wheel("right_joint")))
         await world.start("broadcaster", "wheels")
         server.delete("mbot")
@@ -231,15 +235,15 @@ async def test_manager_is_removed_with_robot(file):
 
 
 async def test_controllers_stay_active_when_model_is_replaced(file):
-    text = controlled(file)
-    async with served(GROUND, text) as (server, graph, _):
-        world = Controlled(server, graph)
+    text = robot_with_plugin(file)
+    async with running_server(GROUND, text) as (server, graph, _):
+        world = ControlledRobot(server, graph)
         await world.describe(description(wheel("left_joint") + wheel("right_joint")))
         await world.start("broadcaster", "wheels")
         heavier = text.replace("<mass>", "<mass>1", 1)
         server.replace_model(model(heavier), "mbot")
         await world.advance(0.1)
-        listed = (await world.ask("list_controllers")).controller
+        listed = (await world.call("list_controllers")).controller
         assert {controller.name: controller.state for controller in listed} == {
             "broadcaster": "active",
             "wheels": "active",
@@ -250,20 +254,20 @@ async def test_controllers_stay_active_when_model_is_replaced(file):
 
 
 async def test_respawned_robot_has_no_controllers(file):
-    text = controlled(file)
-    async with served(GROUND, text) as (server, graph, _):
-        world = Controlled(server, graph)
+    text = robot_with_plugin(file)
+    async with running_server(GROUND, text) as (server, graph, _):
+        world = ControlledRobot(server, graph)
         await world.describe(description(wheel("left_joint") + wheel("right_joint")))
         await world.start("wheels")
         server.delete("mbot")
         server.spawn(model(text), "mbot")
         await world.advance(0.1)
-        assert (await world.ask("list_controllers")).controller == []
+        assert (await world.call("list_controllers")).controller == []
 
 
 async def test_vendor_copy_of_plugin_is_reported_once(file):
-    two = controlled(file, "copy", "<controller_manager_name>other</controller_manager_name>")
-    async with served(GROUND, controlled(file, "copy"), two.replace('"mbot"', '"two"')) as (_, __, log):
+    two = robot_with_plugin(file, "copy", "<controller_manager_name>other</controller_manager_name>")
+    async with running_server(GROUND, robot_with_plugin(file, "copy"), two.replace('"mbot"', '"two"')) as (_, __, log):
         logged = [record.text for record in log if "is simulated as" in record.text]
     assert logged == [
         (

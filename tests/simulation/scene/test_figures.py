@@ -1,4 +1,4 @@
-"""Actors and roads: they are seen and touch nothing."""
+"""Actors and roads: they are visible, and have no collisions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.simulation.ray_casting import GROUPS, cast
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.scene.figures import skeleton_origin
 from linkwright.simulation.server.unsimulated import unsimulated_elements
-from tests.simulation.worlds import GROUND, box, simulated
+from tests.simulation.worlds import GROUND, box, make_simulation
 
 BALL = "<geometry><sphere><radius>0.5</radius></sphere></geometry>"
 LINK = f'<link name="head"><pose>0 0 1 0 0 0</pose><visual name="v">{BALL}</visual></link>'
@@ -26,7 +26,7 @@ SECOND = 1_000_000_000
 
 
 def test_actor_follows_trajectory_in_simulated_time():
-    simulation = simulated(GROUND, ACTOR)
+    simulation = make_simulation(GROUND, ACTOR)
     assert simulation.link_pose("walker::head")[:3] == pytest.approx((2, 0, 1))
     simulation.advance(SECOND)
     assert simulation.link_pose("walker::head")[:3] == pytest.approx((4, 0, 1))
@@ -37,24 +37,24 @@ def test_actor_follows_trajectory_in_simulated_time():
 
 
 def test_actor_trajectory_is_relative_to_actor_in_gz_worlds():
-    simulation = simulated(GROUND, GZ, ACTOR)
+    simulation = make_simulation(GROUND, GZ, ACTOR)
     assert simulation.link_pose("walker::head")[:3] == pytest.approx((2, 1, 1))
 
 
 def test_actor_without_trajectory_keeps_its_pose():
-    simulation = simulated(GROUND, f'<actor name="walker"><pose>0 1 0 0 0 0</pose>{LINK}<script/></actor>')
+    simulation = make_simulation(GROUND, f'<actor name="walker"><pose>0 1 0 0 0 0</pose>{LINK}<script/></actor>')
     simulation.advance(SECOND // 100)
     assert simulation.link_pose("walker::head")[:3] == pytest.approx((0, 1, 1))
 
 
 def test_actor_does_not_collide():
-    simulation = simulated(GROUND, box("crate", pose="4 0 0.5 0 0 0"), ACTOR)
+    simulation = make_simulation(GROUND, box("crate", pose="4 0 0.5 0 0 0"), ACTOR)
     simulation.advance(2 * SECOND)
     assert simulation.link_pose("crate::link")[:2] == pytest.approx((4, 0), abs=1e-4)
 
 
 def test_rays_against_visuals_hit_actor():
-    simulation = simulated(GROUND, ACTOR)
+    simulation = make_simulation(GROUND, ACTOR)
     simulation.advance(SECOND)
     simulation.refresh()
     groups = np.zeros(GROUPS, dtype=np.uint8)
@@ -66,13 +66,13 @@ def test_rays_against_visuals_hit_actor():
 
 def test_figures_with_duplicate_names_are_renamed():
     road = '<road name="ground"><point>0 0 0</point><point>1 0 0</point></road>'
-    simulation = simulated(GROUND, ACTOR, road, road)
+    simulation = make_simulation(GROUND, ACTOR, road, road)
     assert [figure.model.name for figure in simulation.scene.figures] == ["walker", "ground~", "ground~~"]
 
 
 def test_road_is_strip_without_collision():
     road = '<road name="r"><width>2</width><point>0 0 0.02</point><point>4 0 0.02</point><point>4 3 0.02</point></road>'
-    simulation = simulated(GROUND, road)
+    simulation = make_simulation(GROUND, road)
     body = simulation.model.body("r::link")
     assert body.geomnum == 3  # two straight parts, and the bend between them
     first = simulation.model.geom("r::link::part0#visual")
@@ -111,16 +111,18 @@ def test_skin_is_placed_at_skeleton_origin(tmp_path: Path, matrix, begins):
 
 def test_missing_skin_is_replaced_by_plain_figure():
     skin = "<skin><filename>walk.dae</filename></skin>"
-    simulation = simulated(GROUND, ACTOR.replace(LINK, skin).replace("0 0 0 0 0 0</pose></w", "0 1 0 0 0 0</pose></w"))
+    simulation = make_simulation(
+        GROUND, ACTOR.replace(LINK, skin).replace("0 0 0 0 0 0</pose></w", "0 1 0 0 0 0</pose></w")
+    )
     assert [diagnostic.code for diagnostic in simulation.scene.diagnostics] == ["SIM112"]
     (figure,) = simulation.scene.figures
     assert simulation.model.body(figure.links[0].name).geomnum == len(figure.model.links[0].visuals) > 1
 
 
 def test_unsimulated_elements_are_reported_once():
-    more = (
+    projectors = (
         '<model name="m"><static>true</static><link name="l"><projector name="p"/><projector name="q"/></link></model>'
     )
     walker = ACTOR.replace("<script>", '<animation name="walk"/><plugin name="p" filename="libwalk.so"/><script>')
-    element_names = unsimulated_elements(simulated(GROUND, more, walker).world)
+    element_names = unsimulated_elements(make_simulation(GROUND, projectors, walker).world)
     assert element_names == ["<animation> in <actor>", "<projector>", "libwalk.so in <actor>"]

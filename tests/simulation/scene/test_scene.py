@@ -1,4 +1,4 @@
-"""Worlds as specifications of MuJoCo."""
+"""Worlds as MuJoCo specifications."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from linkwright.sdf.shapes import Heightmap
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 from linkwright.simulation.simulation import Simulation
-from tests.simulation.worlds import GROUND, box, finder, simulated, world
+from tests.simulation.worlds import GROUND, box, finder, make_simulation, world
 
 ROOM = """solid room
 {facets}
@@ -25,7 +25,7 @@ endsolid room
 
 
 def quad(*corners: tuple[float, float, float]) -> str:
-    """Two triangles."""
+    """Return the two triangles of a quad."""
     a, b, c, d = (" ".join(map(str, corner)) for corner in corners)
     return "".join(
         f"facet normal 0 0 0\nouter loop\nvertex {p}\nvertex {q}\nvertex {r}\nendloop\nendfacet\n"
@@ -35,7 +35,7 @@ def quad(*corners: tuple[float, float, float]) -> str:
 
 @pytest.fixture
 def room(tmp_path):
-    """A room of 4 m by 4 m without a ceiling, its walls seen from within, as a mesh file."""
+    """Return the mesh file of a room of 4 m by 4 m without a ceiling, whose walls face inward."""
     walls = [
         quad((2, -2, 0), (2, 2, 0), (2, 2, 1), (2, -2, 1)),
         quad((-2, 2, 0), (-2, -2, 0), (-2, -2, 1), (-2, 2, 1)),
@@ -47,8 +47,8 @@ def room(tmp_path):
     return path
 
 
-def still(shape: str) -> str:
-    """A model that never moves."""
+def fixed_model(shape: str) -> str:
+    """Return a fixed model."""
     collision = f'<collision name="c">{shape}</collision>'
     return f'<model name="g"><static>true</static><link name="l">{collision}</link></model>'
 
@@ -62,7 +62,7 @@ def mesh_model(path, *, static: bool = True, pose: str = "0 0 0 0 0 0", scale: s
 
 
 def test_static_concave_mesh_is_hollow(room):
-    simulation = simulated(GROUND, mesh_model(room), box("box", "0 0 0.1 0 0 0", "0.2 0.2 0.2"))
+    simulation = make_simulation(GROUND, mesh_model(room), box("box", "0 0 0.1 0 0 0", "0.2 0.2 0.2"))
     simulation.push("box::link", (15.0, 0.0, 0.0))
     simulation.advance(3 * NANOSECONDS_PER_SECOND)
     x, y, z, *_ = simulation.model_pose("box")
@@ -72,14 +72,14 @@ def test_static_concave_mesh_is_hollow(room):
 
 
 def test_moving_mesh_collides_as_convex_hull(room):
-    simulation = simulated(GROUND, mesh_model(room, static=False, pose="0 0 1 0 0 0", scale="0.1 0.1 0.1"))
+    simulation = make_simulation(GROUND, mesh_model(room, static=False, pose="0 0 1 0 0 0", scale="0.1 0.1 0.1"))
     assert sum(geom.type == mujoco.mjtGeom.mjGEOM_MESH for geom in simulation.scene.spec.geoms) == 2
     simulation.advance(NANOSECONDS_PER_SECOND)
     assert simulation.model_pose("mesh")[2] == pytest.approx(0.0, abs=2e-3)
 
 
 def test_missing_mesh_is_reported_once(tmp_path):
-    simulation = simulated(GROUND, mesh_model(tmp_path / "none.stl"))
+    simulation = make_simulation(GROUND, mesh_model(tmp_path / "none.stl"))
     (diagnostic,) = simulation.scene.diagnostics
     assert diagnostic.code == "SIM112"
     assert "none.stl" in diagnostic.message
@@ -89,7 +89,7 @@ def test_missing_mesh_is_reported_once(tmp_path):
 
 def test_mesh_with_too_many_triangles_is_omitted(room, monkeypatch):
     monkeypatch.setattr("linkwright.simulation.scene.meshes._MAX_TRIANGLES", 7)
-    simulation = simulated(GROUND, mesh_model(room))
+    simulation = make_simulation(GROUND, mesh_model(room))
     (diagnostic,) = simulation.scene.diagnostics
     assert diagnostic.code == "SIM115"
     assert "has 8 triangles, but the maximum is 7" in diagnostic.message
@@ -107,7 +107,9 @@ def test_heightmap_supports_models(tmp_path):
     ground = (
         f'<model name="g"><static>true</static><link name="l"><collision name="c">{shape}</collision></link></model>'
     )
-    simulation = simulated(ground, box("high", "2 0 4 0 0 0", "0.2 0.2 0.2"), box("low", "-2 0 4 0 0 0", "0.2 0.2 0.2"))
+    simulation = make_simulation(
+        ground, box("high", "2 0 4 0 0 0", "0.2 0.2 0.2"), box("low", "-2 0 4 0 0 0", "0.2 0.2 0.2")
+    )
     simulation.advance(3 * NANOSECONDS_PER_SECOND)
     assert simulation.model_pose("high")[2] == pytest.approx(2.6, abs=0.01)
     assert simulation.model_pose("low")[2] == pytest.approx(0.6, abs=0.01)
@@ -135,7 +137,7 @@ def test_polyline_is_extruded():
     ground = (
         f'<model name="g"><static>true</static><link name="l"><collision name="c">{shape}</collision></link></model>'
     )
-    simulation = simulated(
+    simulation = make_simulation(
         GROUND, ground, box("on", "0 -0.5 1 0 0 0", "0.1 0.1 0.1"), box("in", "0 0.6 1 0 0 0", "0.1 0.1 0.1")
     )
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
@@ -147,7 +149,7 @@ def test_auto_inertial_computes_mass():
     model = """<model name="m"><link name="l"><inertial auto="true"><density>500</density></inertial>
     <collision name="c"><pose>0 0 1 0 0 0</pose><geometry><box><size>1 2 3</size></box></geometry></collision>
     </link></model>"""
-    body = simulated(model).model.body("m::l")
+    body = make_simulation(model).model.body("m::l")
     assert body.mass[0] == pytest.approx(3000.0)
     assert body.ipos == pytest.approx([0, 0, 1])
     assert sorted(body.inertia) == pytest.approx([250 * 5, 250 * 10, 250 * 13])
@@ -156,14 +158,16 @@ def test_auto_inertial_computes_mass():
 def test_invalid_mass_and_inertia_are_reported():
     model = """<model name="m"><link name="l"><inertial><mass>-1</mass><inertia><ixx>-1</ixx></inertia></inertial>
     </link></model>"""
-    simulation = simulated(model)
+    simulation = make_simulation(model)
     assert [diagnostic.code for diagnostic in simulation.scene.diagnostics] == ["SIM110", "SIM111"]
     simulation.advance(NANOSECONDS_PER_SECOND)
 
 
 def moments(ixx: float, iyy: float, izz: float) -> Simulation:
     inertia = f"<inertia><ixx>{ixx!r}</ixx><iyy>{iyy!r}</iyy><izz>{izz!r}</izz></inertia>"
-    return simulated(f'<model name="m"><link name="l"><inertial><mass>1</mass>{inertia}</inertial></link></model>')
+    return make_simulation(
+        f'<model name="m"><link name="l"><inertial><mass>1</mass>{inertia}</inertial></link></model>'
+    )
 
 
 def test_inertia_violating_triangle_inequality_is_reported():
@@ -192,7 +196,7 @@ def arm(second: str) -> str:
 
 def test_mimic_joint_follows_other_joint():
     mimic = '<mimic joint="a"><multiplier>-2</multiplier><offset>0.5</offset><reference>0</reference></mimic>'
-    simulation = simulated(arm(mimic))
+    simulation = make_simulation(arm(mimic))
     simulation.push("arm::one", (0.0, 0.0, 0.0), (0.0, 0.0, 0.1))
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
     leader, follower = (simulation.joint_state(f"arm::{name}")[0] for name in ("a", "b"))
@@ -204,18 +208,18 @@ def test_links_of_model_collide_only_with_self_collide():
     shape = "<collision name='c'><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>"
     text = f"""<model name="m"><self_collide>{{}}</self_collide><link name="a">{shape}</link>
     <link name="b"><pose>0 0 0.15 0 0 0</pose>{shape}</link></model>"""
-    apart = {}
-    for shown in ("false", "true"):
-        simulation = simulated(text.format(shown), gravity="0 0 0")
+    distances = {}
+    for self_collide in ("false", "true"):
+        simulation = make_simulation(text.format(self_collide), gravity="0 0 0")
         simulation.advance(NANOSECONDS_PER_SECOND)
-        apart[shown] = simulation.link_pose("m::b")[2] - simulation.link_pose("m::a")[2]
-    assert apart["false"] == pytest.approx(0.15)
-    assert apart["true"] > 0.17
+        distances[self_collide] = simulation.link_pose("m::b")[2] - simulation.link_pose("m::a")[2]
+    assert distances["false"] == pytest.approx(0.15)
+    assert distances["true"] > 0.17
 
 
 def test_mesh_wheel_has_single_contact_point(tmp_path):
-    turns = np.linspace(0, 2 * np.pi, 25)[:-1]
-    rim = [(0.1 * np.cos(turn), y, 0.1 * np.sin(turn)) for turn in turns for y in (-0.02, 0.02)]
+    angles = np.linspace(0, 2 * np.pi, 25)[:-1]
+    rim = [(0.1 * np.cos(angle), y, 0.1 * np.sin(angle)) for angle in angles for y in (-0.02, 0.02)]
     facets = "".join(quad(rim[i], rim[i + 1], rim[(i + 3) % 48], rim[(i + 2) % 48]) for i in range(0, 48, 2))
     path = tmp_path / "wheel.stl"
     path.write_text(ROOM.format(facets=facets))
@@ -232,14 +236,14 @@ def test_mesh_wheel_has_single_contact_point(tmp_path):
     scene.spec.compile()
 
 
-@pytest.mark.parametrize(("order", "mark"), [("<", b"II*\0"), (">", b"MM\0*")])
-def test_elevation_model_supports_64_bit_heights(tmp_path, order, mark):
+@pytest.mark.parametrize(("order", "magic"), [("<", b"II*\0"), (">", b"MM\0*")])
+def test_elevation_model_supports_64_bit_heights(tmp_path, order, magic):
     heights = np.array([[10.0, 20.0, 30.0], [30.0, 50.0, 10.0]])
     tags = {256: 3, 257: 2, 258: 64, 259: 1, 273: 8, 277: 1, 279: 48, 339: 3}
     entries = b"".join(struct.pack(f"{order}HHII", tag, 4, 1, value) for tag, value in tags.items())
     table = struct.pack(f"{order}H", len(tags)) + entries + bytes(4)
     path = tmp_path / "hill.tif"
-    path.write_bytes(mark + struct.pack(f"{order}I", 56) + heights.astype(f"{order}f8").tobytes() + table)
+    path.write_bytes(magic + struct.pack(f"{order}I", 56) + heights.astype(f"{order}f8").tobytes() + table)
     assert read_heights(path).values.tolist() == [[0.5, 1.0, 0.0], [0.0, 0.25, 0.5]]
 
 
@@ -258,7 +262,7 @@ def test_degenerate_mesh_parts_do_not_omit_model(tmp_path):
     colors = enumerate(("1 0 0", "0 1 0", "0 0 1"))
     (tmp_path / "parts.mtl").write_text("".join(f"newmtl {'abc'[number]}\nKd {color}\n" for number, color in colors))
     visual = f'<visual name="v"><geometry><mesh><uri>file://{tmp_path}/parts.obj</uri></mesh></geometry></visual>'
-    simulation = simulated(f'<model name="m"><static>true</static><link name="l">{visual}</link></model>')
+    simulation = make_simulation(f'<model name="m"><static>true</static><link name="l">{visual}</link></model>')
     assert not simulation.scene.diagnostics
     model = simulation.model
     geometry_colors = [model.mat_rgba[model.geom_matid[geom], :3].tolist() for geom in range(model.ngeom)]
@@ -273,5 +277,5 @@ def test_meshes_with_same_image_share_texture(tmp_path):
         path = tmp_path / f"{name}.obj"
         path.write_text("mtllib m.mtl\nvt 0 0\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n")
         shapes.append(f"<visual name='{name}'><geometry><mesh><uri>{path}</uri></mesh></geometry></visual>")
-    model = simulated(f"<model name='m'><static>1</static><link name='l'>{''.join(shapes)}</link></model>").model
+    model = make_simulation(f"<model name='m'><static>1</static><link name='l'>{''.join(shapes)}</link></model>").model
     assert (model.nmesh, model.nmat, model.ntex) == (2, 2, 1)

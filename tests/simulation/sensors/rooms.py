@@ -1,4 +1,4 @@
-"""Things that sensors see, and links to put sensors on."""
+"""Objects for sensors to detect, and links that carry sensors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ CARRIER = '<model name="carrier"><static>true</static><pose>{pose}</pose><link n
 
 
 def block(name: str, pose: str, size: str, *, retro: float = 0.0, color: str = "1 0 0 1") -> str:
-    """A box that stands still, is seen and touched."""
+    """Return a fixed box with a collision and a visual."""
     geometry = f"<geometry><box><size>{size}</size></box></geometry>"
     text = f"<laser_retro>{retro}</laser_retro>" if retro else ""
     return (
@@ -24,39 +24,41 @@ def block(name: str, pose: str, size: str, *, retro: float = 0.0, color: str = "
 
 
 def room() -> str:
-    """Four walls whose insides are at x = 3, x = -2, y = 4 and y = -5."""
+    """Return four walls whose inner faces are at x = 3, x = -2, y = 4 and y = -5."""
     return "".join(
-        block(name, f"{place} 0 0 0 0", "0.1 20 10" if name in ("east", "west") else "20 0.1 10")
-        for name, place in _SIDES
+        block(name, f"{position} 0 0 0 0", "0.1 20 10" if name in ("east", "west") else "20 0.1 10")
+        for name, position in _SIDES
     )
 
 
 def carrier(pose: str = "0 0 0 0 0 0") -> str:
-    """A model without shapes that carries a sensor."""
+    """Return a model without shapes for a sensor."""
     return CARRIER.format(pose=pose)
 
 
-def on_carrier(simulation: Simulation) -> Mount:
-    """The place of the sensor on it."""
+def carrier_mount(simulation: Simulation) -> Mount:
+    """Return the mount of a sensor on the carrier."""
     return Mount(simulation, "carrier::link")
 
 
 def sensor(text: str, kind: str = "lidar") -> Sensor:
-    """A sensor, from what stands in its element."""
+    """Return the sensor with this content of its element."""
     holder = model(f'<model name="m"><link name="l"><sensor name="s" type="{kind}">{text}</sensor></link></model>')
     return holder.links[0].sensors[0]
 
 
 def lidar(text: str) -> Lidar:
-    """A lidar, from what stands in its element."""
-    shown = sensor(f"<lidar>{text}</lidar>").lidar
-    assert shown is not None
-    return shown
+    """Return the lidar with this content of its element."""
+    element = sensor(f"<lidar>{text}</lidar>").lidar
+    assert element is not None
+    return element
 
 
-def flat(samples: int, low: float, high: float, rest: str = "", *, near: float = 0.1, far: float = 30.0) -> Lidar:
-    """A lidar of one plane; angles in rad."""
+def single_row_lidar(
+    samples: int, low: float, high: float, extra: str = "", *, near: float = 0.1, far: float = 30.0
+) -> Lidar:
+    """Return a lidar with one row; angles in rad."""
     return lidar(
         f"<scan><horizontal><samples>{samples}</samples><min_angle>{low}</min_angle><max_angle>{high}</max_angle>"
-        f"</horizontal></scan><range><min>{near}</min><max>{far}</max></range>{rest}"
+        f"</horizontal></scan><range><min>{near}</min><max>{far}</max></range>{extra}"
     )

@@ -1,4 +1,4 @@
-"""IMUs, contacts, forces in joints and places on earth, against what mechanics and geodesy say."""
+"""IMUs, contacts, joint forces and geodetic positions, compared with mechanics and geodesy."""
 
 from __future__ import annotations
 
@@ -23,51 +23,51 @@ from linkwright.simulation.sensors.imu import ImuSensor
 from linkwright.simulation.sensors.mount import Mount
 from linkwright.simulation.simulation import Simulation
 from tests.simulation.sensors.rooms import sensor
-from tests.simulation.worlds import GROUND, box, mbot, simulated
+from tests.simulation.worlds import GROUND, box, make_simulation, mbot
 
-CHANCE = np.random.default_rng(0)
+GENERATOR = np.random.default_rng(0)
 
 
 def imu(simulation: Simulation, link: str, text: str = "", *, seed: int = 0, initial: bool = False) -> ImuSensor:
-    shown = sensor(f"<imu>{text}</imu>", "imu").imu
-    return ImuSensor(Mount(simulation, link), shown, generator=np.random.default_rng(seed), initial_reference=initial)
+    element = sensor(f"<imu>{text}</imu>", "imu").imu
+    return ImuSensor(Mount(simulation, link), element, generator=np.random.default_rng(seed), initial_reference=initial)
 
 
 def test_imu_at_rest_measures_gravity_reaction():
-    simulation = simulated(GROUND, mbot(), gravity="0 0 -9.8")
+    simulation = make_simulation(GROUND, mbot(), gravity="0 0 -9.8")
     sensor = imu(simulation, "mbot::base_link")
     simulation.advance(NANOSECONDS_PER_SECOND)
-    measured = sensor.measure()
-    assert measured.linear_acceleration == pytest.approx([0, 0, 9.8], abs=1e-3)
-    assert measured.angular_velocity == pytest.approx([0, 0, 0], abs=1e-4)
-    assert measured.orientation == pytest.approx([0, 0, 0, 1], abs=1e-4)
+    measurement = sensor.measure()
+    assert measurement.linear_acceleration == pytest.approx([0, 0, 9.8], abs=1e-3)
+    assert measurement.angular_velocity == pytest.approx([0, 0, 0], abs=1e-4)
+    assert measurement.orientation == pytest.approx([0, 0, 0, 1], abs=1e-4)
 
 
 def test_falling_imu_measures_no_acceleration():
-    simulation = simulated(box("box", "0 0 9 0.3 0.2 0.1"))
+    simulation = make_simulation(box("box", "0 0 9 0.3 0.2 0.1"))
     simulation.advance(NANOSECONDS_PER_SECOND // 10)
     assert imu(simulation, "box::link").measure().linear_acceleration == pytest.approx([0, 0, 0], abs=1e-9)
 
 
 def test_imu_on_curve_measures_centripetal_acceleration():
-    simulation = simulated(GROUND, mbot())
+    simulation = make_simulation(GROUND, mbot())
     motors = [simulation.add_velocity_motor(f"mbot::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
-    forwards, turning = 0.3, 0.5
+    speed, yaw_rate = 0.3, 0.5
     for hundredth in range(1, 101):
         for motor, side in zip(motors, (-0.19, 0.19), strict=True):
-            motor.target = hundredth / 100 * (forwards + turning * side) / 0.06
+            motor.target = hundredth / 100 * (speed + yaw_rate * side) / 0.06
         simulation.advance(NANOSECONDS_PER_SECOND // 100)
     simulation.advance(NANOSECONDS_PER_SECOND)
-    measured = imu(simulation, "mbot::base_link").measure()
-    assert measured.angular_velocity == pytest.approx([0, 0, turning], abs=1e-3)
-    assert measured.linear_acceleration == pytest.approx([0, forwards * turning, 9.81], abs=2e-3)
-    outside = Mount(simulation, "mbot::base_link", (0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
-    felt = ImuSensor(outside, None, generator=CHANCE).measure().linear_acceleration
-    assert felt[0] - measured.linear_acceleration[0] == pytest.approx(-0.1 * turning**2, abs=1e-3)
+    measurement = imu(simulation, "mbot::base_link").measure()
+    assert measurement.angular_velocity == pytest.approx([0, 0, yaw_rate], abs=1e-3)
+    assert measurement.linear_acceleration == pytest.approx([0, speed * yaw_rate, 9.81], abs=2e-3)
+    mount = Mount(simulation, "mbot::base_link", (0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+    acceleration = ImuSensor(mount, None, generator=GENERATOR).measure().linear_acceleration
+    assert acceleration[0] - measurement.linear_acceleration[0] == pytest.approx(-0.1 * yaw_rate**2, abs=1e-3)
 
 
 def test_imu_orientation_is_relative_to_world_or_start():
-    simulation = simulated(box("box", f"0 0 9 0 0 {pi / 2}"))
+    simulation = make_simulation(box("box", f"0 0 9 0 0 {pi / 2}"))
     assert imu(simulation, "box::link").measure().orientation == pytest.approx([0, 0, 0.5**0.5, 0.5**0.5])
     assert imu(simulation, "box::link", initial=True).measure().orientation == pytest.approx([0, 0, 0, 1])
 
@@ -77,12 +77,12 @@ def test_imu_noise_has_configured_deviation_and_bias():
         '<angular_velocity><x><noise type="gaussian"><stddev>0.2</stddev></noise></x></angular_velocity>'
         '<linear_acceleration><z><noise type="gaussian"><bias_mean>5</bias_mean></noise></z></linear_acceleration>'
     )
-    unit = imu(simulated(box("box", "0 0 9 0 0 0")), "box::link", text)
-    turns = np.array([unit.measure().angular_velocity for _ in range(2000)])
-    assert np.std(turns[:, 0]) == pytest.approx(0.2, rel=0.1)
-    assert not turns[:, 1:].any()
-    assert list(unit.angular_velocity_noise.variances) == pytest.approx([0.04, 0, 0])
-    assert abs(unit.measure().linear_acceleration[2] - 9.81) == pytest.approx(5.0)
+    sensor = imu(make_simulation(box("box", "0 0 9 0 0 0")), "box::link", text)
+    rates = np.array([sensor.measure().angular_velocity for _ in range(2000)])
+    assert np.std(rates[:, 0]) == pytest.approx(0.2, rel=0.1)
+    assert not rates[:, 1:].any()
+    assert list(sensor.angular_velocity_noise.variances) == pytest.approx([0.04, 0, 0])
+    assert abs(sensor.measure().linear_acceleration[2] - 9.81) == pytest.approx(5.0)
 
 
 def test_dynamic_bias_stays_within_its_deviation():
@@ -90,17 +90,17 @@ def test_dynamic_bias_stays_within_its_deviation():
         '<angular_velocity><x><noise type="gaussian"><dynamic_bias_stddev>0.5</dynamic_bias_stddev>'
         "<dynamic_bias_correlation_time>0.02</dynamic_bias_correlation_time></noise></x></angular_velocity>"
     )
-    simulation = simulated(box("box", "0 0 9 0 0 0"))
-    unit, seen = imu(simulation, "box::link", text), []
+    simulation = make_simulation(box("box", "0 0 9 0 0 0"))
+    sensor, rates = imu(simulation, "box::link", text), []
     for _ in range(1000):
         simulation.advance(NANOSECONDS_PER_SECOND // 1000)
-        seen.append(unit.measure().angular_velocity[0])
-    assert len(set(seen)) == 1000
-    assert 0 < np.std(seen) < 0.5
+        rates.append(sensor.measure().angular_velocity[0])
+    assert len(set(rates)) == 1000
+    assert 0 < np.std(rates) < 0.5
 
 
 def test_contact_force_equals_weight():
-    simulation = simulated(GROUND, box("box", "0 0 0.5 0 0 0", mass=2.0))
+    simulation = make_simulation(GROUND, box("box", "0 0 0.5 0 0 0", mass=2.0))
     sensor = ContactSensor(Mount(simulation, "box::link"), ["collision"])
     simulation.advance(NANOSECONDS_PER_SECOND)
     (contact,) = sensor.measure()
@@ -113,7 +113,7 @@ def test_contact_force_equals_weight():
 
 
 def test_contact_sensor_ignores_flying_links_and_other_collisions():
-    simulation = simulated(GROUND, box("box", "0 0 5 0 0 0"), box("low", "9 0 0.5 0 0 0"))
+    simulation = make_simulation(GROUND, box("box", "0 0 5 0 0 0"), box("low", "9 0 0.5 0 0 0"))
     simulation.advance(NANOSECONDS_PER_SECOND // 10)
     assert ContactSensor(Mount(simulation, "box::link")).measure() == []
     assert ContactSensor(Mount(simulation, "low::link"), ["another"]).measure() == []
@@ -129,10 +129,10 @@ ARM = """
 
 @pytest.mark.parametrize(("direction", "sign"), [("parent_to_child", 1), ("child_to_parent", -1)])
 def test_force_torque_sensor_measures_suspended_weight(direction: str, sign: int):
-    simulation = simulated(ARM)
+    simulation = make_simulation(ARM)
     simulation.advance(NANOSECONDS_PER_SECOND // 100)
     element = ForceTorque(measure_direction=direction)
-    force, torque = ForceTorqueSensor(simulation, "arm::wrist", element, CHANCE).measure()
+    force, torque = ForceTorqueSensor(simulation, "arm::wrist", element, GENERATOR).measure()
     assert sign * force == pytest.approx([0, 0, 2 * 9.81], abs=1e-6)
     assert sign * torque == pytest.approx([0, -2 * 9.81, 0], abs=1e-6)
 
@@ -156,9 +156,9 @@ def test_heading_rotates_world_on_earth():
 
 
 def test_navsat_measures_altitude_and_velocity():
-    simulation = simulated(box("box", "0 0 500 0 0 0"))
+    simulation = make_simulation(box("box", "0 0 500 0 0 0"))
     simulation.advance(NANOSECONDS_PER_SECOND)
-    fix = NavsatSensor(Mount(simulation, "box::link"), None, SphericalCoordinates(elevation=100.0), CHANCE).measure()
+    fix = NavsatSensor(Mount(simulation, "box::link"), None, SphericalCoordinates(elevation=100.0), GENERATOR).measure()
     assert fix.altitude == pytest.approx(600 - 9.81 / 2, abs=0.01)
     assert fix.velocity == pytest.approx([0, 0, -9.81], abs=1e-6)
 
@@ -169,13 +169,13 @@ def test_air_pressure_matches_standard_atmosphere(altitude: float, pressure: flo
 
 
 def test_altimeter_is_relative_to_start():
-    simulation = simulated(box("box", "0 0 500 0 0 0"))
-    altimeter = AltimeterSensor(Mount(simulation, "box::link"), None, CHANCE)
+    simulation = make_simulation(box("box", "0 0 500 0 0 0"))
+    altimeter = AltimeterSensor(Mount(simulation, "box::link"), None, GENERATOR)
     simulation.advance(NANOSECONDS_PER_SECOND)
     assert altimeter.measure() == pytest.approx((-9.81 / 2, -9.81), abs=0.01)
 
 
 def test_magnetometer_measures_field_in_its_axes():
-    simulation = simulated(box("box", f"0 0 9 0 0 {pi / 2}"))
-    field = MagnetometerSensor(Mount(simulation, "box::link"), None, CHANCE, (1.0, 2.0, 3.0)).measure()
+    simulation = make_simulation(box("box", f"0 0 9 0 0 {pi / 2}"))
+    field = MagnetometerSensor(Mount(simulation, "box::link"), None, GENERATOR, (1.0, 2.0, 3.0)).measure()
     assert field == pytest.approx([2.0, -1.0, 3.0])

@@ -1,4 +1,4 @@
-"""What sensors publish: topics, frames and messages of Gazebo classic, of ROS 1 and of gz."""
+"""Topics, frames and messages of sensors, as in Gazebo classic, in ROS 1 and in gz."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.messages import get_message
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.testing import Recording
 from tests.simulation.sensors.rooms import block
-from tests.simulation.worlds import GROUND, box, simulated
+from tests.simulation.worlds import GROUND, box, make_simulation
 
 SECOND = 1_000_000_000
 WALL = block("wall", "2.5 0 0 0 0 0", "1 20 20")
@@ -21,15 +21,15 @@ RAYS = (
     "<scan><horizontal><samples>3</samples><min_angle>-1.5707963267948966</min_angle><max_angle>1.5707963267948966"
     "</max_angle></horizontal></scan><range><min>0.1</min><max>10</max></range>"
 )
-EYE = (
+CAMERA = (
     f"<camera><horizontal_fov>{pi / 2}</horizontal_fov><image><width>64</width><height>48</height></image>"
     "<clip><near>0.05</near><far>50</far></clip></camera>"
 )
 
 
-def carrier(*inside: str, link: str = "head", more: str = "") -> str:
-    """A robot that stands still, with what is in its link."""
-    return f'<model name="robot"><static>true</static><link name="{link}">{"".join(inside)}</link>{more}</model>'
+def carrier(*elements: str, link: str = "head", extra: str = "") -> str:
+    """Return a fixed robot whose link has these elements."""
+    return f'<model name="robot"><static>true</static><link name="{link}">{"".join(elements)}</link>{extra}</model>'
 
 
 def sensor(kind: str, text: str, name: str = "eye", rate: float = 10) -> str:
@@ -41,11 +41,11 @@ def plugin(library: str, text: str = "", name: str = "driver") -> str:
 
 
 @asynccontextmanager
-async def served(*parts: str):
-    """A simulation on a graph, and what was logged."""
+async def running_server(*parts: str):
+    """Run a simulation on a graph; yield the server, the graph and the log."""
     log: list[LogRecord] = []
     graph = Graph(on_log=log.append)
-    server = SimulationServer(simulated(*parts), graph.create_node("gazebo"))
+    server = SimulationServer(make_simulation(*parts), graph.create_node("gazebo"))
     server.start()
     yield server, graph, log
     server.close()
@@ -53,7 +53,7 @@ async def served(*parts: str):
 
 
 async def last_messages(server: SimulationServer, graph: Graph, *topics: str, duration: int = SECOND // 10) -> list:
-    """The last messages of topics after some time."""
+    """Advance the simulation, and return the last message of each topic."""
     recordings = [Recording(graph, server.node, topic) for topic in topics]
     server.advance(duration)
     await graph.settle()
@@ -63,7 +63,7 @@ async def last_messages(server: SimulationServer, graph: Graph, *topics: str, du
 async def test_classic_ray_sensor_publishes_scan():
     ros = "<ros><remapping>~/out:=scan</remapping></ros><output_type>sensor_msgs/LaserScan</output_type>"
     text = carrier(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so", ros)))
-    async with served(WALL, text) as (server, graph, log):
+    async with running_server(WALL, text) as (server, graph, log):
         (scan,) = await last_messages(server, graph, "/scan")
         assert (scan.header.stamp.sec, scan.header.stamp.nanosec) == (0, SECOND // 10)
         assert scan.header.frame_id == "head"
@@ -77,7 +77,7 @@ async def test_classic_ray_sensor_publishes_scan():
 
 async def test_ray_sensor_does_not_publish_without_subscribers():
     text = carrier(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so")))
-    async with served(WALL, text) as (server, graph, _):
+    async with running_server(WALL, text) as (server, graph, _):
         server.advance(SECOND)
         recording = Recording(graph, server.node, "/driver/out")
         server.advance(SECOND)
@@ -85,30 +85,30 @@ async def test_ray_sensor_does_not_publish_without_subscribers():
         assert len(recording) == 10
 
 
-@pytest.mark.parametrize(("message", "topic"), [("true", "/world_rays"), ("false", "/world_rays/others")])
-async def test_displayed_rays_and_scan_share_one_measurement(message: str, topic: str):
+@pytest.mark.parametrize(("visualize", "topic"), [("true", "/world_rays"), ("false", "/world_rays/others")])
+async def test_displayed_rays_and_scan_share_one_measurement(visualize: str, topic: str):
     two_rows = RAYS.replace(
         "</horizontal>",
         "</horizontal><vertical><samples>2</samples><min_angle>0</min_angle><max_angle>0</max_angle></vertical>",
     )
-    text = sensor("gpu_lidar", f"<visualize>{message}</visualize><topic>scan</topic><lidar>{two_rows}</lidar>")
-    async with served(WALL, carrier(text)) as (server, graph, _):
+    text = sensor("gpu_lidar", f"<visualize>{visualize}</visualize><topic>scan</topic><lidar>{two_rows}</lidar>")
+    async with running_server(WALL, carrier(text)) as (server, graph, _):
         (lidar,) = server.plugins("robot")
-        measured = []
+        measurements = []
         measure = lidar.lidar.measure
-        lidar.lidar.measure = lambda: measured.append(None) or measure()
+        lidar.lidar.measure = lambda: measurements.append(None) or measure()
         server.advance(SECOND)
-        assert not measured
-        rays, other = await last_messages(server, graph, topic, "/scan")
-        assert len(measured) == 1
+        assert not measurements
+        rays, scan = await last_messages(server, graph, topic, "/scan")
+        assert len(measurements) == 1
         assert rays.header.frame_id == "robot::head::eye"
         assert list(rays.ranges) == [inf, 2.0, inf] * 2
-        assert list(other.ranges) == [inf, 2.0, inf]
+        assert list(scan.ranges) == [inf, 2.0, inf]
 
 
 async def test_lidar_measures_while_only_its_rays_are_displayed():
     text = carrier(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so")))
-    async with served(WALL, text) as (server, graph, _):
+    async with running_server(WALL, text) as (server, graph, _):
         (rays,) = await last_messages(server, graph, "/world_rays/others")
         assert list(rays.ranges) == [inf, 2.0, inf]
 
@@ -118,7 +118,7 @@ async def test_ray_sensor_output_types(kind: str):
     element = plugin(
         "libgazebo_ros_ray_sensor.so", f"<output_type>sensor_msgs/{kind}</output_type><frame_name>l</frame_name>"
     )
-    async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, _):
+    async with running_server(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, _):
         (message,) = await last_messages(server, graph, "/driver/out")
         assert message.header.frame_id == "l"
         if kind == "Range":
@@ -132,14 +132,14 @@ async def test_ray_sensor_output_types(kind: str):
 
 async def test_invalid_output_type_is_reported():
     element = plugin("libgazebo_ros_ray_sensor.so", "<output_type>sensor_msgs/Imu</output_type>")
-    async with served(carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, _, log):
+    async with running_server(carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, _, log):
         assert server.plugins("robot") == ()
         assert "is not an output type" in str(log[0].text)
 
 
 async def test_ros_1_laser_has_its_topic_and_frame():
     element = plugin("libgazebo_ros_laser.so", "<topicName>/laser</topicName><frameName>hokuyo</frameName>")
-    async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, log):
+    async with running_server(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, log):
         (scan,) = await last_messages(server, graph, "/laser")
         assert (scan.header.frame_id, scan.ranges[1]) == ("hokuyo", 2.0)
         assert not log
@@ -151,7 +151,7 @@ async def test_ros_1_laser_has_its_topic_and_frame():
 )
 async def test_ros_1_laser_plugins_publish_their_message_types(library: str):
     element = plugin(f"libgazebo_ros_{library}.so", "<topicName>/told</topicName><frameName>hokuyo</frameName>")
-    async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, log):
+    async with running_server(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, log):
         (message,) = await last_messages(server, graph, "/told")
         assert message.header.frame_id == "hokuyo"
         if library == "range":
@@ -165,12 +165,12 @@ async def test_ros_1_laser_plugins_publish_their_message_types(library: str):
 
 
 def rows_of(cloud) -> np.ndarray:
-    """The points of a cloud, by the names of their fields."""
-    kinds = {4: np.uint16, 7: np.float32}
+    """Return the points of a cloud as an array with the names of its fields."""
+    types = {4: np.uint16, 7: np.float32}
     layout = np.dtype(
         {
             "names": [field.name for field in cloud.fields],
-            "formats": [kinds[field.datatype] for field in cloud.fields],
+            "formats": [types[field.datatype] for field in cloud.fields],
             "offsets": [field.offset for field in cloud.fields],
             "itemsize": cloud.point_step,
         }
@@ -186,7 +186,7 @@ LASERS = RAYS.replace(
 
 async def test_velodyne_points_have_ring():
     element = plugin("libgazebo_ros_velodyne_laser.so", "<topicName>/told</topicName>")
-    async with served(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + element))) as (server, graph, log):
+    async with running_server(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + element))) as (server, graph, log):
         (message,) = await last_messages(server, graph, "/told")
         rows = rows_of(message)
         assert (message.height, message.width, message.is_dense) == (1, 2, True)
@@ -197,9 +197,9 @@ async def test_velodyne_points_have_ring():
 
 
 async def test_organized_velodyne_cloud_has_row_per_firing():
-    more = "<topicName>/told</topicName><organize_cloud>true</organize_cloud><max_range>5</max_range>"
-    element = plugin("libgazebo_ros_velodyne_laser.so", more)
-    async with served(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + element))) as (server, graph, log):
+    settings = "<topicName>/told</topicName><organize_cloud>true</organize_cloud><max_range>5</max_range>"
+    element = plugin("libgazebo_ros_velodyne_laser.so", settings)
+    async with running_server(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + element))) as (server, graph, log):
         (message,) = await last_messages(server, graph, "/told")
         rows = rows_of(message).reshape(message.height, message.width)
         assert (message.height, message.width, message.is_dense) == (3, 2, False)
@@ -210,7 +210,7 @@ async def test_organized_velodyne_cloud_has_row_per_firing():
 
 async def test_gz_lidar_publishes_points_beside_scan():
     text = carrier(sensor("gpu_lidar", f"<topic>lidar</topic><lidar>{RAYS}</lidar>"))
-    async with served(WALL, text) as (server, graph, log):
+    async with running_server(WALL, text) as (server, graph, log):
         scan, cloud = await last_messages(server, graph, "/lidar", "/lidar/points")
         assert scan.header.frame_id == "robot/head/eye"
         assert list(scan.ranges) == [inf, 2.0, inf]
@@ -221,7 +221,7 @@ async def test_gz_lidar_publishes_points_beside_scan():
 
 
 async def test_gz_sensor_without_topic_has_default_gz_name():
-    async with served(WALL, carrier(sensor("gpu_lidar", f"<lidar>{RAYS}</lidar>"))) as (server, graph, _):
+    async with running_server(WALL, carrier(sensor("gpu_lidar", f"<lidar>{RAYS}</lidar>"))) as (server, graph, _):
         (scan,) = await last_messages(server, graph, "/world/test/model/robot/link/head/sensor/eye/scan")
         assert scan.ranges[1] == 2.0
 
@@ -237,7 +237,7 @@ async def test_gz_sensor_without_topic_has_default_gz_name():
 async def test_imu_plugins_publish_gravity_and_noise(library: str | None, text: str, topic: str):
     noise = '<angular_velocity><z><noise type="gaussian"><stddev>0.1</stddev></noise></z></angular_velocity>'
     shown = sensor("imu", f"{text}<imu>{noise}</imu>" + (plugin(library) if library else ""), rate=100)
-    async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</link>", shown + "</link>")) as (
+    async with running_server(GROUND, box("one", "0 0 0.5 0 0 0").replace("</link>", shown + "</link>")) as (
         server,
         graph,
         log,
@@ -255,7 +255,7 @@ async def test_ros_1_imu_plugin_names_its_link():
     element = plugin(
         "libgazebo_ros_imu.so", "<bodyName>link</bodyName><topicName>/imu</topicName><updateRate>10</updateRate>"
     )
-    async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</model>", element + "</model>")) as (
+    async with running_server(GROUND, box("one", "0 0 0.5 0 0 0").replace("</model>", element + "</model>")) as (
         server,
         graph,
         log,
@@ -268,7 +268,7 @@ async def test_ros_1_imu_plugin_names_its_link():
 async def test_gz_contacts_are_published_while_touching():
     element = sensor("contact", "<contact><collision>collision</collision><topic>/touched</topic></contact>", rate=100)
     text = box("crate", "0 0 0.7 0 0 0", "1 1 1", 2.0).replace("</link>", f"{element}</link>")
-    async with served(GROUND, text) as (server, graph, log):
+    async with running_server(GROUND, text) as (server, graph, log):
         recording = Recording(graph, server.node, "/touched")
         server.advance(SECOND // 10)
         await graph.settle()
@@ -294,7 +294,7 @@ async def test_gz_altimeter_and_air_pressure_are_published():
         sensor("air_pressure", f"<topic>air</topic>{noise}</noise></pressure></air_pressure>", name="baro"),
     )
     text = box("crate", "0 0 50 0 0 0", "1 1 1", 2.0).replace("</link>", "".join(sensors) + "</link>")
-    async with served(text) as (server, graph, log):
+    async with running_server(text) as (server, graph, log):
         height, air = await last_messages(server, graph, "/height", "/air", duration=SECOND)
         assert (height.vertical_position, height.vertical_velocity) == pytest.approx((-4.905, -9.81), abs=0.01)
         assert (height.vertical_reference, height.header.frame_id) == (50.0, "crate/link/eye")
@@ -307,7 +307,7 @@ async def test_bumper_publishes_contacts():
     element = sensor(
         "contact", "<contact><collision>collision</collision></contact>" + plugin("libgazebo_ros_bumper.so")
     )
-    async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</link>", element + "</link>")) as (
+    async with running_server(GROUND, box("one", "0 0 0.5 0 0 0").replace("</link>", element + "</link>")) as (
         server,
         graph,
         log,
@@ -332,7 +332,7 @@ EARTH = (
 ])  # fmt: skip
 async def test_navsat_sensors_publish_position(kind: str, library: str | None, topic: str):
     element = sensor(kind, plugin(library) if library else "<topic>/gps/fix</topic>")
-    async with served(EARTH, carrier(element)) as (server, graph, log):
+    async with running_server(EARTH, carrier(element)) as (server, graph, log):
         (fix,) = await last_messages(server, graph, topic)
         assert (fix.latitude, fix.longitude, fix.altitude) == pytest.approx((47.5, 8.5, 430.0))
         assert not log
@@ -340,7 +340,7 @@ async def test_navsat_sensors_publish_position(kind: str, library: str | None, t
 
 async def test_magnetometer_publishes_field_in_its_axes():
     element = sensor("magnetometer", f"<pose>0 0 0 0 0 {pi / 2}</pose><topic>mag</topic>")
-    async with served("<magnetic_field>1 2 3</magnetic_field>", carrier(element)) as (server, graph, _):
+    async with running_server("<magnetic_field>1 2 3</magnetic_field>", carrier(element)) as (server, graph, _):
         (message,) = await last_messages(server, graph, "/mag")
         field = message.magnetic_field
         assert (field.x, field.y, field.z) == pytest.approx((2.0, -1.0, 3.0))
@@ -351,14 +351,14 @@ ARM = """
   <link name="bob"><pose>1 0 0 0 0 0</pose><inertial><mass>2</mass></inertial></link>
   <joint name="held" type="fixed"><parent>world</parent><child>post</child></joint>
   <joint name="wrist" type="revolute"><pose>-1 0 0 0 0 0</pose><parent>post</parent><child>bob</child><axis>
-    <xyz>0 0 1</xyz></axis>{inside}</joint>{more}
+    <xyz>0 0 1</xyz></axis>{inside}</joint>{extra}
 </model>"""
 
 
 async def test_force_torque_sensors_publish_wrench():
     classic = plugin("libgazebo_ros_ft_sensor.so", "<joint_name>wrist</joint_name><update_rate>10</update_rate>")
     gz = sensor("force_torque", "<topic>ft</topic>", name="ft")
-    async with served(ARM.format(inside=gz, more=classic)) as (server, graph, log):
+    async with running_server(ARM.format(inside=gz, extra=classic)) as (server, graph, log):
         first, second = await last_messages(server, graph, "/wrench", "/ft")
         assert (first.header.frame_id, second.header.frame_id) == ("bob", "arm/wrist/ft")
         for message in (first, second):
@@ -374,8 +374,8 @@ def pixels_of(message) -> np.ndarray:
 
 async def test_classic_camera_publishes_image_and_camera_info():
     expected = "<camera_name>front</camera_name><frame_name>optical</frame_name><hack_baseline>0.07</hack_baseline>"
-    text = carrier(sensor("camera", EYE + plugin("libgazebo_ros_camera.so", expected)))
-    async with served(WALL, text) as (server, graph, log):
+    text = carrier(sensor("camera", CAMERA + plugin("libgazebo_ros_camera.so", expected)))
+    async with running_server(WALL, text) as (server, graph, log):
         image, info = await last_messages(server, graph, "/front/image_raw", "/front/camera_info")
         assert (image.width, image.height, image.encoding, image.step) == (64, 48, "rgb8", 192)
         assert image.header.frame_id == info.header.frame_id == "optical"
@@ -390,12 +390,16 @@ async def test_classic_camera_publishes_image_and_camera_info():
 
 
 @pytest.mark.parametrize(
-    ("written", "encoding", "step"),
+    ("image_format", "encoding", "step"),
     [("L8", "mono8", 64), ("B8G8R8", "bgr8", 192), ("R16G16B16", "rgb16", 384), ("BAYER_RGGB8", "bayer_rggb8", 64)],
 )
-async def test_image_format_sets_encoding(written: str, encoding: str, step: int):
-    eye = EYE.replace("</height>", f"</height><format>{written}</format>")
-    async with served(WALL, carrier(sensor("camera", eye + plugin("libgazebo_ros_camera.so")))) as (server, graph, _):
+async def test_image_format_sets_encoding(image_format: str, encoding: str, step: int):
+    camera = CAMERA.replace("</height>", f"</height><format>{image_format}</format>")
+    async with running_server(WALL, carrier(sensor("camera", camera + plugin("libgazebo_ros_camera.so")))) as (
+        server,
+        graph,
+        _,
+    ):
         (image,) = await last_messages(server, graph, "/eye/image_raw")
         assert (image.encoding, image.step, len(image.data)) == (encoding, step, 48 * step)
 
@@ -404,7 +408,7 @@ async def test_image_format_sets_encoding(written: str, encoding: str, step: int
 async def test_depth_camera_measures_along_optical_axis(library: str):
     element = plugin(library, "<camera_name>depth</camera_name><max_depth>3</max_depth>")
     near = block("near", "0.35 0.2 0 0 0 0", "0.1 0.1 0.1")
-    async with served(WALL, near, carrier(sensor("depth", EYE + element))) as (server, graph, _):
+    async with running_server(WALL, near, carrier(sensor("depth", CAMERA + element))) as (server, graph, _):
         depth, cloud = await last_messages(server, graph, "/depth/depth/image_raw", "/depth/points")
         meters = np.frombuffer(bytes(depth.data), np.float32).reshape(48, 64)
         assert (depth.encoding, depth.step) == ("32FC1", 256)
@@ -420,7 +424,7 @@ async def test_depth_camera_measures_along_optical_axis(library: str):
 
 async def test_triggered_camera_waits_for_trigger():
     element = plugin("libgazebo_ros_camera.so", "<triggered>true</triggered>")
-    async with served(WALL, carrier(sensor("camera", EYE + element))) as (server, graph, _):
+    async with running_server(WALL, carrier(sensor("camera", CAMERA + element))) as (server, graph, _):
         recording = Recording(graph, server.node, "/eye/image_raw")
         server.advance(SECOND)
         await graph.settle()
@@ -434,24 +438,28 @@ async def test_triggered_camera_waits_for_trigger():
 
 
 async def test_multicamera_has_topic_per_camera():
-    eyes = EYE.replace("<camera>", '<camera name="left">') + EYE.replace("<camera>", '<camera name="right">')
+    eyes = CAMERA.replace("<camera>", '<camera name="left">') + CAMERA.replace("<camera>", '<camera name="right">')
     element = plugin("libgazebo_ros_camera.so", "<camera_name>stereo</camera_name>")
-    async with served(WALL, carrier(sensor("multicamera", eyes + element))) as (server, graph, _):
+    async with running_server(WALL, carrier(sensor("multicamera", eyes + element))) as (server, graph, _):
         left, right = await last_messages(server, graph, "/stereo/left/image_raw", "/stereo/right/camera_info")
         assert (left.width, right.width) == (64, 64)
 
 
 async def test_gz_camera_publishes_camera_info_beside_image():
-    eye = EYE.replace("</camera>", "<optical_frame_id>optical</optical_frame_id></camera>")
-    async with served(WALL, carrier(sensor("camera", f"<topic>front/image</topic>{eye}"))) as (server, graph, _):
+    eye = CAMERA.replace("</camera>", "<optical_frame_id>optical</optical_frame_id></camera>")
+    async with running_server(WALL, carrier(sensor("camera", f"<topic>front/image</topic>{eye}"))) as (
+        server,
+        graph,
+        _,
+    ):
         image, info = await last_messages(server, graph, "/front/image", "/front/camera_info")
         assert image.header.frame_id == info.header.frame_id == "optical"
         assert list(info.k)[2] == 32.0
 
 
 async def test_gz_rgbd_camera_points_have_x_forward():
-    text = carrier(sensor("rgbd_camera", f"<topic>rgbd</topic>{EYE}"))
-    async with served(WALL, text) as (server, graph, log):
+    text = carrier(sensor("rgbd_camera", f"<topic>rgbd</topic>{CAMERA}"))
+    async with running_server(WALL, text) as (server, graph, log):
         image, depth, cloud, info = await last_messages(
             server, graph, "/rgbd/image", "/rgbd/depth_image", "/rgbd/points", "/rgbd/camera_info"
         )
@@ -464,14 +472,14 @@ async def test_gz_rgbd_camera_points_have_x_forward():
 LABEL = '<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>{}</label></plugin>'
 
 
-def labeled(name: str, pose: str, label: int) -> str:
+def labeled_block(name: str, pose: str, label: int) -> str:
     return block(name, pose, "0.1 0.4 0.4").replace("</visual>", LABEL.format(label) + "</visual>")
 
 
 async def test_segmentation_camera_shows_labels_and_background():
-    world = labeled("cup", "2 0.5 0 0 0 0", 7), labeled("other", "2 -0.5 0 0 0 0", 7), WALL
-    text = carrier(sensor("segmentation_camera", f"<topic>seg</topic>{EYE}"))
-    async with served(*world, text) as (server, graph, _):
+    world = labeled_block("cup", "2 0.5 0 0 0 0", 7), labeled_block("other", "2 -0.5 0 0 0 0", 7), WALL
+    text = carrier(sensor("segmentation_camera", f"<topic>seg</topic>{CAMERA}"))
+    async with running_server(*world, text) as (server, graph, _):
         maps, colored = await last_messages(server, graph, "/seg/labels_map", "/seg/colored_map")
         assert set(pixels_of(maps).reshape(-1).tolist()) == {0, 7}
         assert pixels_of(colored)[24, 24].any()
@@ -479,13 +487,13 @@ async def test_segmentation_camera_shows_labels_and_background():
 
 
 async def test_bounding_boxes_enclose_labeled_models():
-    world = labeled("cup", "1.55 0.5 0 0 0 0", 7), labeled("ball", "1.55 -0.5 0 0 0 0", 9), WALL
-    text = carrier(sensor("boundingbox_camera", f"<topic>boxes</topic>{EYE}"))
-    async with served(*world, text) as (server, graph, _):
+    world = labeled_block("cup", "1.55 0.5 0 0 0 0", 7), labeled_block("ball", "1.55 -0.5 0 0 0 0", 9), WALL
+    text = carrier(sensor("boundingbox_camera", f"<topic>boxes</topic>{CAMERA}"))
+    async with running_server(*world, text) as (server, graph, _):
         boxes, image = await last_messages(server, graph, "/boxes", "/boxes_image")
         bounding_boxes = {detection.results[0].hypothesis.class_id: detection.bbox for detection in boxes.detections}
         assert sorted(bounding_boxes) == ["7", "9"]
-        # 1.5 m away and 0.4 m wide, at a focal length of 32 pixels: 8.5 pixels, 10.7 from the middle of the picture.
+        # 1.5 m away and 0.4 m wide, at a focal length of 32 pixels: 8.5 pixels, 10.7 from the middle of the image.
         left, right = bounding_boxes["7"], bounding_boxes["9"]
         assert (left.center.position.x, left.size_x) == (pytest.approx(21.3, abs=1), pytest.approx(8.5, abs=1))
         assert (right.center.position.x, right.size_y) == (pytest.approx(42.7, abs=1), pytest.approx(8.5, abs=1))
@@ -494,17 +502,19 @@ async def test_bounding_boxes_enclose_labeled_models():
 
 async def test_image_noise_is_reproducible_for_same_seed():
     noise = "<noise><type>gaussian</type><mean>0</mean><stddev>0.02</stddev></noise>"
-    text = carrier(sensor("camera", EYE.replace("</camera>", noise + "</camera>") + plugin("libgazebo_ros_camera.so")))
-    seen = []
+    text = carrier(
+        sensor("camera", CAMERA.replace("</camera>", noise + "</camera>") + plugin("libgazebo_ros_camera.so"))
+    )
+    images = []
     for _ in range(2):
-        async with served(WALL, text) as (server, graph, _log):
+        async with running_server(WALL, text) as (server, graph, _log):
             (image,) = await last_messages(server, graph, "/eye/image_raw")
-            seen.append(pixels_of(image).astype(float))
-    assert (seen[0] == seen[1]).all()
-    assert np.std(seen[0][:, :, 0]) == pytest.approx(0.02 * 255, rel=0.2)
+            images.append(pixels_of(image).astype(float))
+    assert (images[0] == images[1]).all()
+    assert np.std(images[0][:, :, 0]) == pytest.approx(0.02 * 255, rel=0.2)
 
 
-PLACES = {
+POSITIONS = {
     "ahead": "0.5 2 1",
     "near": "0 0.4 1",
     "far": "0 4.5 1",
@@ -516,12 +526,12 @@ PLACES = {
 
 async def test_logical_camera_lists_models_in_view():
     view = "<near>0.5</near><far>4</far><horizontal_fov>1.0</horizontal_fov><aspect_ratio>2</aspect_ratio>"
-    looks = f"<pose>0 0 1 0 0 {pi / 2}</pose><topic>seen</topic><logical_camera>{view}</logical_camera>"
+    camera = f"<pose>0 0 1 0 0 {pi / 2}</pose><topic>seen</topic><logical_camera>{view}</logical_camera>"
     boxes = [
-        box(name, f"{place} 0 0 0", "0.1 0.1 0.1").replace("<link", "<static>true</static><link", 1)
-        for name, place in PLACES.items()
+        box(name, f"{position} 0 0 0", "0.1 0.1 0.1").replace("<link", "<static>true</static><link", 1)
+        for name, position in POSITIONS.items()
     ]
-    async with served(carrier(sensor("logical_camera", looks)), *boxes) as (server, graph, log):
+    async with running_server(carrier(sensor("logical_camera", camera)), *boxes) as (server, graph, log):
         (image,) = await last_messages(server, graph, "/seen")
         (image_model,) = image.model
         assert image_model.name == "ahead"

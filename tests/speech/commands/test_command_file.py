@@ -1,4 +1,4 @@
-"""The file of commands: what a text means by the built-in one, and what is wrong in others, with its place."""
+"""The command file: the meaning of utterances with the built-in one, and the positions of mistakes in others."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ UNDERSTOOD = [
     ("你看见什么", "describe_in_chinese", {}),
 ]
 
-NOTHING = [
+NO_COMMAND = [
     "",
     "[unk]",
     "[unk] forward",
@@ -77,7 +77,7 @@ def test_text_matches_command(commands: CommandSet, text: str, intent: str, valu
     assert (match.command.intent, match.values) == (intent, pytest.approx(values) if "angle" in values else values)
 
 
-@pytest.mark.parametrize("text", NOTHING)
+@pytest.mark.parametrize("text", NO_COMMAND)
 def test_unknown_text_matches_no_command(commands: CommandSet, text: str) -> None:
     assert commands.match_command(text) is None
 
@@ -129,9 +129,9 @@ def test_more_specific_phrase_takes_precedence() -> None:
     text = "places: {hall: {x: 1, y: 2, names: [hall, big hall]}}\ncommands:\n"
     text += "  a: {phrases: 'go {place}', go_to: '{place}'}\n"
     commands_read = read(text + "  b: {phrases: go big hall, stop: true}\n")
-    understood = commands_read.match_command("go big hall")
-    assert understood is not None
-    assert understood.command.intent == "b"
+    match = commands_read.match_command("go big hall")
+    assert match is not None
+    assert match.command.intent == "b"
 
 
 @pytest.mark.parametrize(
@@ -188,15 +188,15 @@ def test_more_specific_phrase_takes_precedence() -> None:
 def test_error_in_command_file_is_reported_with_position(
     text: str, code: str, line: int, column: int, message: str
 ) -> None:
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         read(text)
-    (diagnostic,) = caught.value.diagnostics
+    (diagnostic,) = error.value.diagnostics
     assert diagnostic.span is not None
     assert (diagnostic.code, diagnostic.span.line, diagnostic.span.column) == (code, line, column)
     assert message in str(diagnostic.message)
 
 
 def test_missing_command_file_is_reported(tmp_path: Path) -> None:
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         read_command_file(tmp_path / "commands.yaml")
-    assert caught.value.diagnostics[0].code == "VOICE301"
+    assert error.value.diagnostics[0].code == "VOICE301"

@@ -1,4 +1,4 @@
-"""Numbers and quantities as they are said: tables of what they are."""
+"""Spoken numbers and quantities: tables of their values."""
 
 from __future__ import annotations
 

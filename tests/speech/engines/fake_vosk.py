@@ -1,7 +1,7 @@
-"""A module with the interface of vosk 0.3.45, whose recogniser hears what a test says.
+"""A fake of vosk 0.3.45 whose recognizer follows a script.
 
-Sound is silence; each block of it takes the next item of the script: a str for a partial result, a list of (word,
-confidence) for the end of an utterance. The JSON is written as Vosk's own recogniser writes it.
+The sound is ignored; each block takes the next item of the script: a str for a partial result, a list of (word,
+confidence) for the end of an utterance. The JSON has the form of Vosk's own recognizer.
 """
 
 from __future__ import annotations

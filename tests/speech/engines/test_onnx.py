@@ -1,4 +1,4 @@
-"""The engine onnx with small networks that tell loud sound from soft."""
+"""The engine onnx with small networks that distinguish loud and quiet sound."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ NAMES = ["background", "go_forward", "stop"]
 
 
 def network(path, names=NAMES, shape=(1, RATE), kind=TensorProto.FLOAT, classes=3):
-    """Scores: 0, the sound's mean of squares times 500, and twice that less 20."""
+    """Write a network with two scores: 0, and the mean square of the sound times 1000, less 20."""
     weights = helper.make_tensor("weights", TensorProto.FLOAT, [1, 3], [0.0, 1.0, 2.0])
     offsets = helper.make_tensor("offsets", TensorProto.FLOAT, [3], [0.0, 0.0, -20.0])
     factor = helper.make_tensor("factor", TensorProto.FLOAT, [1], [500.0])
@@ -46,12 +46,12 @@ def network(path, names=NAMES, shape=(1, RATE), kind=TensorProto.FLOAT, classes=
 
 
 def sound(level, seconds=0.5):
-    """Something like a word between silences with a little noise."""
+    """Return a sound like a word between silences, with a little noise."""
     count = round(seconds * RATE)
     times = np.arange(count) / RATE
     tones = sum(np.sin(2 * np.pi * (pitch + 300 * times) * times) for pitch in (300, 900, 2_100))
-    whole = np.concatenate((np.zeros(RATE), level * tones / 3, np.zeros(RATE)))
-    return (whole + np.random.default_rng(5).normal(0, 5, len(whole))).astype(np.int16)
+    signal = np.concatenate((np.zeros(RATE), level * tones / 3, np.zeros(RATE)))
+    return (signal + np.random.default_rng(5).normal(0, 5, len(signal))).astype(np.int16)
 
 
 def results_of(engine, samples):
@@ -59,9 +59,9 @@ def results_of(engine, samples):
 
 
 def rejection(path):
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         OnnxEngine(EngineOptions(("stop",), "en", path))
-    (diagnostic,) = caught.value.diagnostics
+    (diagnostic,) = error.value.diagnostics
     return diagnostic
 
 

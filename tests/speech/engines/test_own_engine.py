@@ -1,4 +1,4 @@
-"""The engine of one's own in the page about voice, with a Whisper that is told what it hears."""
+"""The example engine of the page about voice, with a fake Whisper."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PAGES = ("voice.md", "zh/voice.md")
 
 
 class WhisperModel:
-    """Hears the next of some texts, in two segments."""
+    """A fake that transcribes the next of some texts, in two segments."""
 
     texts: ClassVar[list[str]] = []
     sounds: ClassVar[list[np.ndarray]] = []
@@ -34,7 +34,7 @@ class WhisperModel:
         self.sounds.append(sound)
         text = self.texts.pop(0)
         half = len(text) // 2
-        return (SimpleNamespace(text=part, avg_logprob=-0.1) for part in (text[:half], text[half:])), None
+        return (SimpleNamespace(text=half_text, avg_logprob=-0.1) for half_text in (text[:half], text[half:])), None
 
 
 @pytest.fixture(params=PAGES)

@@ -1,4 +1,4 @@
-"""The engine pocketsphinx: what is decided about phrases with the real library, and streams with one that is told."""
+"""The engine pocketsphinx: phrases with the real library, streams with a fake one."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SPEECH, QUIET = np.full(FRAME, 1_000, np.int16), np.zeros(FRAME, np.int16)
 
 
 class Endpointer:
-    """Speech is what is loud; one quiet frame ends it."""
+    """A fake that takes loud frames for speech; one quiet frame ends it."""
 
     frame_bytes = 2 * FRAME
 
@@ -34,13 +34,13 @@ class Endpointer:
     def process(self, frame):
         assert len(frame) == self.frame_bytes
         self.frames += 1
-        loud, was = bool(np.frombuffer(frame, np.int16).any()), self.in_speech
-        if loud and not was:
+        is_loud, was_in_speech = bool(np.frombuffer(frame, np.int16).any()), self.in_speech
+        if is_loud and not was_in_speech:
             self.speech_start = (self.frames - 1) * 0.03
-        if was and not loud:
+        if was_in_speech and not is_loud:
             self.speech_end = self.frames * 0.03
-        self.in_speech = loud
-        return frame if loud or was else None
+        self.in_speech = is_loud
+        return frame if is_loud or was_in_speech else None
 
     def end_stream(self, frame):
         self.in_speech, self.speech_end = False, self.frames * 0.03
@@ -48,7 +48,7 @@ class Endpointer:
 
 
 class Decoder:
-    """Hears as many words of a sentence as there are frames of speech."""
+    """A fake that recognizes as many words of a sentence as there are frames of speech."""
 
     says = ("go", "to", "<sil>", "the", "kitchen")
     fit = -7.0  # logarithm of the probability of each frame
@@ -102,10 +102,10 @@ def fake_decoder(monkeypatch):
     monkeypatch.setattr(Decoder, "decoders", [])
 
 
-def rejection(*given):
-    with pytest.raises(LinkwrightError) as caught:
-        PocketsphinxEngine(EngineOptions(*given))
-    (diagnostic,) = caught.value.diagnostics
+def rejection(*arguments):
+    with pytest.raises(LinkwrightError) as error:
+        PocketsphinxEngine(EngineOptions(*arguments))
+    (diagnostic,) = error.value.diagnostics
     return diagnostic
 
 
@@ -187,16 +187,16 @@ def test_folder_without_model_is_rejected(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("damaged", "content"),
+    ("file_name", "content"),
     [("mdef", b"nothing"), ("mdef", b"BMDF\x01\0\0\0" + 40 * b"\xff"), ("means", b"")],
     ids=["text", "numbers", "empty"],
 )
-def test_damaged_model_is_reported_without_crash(tmp_path, damaged, content):
+def test_damaged_model_is_reported_without_crash(tmp_path, file_name, content):
     model = Path(pocketsphinx.get_model_path()) / "en-us"
     folder = tmp_path / "model"
     shutil.copytree(model / "en-us", folder)
     shutil.copy(model / "cmudict-en-us.dict", folder)
-    (folder / damaged).write_bytes(content)
+    (folder / file_name).write_bytes(content)
     diagnostic = rejection(("stop",), "en", folder)
     assert diagnostic.code == "VOICE104"
     assert str(folder) in str(diagnostic.message)

@@ -1,4 +1,4 @@
-"""The engine vosk, with a recogniser that hears what a test says: no model of Vosk can be had in tests."""
+"""The engine vosk with a scripted fake recognizer, because tests cannot have a model of Vosk."""
 
 from __future__ import annotations
 
@@ -38,15 +38,15 @@ def engine(model, phrases=ENGLISH, language="en"):
 
 
 def results_for(engine, *script):
-    """What is heard in as many blocks as the script has items."""
+    """Return the results of as many blocks as the script has items."""
     fake_vosk.SCRIPT[:] = script
     return [result for _ in script for result in engine.hear(BLOCK)]
 
 
-def rejection(*given, **more):
-    with pytest.raises(LinkwrightError) as caught:
-        engine(*given, **more)
-    (diagnostic,) = caught.value.diagnostics
+def rejection(*arguments, **options):
+    with pytest.raises(LinkwrightError) as error:
+        engine(*arguments, **options)
+    (diagnostic,) = error.value.diagnostics
     return diagnostic
 
 

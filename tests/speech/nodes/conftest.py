@@ -5,29 +5,29 @@ from __future__ import annotations
 import pytest
 
 from tests.nodes.conftest import clock, graph, log, logged, stage  # noqa: F401  # fixtures
-from tests.speech.nodes.fakes import ENTRY, Talk, ToldEngine
+from tests.speech.nodes.fakes import ENTRY, CommanderHarness, ScriptedEngine
 
 
 @pytest.fixture
 async def talk(stage):  # noqa: F811
-    """Starts a voice_commander; it ends with the test."""
-    started = []
+    """Return a function that starts a voice_commander, which ends with the test."""
+    harnesses = []
 
     def start(**parameters):
-        started.append(Talk(stage, **parameters))
-        return started[-1]
+        harnesses.append(CommanderHarness(stage, **parameters))
+        return harnesses[-1]
 
     yield start
-    for robot in started:
-        robot.running.close()
+    for robot in harnesses:
+        robot.commander.close()
     await stage.graph.settle()
 
 
 @pytest.fixture
 def engine(monkeypatch):
     monkeypatch.setattr("linkwright.speech.engine.extensions", lambda group: {"told": ENTRY})
-    ToldEngine.used_options.clear()
-    ToldEngine.finished.clear()
-    ToldEngine.says_at_end.clear()
-    ToldEngine.trouble.clear()
-    return ToldEngine
+    ScriptedEngine.used_options.clear()
+    ScriptedEngine.finished.clear()
+    ScriptedEngine.results_at_end.clear()
+    ScriptedEngine.problems.clear()
+    return ScriptedEngine

@@ -1,10 +1,10 @@
-"""A module with the interface of sounddevice that is used, whose microphone a test speaks into."""
+"""A fake of sounddevice whose microphone receives samples from a test."""
 
 from __future__ import annotations
 
 import numpy as np
 
-OPEN: list = []
+open_streams: list = []
 RATES = {16_000}
 DEVICES = {None, 0, "microphone"}
 
@@ -28,14 +28,14 @@ def query_devices(device, kind):
 class InputStream:
     def __init__(self, device, samplerate, blocksize, channels, dtype, callback):
         assert (channels, dtype) == (1, "int16")
-        self.rate, self.block, self.callback, self.started = samplerate, blocksize, callback, False
-        OPEN.append(self)
+        self.rate, self.block, self.callback, self.is_started = samplerate, blocksize, callback, False
+        open_streams.append(self)
 
     def start(self):
-        self.started = True
+        self.is_started = True
 
     def close(self):
-        OPEN.remove(self)
+        open_streams.remove(self)
 
-    def say(self, samples):
+    def deliver(self, samples):
         self.callback(np.asarray(samples, np.int16)[:, None], len(samples), None, None)

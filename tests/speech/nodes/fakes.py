@@ -1,4 +1,4 @@
-"""An engine that hears what a test tells it to, and a graph around a voice_commander."""
+"""A scripted speech engine, and a harness of a voice_commander."""
 
 from __future__ import annotations
 
@@ -21,39 +21,39 @@ from tests.waiting import eventually
 
 STRING, BOOL = get_message("std_msgs/msg/String"), get_message("std_msgs/msg/Bool")
 TWIST = get_message("geometry_msgs/msg/Twist")
-ENTRY = extensions.EntryPoint("told", f"{__name__}:ToldEngine", "tests")
+ENTRY = extensions.EntryPoint("told", f"{__name__}:ScriptedEngine", "tests")
 
 
-class ToldEngine(SpeechEngine):
-    """For each block of sound it hears what `says` has for the value of its samples.
+class ScriptedEngine(SpeechEngine):
+    """An engine with scripted results: the samples' value selects the results of a block.
 
     Attributes:
-        used_options: the options of the engines that were created.
-        says: value of samples -> what is heard.
-        says_at_end: what is heard when the sound ends.
-        finished: how often the sound ended.
-        trouble: why it hears nothing.
+        used_options: the options of the created engines.
+        results_by_value: the results for each value of samples.
+        results_at_end: the results when the sound ends.
+        finished: one entry for each end of the sound.
+        problems: the reason for no results, if any.
     """
 
     used_options: ClassVar[list[EngineOptions]] = []
-    says: ClassVar[dict[int, list[Heard]]] = {}
-    says_at_end: ClassVar[list[Heard]] = []
+    results_by_value: ClassVar[dict[int, list[Heard]]] = {}
+    results_at_end: ClassVar[list[Heard]] = []
     finished: ClassVar[list[int]] = []
-    trouble: ClassVar[list[Diagnostic]] = []
+    problems: ClassVar[list[Diagnostic]] = []
 
     def __init__(self, options: EngineOptions) -> None:
         self.used_options.append(options)
 
     @property
     def problem(self) -> Diagnostic | None:
-        return self.trouble[0] if self.trouble else None
+        return self.problems[0] if self.problems else None
 
     def hear(self, samples: Any) -> Sequence[Heard]:
-        return self.says[int(samples[0])]
+        return self.results_by_value[int(samples[0])]
 
     def finish(self) -> Sequence[Heard]:
         self.finished.append(1)
-        return tuple(self.says_at_end)
+        return tuple(self.results_at_end)
 
 
 def final(text: str, confidence: float = 1.0, start: float = 0.0, nearest: str = "") -> Heard:
@@ -64,64 +64,66 @@ def partial(text: str, start: float = 0.0) -> Heard:
     return Heard(text, 0.0, False, start, start + 0.5)
 
 
-class Talk:
-    """A voice_commander, who speaks to it, and what it publishes."""
+class CommanderHarness:
+    """A voice_commander with publishers of its inputs, and the messages that it publishes."""
 
     def __init__(self, stage: Stage, **parameters: Any) -> None:
         self.stage = stage
         self.velocities: list[Any] = []
-        self.said: dict[str, list[str]] = {}
+        self.texts_by_topic: dict[str, list[str]] = {}
         node = stage.node
         node.create_subscription(TWIST, "/cmd_vel", self.velocities.append, 100)
         for name in ("text", "partial_text", "command", "response"):
-            texts = self.said[name] = []
+            texts = self.texts_by_topic[name] = []
             node.create_subscription(STRING, f"/voice/{name}", lambda message, to=texts: to.append(message.data), 100)
         self.text = node.create_publisher(STRING, "/voice/text_input", 10)
         self.button = node.create_publisher(BOOL, "/voice/listen", 10)
-        self.mouth = stage.graph.create_node("mouth")
-        self.sound = self.mouth.create_publisher(AUDIO_STAMPED, "/audio/audio_stamped", 10)
-        self.running = VoiceCommander(stage.graph, NodeOptions(parameters={"engine": "", **parameters}))
+        self.microphone_node = stage.graph.create_node("mouth")
+        self.sound = self.microphone_node.create_publisher(AUDIO_STAMPED, "/audio/audio_stamped", 10)
+        self.commander = VoiceCommander(stage.graph, NodeOptions(parameters={"engine": "", **parameters}))
 
     @property
     def speed(self) -> tuple[float, float, float]:
-        """What the robot was told last: x, y, and turning."""
-        last = self.velocities[-1]
-        return last.linear.x, last.linear.y, last.angular.z
+        """Return the last commanded velocity: x, y, and yaw rate."""
+        velocity = self.velocities[-1]
+        return velocity.linear.x, velocity.linear.y, velocity.angular.z
 
-    async def type(self, text: str) -> str:
-        """Give a command as text; what is answered last."""
+    async def send_text(self, text: str) -> str:
+        """Publish a command as text, and return the last response."""
         self.text.publish(STRING(data=text))
         await self.stage.graph.settle()
-        return self.said["response"][-1]
+        return self.texts_by_topic["response"][-1]
 
-    async def hold(self, held: bool) -> None:
-        self.button.publish(BOOL(data=held))
+    async def hold(self, is_pressed: bool) -> None:
+        self.button.publish(BOOL(data=is_pressed))
         await self.stage.graph.settle()
 
-    async def say_nothing_more(self) -> None:
-        """Wait until all that was heard was dealt with: press once more, and hear nothing that counts."""
-        ToldEngine.says_at_end[:] = [partial("the end")]
-        text = len(self.said["partial_text"])
+    async def finish_results(self) -> None:
+        """Press the button once more, and wait until all results are processed."""
+        ScriptedEngine.results_at_end[:] = [partial("the end")]
+        count = len(self.texts_by_topic["partial_text"])
         await self.hold(True)
         await self.hold(False)
-        await eventually(lambda: len(self.said["partial_text"]) > text)
-        ToldEngine.says_at_end.clear()
+        await eventually(lambda: len(self.texts_by_topic["partial_text"]) > count)
+        ScriptedEngine.results_at_end.clear()
         await self.stage.graph.settle()
 
-    async def say(self, *results: Heard, stamp: float | None = None) -> None:
-        """Have the engine hear something, and wait until it was told; its thread takes its time.
+    async def process(self, *results: Heard, stamp: float | None = None) -> None:
+        """Let the engine return some results for a block of sound, and wait until they are processed in its thread.
 
         Args:
-            heard: what it makes of a tenth of a second of sound.
-            stamp: of that sound, seconds; now where it is not given.
+            results: the engine's results for a tenth of a second of sound.
+            stamp: the stamp of the sound in seconds; now by default.
         """
-        ToldEngine.says[len(ToldEngine.says) + 1] = list(results)
-        block = np.full(BLOCK, len(ToldEngine.says), np.int16)
-        before = len(self.said["text"]) + len(self.said["partial_text"])
-        now = self.stage.node.get_clock().now() if stamp is None else Time(nanoseconds=round(stamp * 1e9))
-        self.sound.publish(audio_stamped(block.tobytes(), now.to_msg()))
+        ScriptedEngine.results_by_value[len(ScriptedEngine.results_by_value) + 1] = list(results)
+        block = np.full(BLOCK, len(ScriptedEngine.results_by_value), np.int16)
+        count_before = len(self.texts_by_topic["text"]) + len(self.texts_by_topic["partial_text"])
+        sound_time = self.stage.node.get_clock().now() if stamp is None else Time(nanoseconds=round(stamp * 1e9))
+        self.sound.publish(audio_stamped(block.tobytes(), sound_time.to_msg()))
         await self.stage.graph.settle()
         if results:
-            result = len(results) + before
-            await eventually(lambda: len(self.said["text"]) + len(self.said["partial_text"]) >= result)
+            expected_count = len(results) + count_before
+            await eventually(
+                lambda: len(self.texts_by_topic["text"]) + len(self.texts_by_topic["partial_text"]) >= expected_count
+            )
         await self.stage.graph.settle()

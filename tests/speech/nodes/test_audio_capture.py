@@ -34,11 +34,11 @@ def wav(tmp_path):
 def sounddevice(monkeypatch):
     monkeypatch.setitem(sys.modules, "sounddevice", fake_sounddevice)
     yield fake_sounddevice
-    assert fake_sounddevice.OPEN == []
+    assert fake_sounddevice.open_streams == []
 
 
-def start(test, kind=AudioCapture, namespace="/", **parameters):
-    return kind(test.graph, NodeOptions(namespace=namespace, parameters=parameters))
+def start(test, node_type=AudioCapture, namespace="/", **parameters):
+    return node_type(test.graph, NodeOptions(namespace=namespace, parameters=parameters))
 
 
 def samples(messages):
@@ -47,14 +47,14 @@ def samples(messages):
 
 async def test_file_is_published_at_clock_rate(test, wav):
     start(test, file=wav)
-    await test.advance(1.0)  # nobody listens
-    info, plain, stamped = (test.record(f"/{name}") for name in ("audio_info", "audio", "audio_stamped"))
+    await test.advance(1.0)  # without subscriptions
+    info, audio, audio_stamped = (test.record(f"/{name}") for name in ("audio_info", "audio", "audio_stamped"))
     await test.advance(0.5)
-    assert len(plain) == len(stamped) == 5
-    assert np.array_equal(samples([message.data for message in plain])[:4_000], TONE)
-    assert not samples([message.data for message in plain])[4_000:].any()  # silence follows
-    assert np.array_equal(samples([message.audio.data for message in stamped])[:4_000], TONE)
-    assert len({(message.header.stamp.sec, message.header.stamp.nanosec) for message in stamped}) == 5
+    assert len(audio) == len(audio_stamped) == 5
+    assert np.array_equal(samples([message.data for message in audio])[:4_000], TONE)
+    assert not samples([message.data for message in audio])[4_000:].any()  # silence follows
+    assert np.array_equal(samples([message.audio.data for message in audio_stamped])[:4_000], TONE)
+    assert len({(message.header.stamp.sec, message.header.stamp.nanosec) for message in audio_stamped}) == 5
     assert (info.last.channels, info.last.sample_rate, info.last.sample_format) == (1, 16_000, "S16LE")
 
 
@@ -75,8 +75,8 @@ async def test_topics_are_in_node_namespace(test, wav):
 async def test_unsupported_audio_parameters_are_reported(test, wav):
     start(test, file=wav, format="mp3", sample_rate=44_100)
     await test.settle()
-    warned = [record.text for record in test.log if record.level is LogLevel.WARN]
-    assert warned == [
+    warnings = [record.text for record in test.log if record.level is LogLevel.WARN]
+    assert warnings == [
         "parameter 'sample_rate' cannot be '44100': sound is published with '16000'",
         "parameter 'format' cannot be 'mp3': sound is published with 'wave'",
     ]
@@ -86,10 +86,10 @@ async def test_microphone_is_published(test, sounddevice):
     node = start(test)
     recording = test.record("/audio_stamped")
     await test.settle()
-    (stream,) = sounddevice.OPEN
-    assert (stream.rate, stream.block, stream.started) == (16_000, 1_600, True)
+    (stream,) = sounddevice.open_streams
+    assert (stream.rate, stream.block, stream.is_started) == (16_000, 1_600, True)
     for first in (0, 1_600):
-        stream.say(TONE[first : first + 1_600])
+        stream.deliver(TONE[first : first + 1_600])
     await test.settle()
     assert np.array_equal(samples([message.audio.data for message in recording]), TONE[:3_200])
     node.close()
@@ -100,9 +100,9 @@ async def test_microphone_with_other_rate_is_resampled(test, sounddevice, monkey
     node = start(test, device="microphone")
     recording = test.record("/audio")
     await test.settle()
-    (stream,) = sounddevice.OPEN
+    (stream,) = sounddevice.open_streams
     assert (stream.rate, stream.block) == (48_000, 4_800)
-    stream.say(np.full(9_600, 1_000))
+    stream.deliver(np.full(9_600, 1_000))
     await test.settle()
     sound = samples([message.data for message in recording])
     assert 3_100 < len(sound) <= 3_200
@@ -115,18 +115,18 @@ async def test_microphone_with_other_rate_is_resampled(test, sounddevice, monkey
     [({"file": "nowhere.wav"}, "VOICE401"), ({"chunk": 0}, "VOICE414"), ({"device": "trumpet"}, "VOICE413")],
 )
 async def test_invalid_parameters_are_rejected(parameters, code, test, sounddevice):
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         start(test, **parameters)
-    assert caught.value.diagnostics[0].code == code
+    assert error.value.diagnostics[0].code == code
 
 
 async def test_missing_portaudio_suggests_browser_microphone(test, tmp_path, monkeypatch):
     (tmp_path / "sounddevice.py").write_text("raise OSError('PortAudio library not found')\n")
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "sounddevice", raising=False)
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         start(test)
-    (diagnostic,) = caught.value.diagnostics
+    (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "VOICE412"
     assert "PortAudio library not found" in str(diagnostic.message)
     assert "the browser" in str(diagnostic.hint)

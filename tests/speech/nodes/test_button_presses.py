@@ -1,4 +1,4 @@
-"""Who held the button and was not understood is told so, once."""
+"""Button presses without a known command are answered, once each."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from tests.waiting import eventually
 async def test_unknown_speech_during_press_is_answered_once(engine, talk, language, nearest, answer):
     robot = talk(engine="told", language=language)
     await robot.hold(True)
-    await robot.say(final(""), final("forward", 0.2))
-    engine.says_at_end.append(final("", nearest=nearest))
+    await robot.process(final(""), final("forward", 0.2))
+    engine.results_at_end.append(final("", nearest=nearest))
     await robot.hold(False)
-    await eventually(lambda: robot.said["response"])
-    assert robot.said["response"] == [answer]
-    assert robot.said["command"] == []
+    await eventually(lambda: robot.texts_by_topic["response"])
+    assert robot.texts_by_topic["response"] == [answer]
+    assert robot.texts_by_topic["command"] == []
 
 
 @pytest.mark.parametrize("heard", [final("forward"), final("forward", 0.4), partial("stop"), final("stop", 0.1)])
@@ -34,51 +34,51 @@ async def test_unknown_speech_during_press_is_answered_once(engine, talk, langua
 async def test_answered_press_does_not_report_unknown_speech(engine, talk, heard, is_first):
     robot = talk(engine="told")
     await robot.hold(True)
-    await robot.say(*((heard, final("")) if is_first else (final(""), heard)))
-    answers = list(robot.said["response"])
+    await robot.process(*((heard, final("")) if is_first else (final(""), heard)))
+    answers = list(robot.texts_by_topic["response"])
     assert len(answers) == 1
     await robot.hold(False)
     await eventually(lambda: engine.finished)
-    await robot.say_nothing_more()
-    assert robot.said["response"] == answers
+    await robot.finish_results()
+    assert robot.texts_by_topic["response"] == answers
 
 
 async def test_press_with_gap_asks_to_repeat(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
     for index in range(5):
-        await robot.say(stamp=10.0 + 0.1 * index)
-    await robot.say(stamp=10.6)  # a tenth of a second is missing, long before what is heard
-    engine.says_at_end.append(final("", start=5.0, nearest="forward"))
+        await robot.process(stamp=10.0 + 0.1 * index)
+    await robot.process(stamp=10.6)  # a tenth of a second is missing, long before what is heard
+    engine.results_at_end.append(final("", start=5.0, nearest="forward"))
     await robot.hold(False)
-    await eventually(lambda: robot.said["response"])
-    assert robot.said["response"] == ["I did not hear all of that, please repeat"]
+    await eventually(lambda: robot.texts_by_topic["response"])
+    assert robot.texts_by_topic["response"] == ["I did not hear all of that, please repeat"]
 
 
 async def test_presses_are_answered_separately_by_slow_engine(engine, talk):
     robot = talk(engine="told")
-    engine.says_at_end.append(final(""))
+    engine.results_at_end.append(final(""))
     for held in (True, False, True, False):
         await robot.hold(held)
     await eventually(lambda: len(engine.finished) == 2)
-    await eventually(lambda: len(robot.said["response"]) == 2)
-    assert len(set(robot.said["response"])) == 1
-    engine.says_at_end.clear()
+    await eventually(lambda: len(robot.texts_by_topic["response"]) == 2)
+    assert len(set(robot.texts_by_topic["response"])) == 1
+    engine.results_at_end.clear()
     await robot.hold(True)
     await robot.hold(False)
-    await robot.say_nothing_more()
-    assert len(robot.said["response"]) == 2
+    await robot.finish_results()
+    assert len(robot.texts_by_topic["response"]) == 2
 
 
 async def test_open_listening_does_not_report_unknown_speech(engine, talk):
     robot = talk(engine="told", open_listening=True)
-    await robot.say(final(""))
+    await robot.process(final(""))
     await robot.hold(True)
-    await robot.say(final(""))
+    await robot.process(final(""))
     await robot.hold(False)
     await eventually(lambda: engine.finished)
-    await robot.say_nothing_more()
-    assert robot.said["response"] == []
+    await robot.finish_results()
+    assert robot.texts_by_topic["response"] == []
 
 
 def fail_presses(presses, times):
@@ -126,10 +126,10 @@ async def test_enrolling_proposal_is_published_and_withdrawn(engine, talk, stage
     messages = []
     stage.node.create_subscription(BOOL, "/voice/propose_enrolling", lambda message: messages.append(message.data), 10)
     robot = talk(engine="enrolled", **parameters)
-    engine.says_at_end.append(final(""))
+    engine.results_at_end.append(final(""))
     for _ in range(3):
         await robot.hold(True)
         await robot.hold(False)
     await eventually(lambda: len(engine.finished) == 3)
-    await robot.say_nothing_more()
+    await robot.finish_results()
     assert messages == proposed

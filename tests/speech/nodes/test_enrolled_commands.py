@@ -1,4 +1,4 @@
-"""From sound to velocities with the engine of enrolled words itself: audio messages in, Twist out."""
+"""From sound to velocities with the engine of enrolled words: audio messages in, Twist out."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from linkwright.speech.enrolled.enrollment import enroll
 from linkwright.speech.enrolled.words import Words
 from linkwright.speech.nodes.audio_messages import audio_stamped
 from linkwright.speech.sound.samples import BLOCK, RATE
-from tests.speech.nodes.fakes import Talk
+from tests.speech.nodes.fakes import CommanderHarness
 from tests.speech.voices import WORDS, say
 from tests.waiting import eventually
 
@@ -31,14 +31,14 @@ def words_file(tmp_path_factory):
 
 @pytest.fixture
 async def robot(stage, words_file):
-    talk = Talk(stage, engine="enrolled", words_file=str(words_file), open_listening=True)
+    talk = CommanderHarness(stage, engine="enrolled", words_file=str(words_file), open_listening=True)
     yield talk
-    talk.running.close()
+    talk.commander.close()
     await stage.graph.settle()
 
 
 async def play(robot, samples):
-    """Publish sound as a microphone does, in blocks of 100 ms."""
+    """Publish sound in blocks of 100 ms, as a microphone does."""
     for at in range(0, len(samples), BLOCK):
         robot.sound.publish(
             audio_stamped(samples[at : at + BLOCK].tobytes(), robot.stage.node.get_clock().now().to_msg())
@@ -47,9 +47,9 @@ async def play(robot, samples):
 
 
 async def wait_for_commands(robot, *commands):
-    """Wait until these are all that was done; the engine hears in a thread of its own."""
-    await eventually(lambda: len(robot.said["command"]) >= len(commands), what=lambda: robot.said)
-    assert robot.said["command"] == list(commands)
+    """Wait until exactly these commands were executed; the engine works in its own thread."""
+    await eventually(lambda: len(robot.texts_by_topic["command"]) >= len(commands), what=lambda: robot.texts_by_topic)
+    assert robot.texts_by_topic["command"] == list(commands)
     await robot.stage.graph.settle()
 
 
@@ -70,7 +70,7 @@ async def test_enrolled_word_drives_robot(robot, name, speed):
     await play(robot, spoken_word(name))
     await eventually(lambda: robot.velocities)
     assert robot.speed == speed
-    assert robot.said["text"] == [name]
+    assert robot.texts_by_topic["text"] == [name]
 
 
 async def test_stop_is_executed_within_300_ms_of_word(robot):
@@ -87,10 +87,12 @@ async def test_noise_and_unknown_words_do_not_drive_robot(robot):
     noise = 300 * np.random.default_rng(22).normal(size=2 * RATE)
     await play(robot, np.concatenate((noise.astype(np.int16), np.zeros(RATE, np.int16))))
     for phones in ("mumi", "se.pifu", "moramifu"):
-        before = len(robot.said["text"])
+        before = len(robot.texts_by_topic["text"])
         await play(robot, say(phones, silence=AFTER, seed=23))
-        await eventually(lambda count=before: len(robot.said["text"]) > count, what=lambda: robot.said)
+        await eventually(
+            lambda count=before: len(robot.texts_by_topic["text"]) > count, what=lambda: robot.texts_by_topic
+        )
     # What is heard in order is done in order: so this is the first command of all.
     await play(robot, spoken_word("back"))
     await wait_for_commands(robot, "backward")
-    assert set(robot.said["text"]) == {"", "back"}
+    assert set(robot.texts_by_topic["text"]) == {"", "back"}

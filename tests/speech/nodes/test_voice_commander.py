@@ -1,4 +1,4 @@
-"""voice_commander: what is said becomes what the robot does."""
+"""voice_commander: spoken commands become motions of the robot."""
 
 from __future__ import annotations
 
@@ -39,39 +39,39 @@ def commands(tmp_path, text):
 )
 async def test_command_drives_robot(stage, talk, text, speed):
     robot = talk()
-    assert await robot.type(text) == text
+    assert await robot.send_text(text) == text
     assert robot.speed == speed
     await stage.clock.advance(1.0)
     assert robot.speed == speed
-    assert len(robot.velocities) > 10, "who obeys may want to hear of it again and again"
-    assert robot.said["text"] == [text]
+    assert len(robot.velocities) > 10, "commands are published repeatedly"
+    assert robot.texts_by_topic["text"] == [text]
 
 
 async def test_new_command_replaces_previous_and_stop_ends_it(stage, talk):
     robot = talk()
-    await robot.type("forward")
-    await robot.type("left")
+    await robot.send_text("forward")
+    await robot.send_text("left")
     assert robot.speed == (0.0, 0.0, 0.6)
-    await robot.type("停")
+    await robot.send_text("停")
     assert robot.speed == (0.0, 0.0, 0.0)
     robot.velocities.clear()
     await stage.clock.advance(2.0)
     assert robot.velocities == []
-    assert robot.said["command"] == ["forward", "left", "stop"]
+    assert robot.texts_by_topic["command"] == ["forward", "left", "stop"]
 
 
 async def test_silence_timeout_stops_robot(stage, talk):
     robot = talk(silence_timeout=3.0)
-    await robot.type("forward")
+    await robot.send_text("forward")
     await stage.clock.advance(2.9)
     assert robot.speed == (0.2, 0.0, 0.0)
     await stage.clock.advance(0.2)
     assert robot.speed == (0.0, 0.0, 0.0)
-    assert robot.said["response"][-1] == "I hear nothing, so I am stopping"
+    assert robot.texts_by_topic["response"][-1] == "I hear nothing, so I am stopping"
 
 
 def travelled(robot):
-    """Meters and radians that the velocities make, each for the 50 ms between them."""
+    """Return the meters and radians of the published velocities, each for 50 ms."""
     return sum(velocity.linear.x for velocity in robot.velocities) * 0.05, sum(
         velocity.angular.z for velocity in robot.velocities
     ) * 0.05
@@ -88,22 +88,22 @@ def travelled(robot):
 )
 async def test_distance_without_odometry_is_speed_times_time(stage, talk, text, distance, angle):
     robot = talk()
-    await robot.type(text)
+    await robot.send_text(text)
     await stage.clock.advance(40.0)
     assert robot.speed == (0.0, 0.0, 0.0)
     assert travelled(robot) == pytest.approx((distance, angle), abs=0.02)
 
 
-class Slipping:
-    """A robot whose wheels slip: it goes half as far as it is told."""
+class SlippingRobot:
+    """A robot with slipping wheels: it moves a part of the commanded distance."""
 
-    def __init__(self, stage, robot, part=0.5):
+    def __init__(self, stage, robot, share=0.5):
         self.publisher = stage.node.create_publisher(ODOMETRY, "/odom", 10)
-        self.robot, self.part, self.x = robot, part, 0.0
+        self.robot, self.share, self.x = robot, share, 0.0
         stage.node.create_timer(0.02, self.move)
 
     def move(self):
-        self.x += (self.robot.speed[0] if self.robot.velocities else 0.0) * 0.02 * self.part
+        self.x += (self.robot.speed[0] if self.robot.velocities else 0.0) * 0.02 * self.share
         message = ODOMETRY()
         message.pose.pose.position.x = self.x
         message.pose.pose.orientation.w = 1.0
@@ -112,9 +112,9 @@ class Slipping:
 
 async def test_distance_is_measured_by_odometry(stage, talk):
     robot = talk()
-    body = Slipping(stage, robot)
+    body = SlippingRobot(stage, robot)
     await stage.clock.advance(0.1)
-    await robot.type("前进一点五米")
+    await robot.send_text("前进一点五米")
     await stage.clock.advance(30.0)
     assert robot.speed == (0.0, 0.0, 0.0)
     assert body.x == pytest.approx(1.5, abs=0.02)
@@ -122,35 +122,35 @@ async def test_distance_is_measured_by_odometry(stage, talk):
 
 async def test_stuck_robot_stops_and_reports(stage, talk):
     robot = talk()
-    Slipping(stage, robot, part=0.0)
+    SlippingRobot(stage, robot, share=0.0)
     await stage.clock.advance(0.1)
-    await robot.type("forward one meter")
+    await robot.send_text("forward one meter")
     await stage.clock.advance(30.0)
     assert robot.speed == (0.0, 0.0, 0.0)
-    assert robot.said["response"][-1] == "I am stuck, so I am stopping"
+    assert robot.texts_by_topic["response"][-1] == "I am stuck, so I am stopping"
 
 
 async def test_speed_commands_change_speed(talk):
     robot = talk()
-    await robot.type("加速")
-    await robot.type("forward")
+    await robot.send_text("加速")
+    await robot.send_text("forward")
     assert robot.speed[0] == pytest.approx(0.25)
-    await robot.type("slower")
-    await robot.type("forward")
+    await robot.send_text("slower")
+    await robot.send_text("forward")
     assert robot.speed[0] == pytest.approx(0.2)
-    await robot.type("drive at half a meter per second")
-    await robot.type("forward")
+    await robot.send_text("drive at half a meter per second")
+    await robot.send_text("forward")
     assert robot.speed[0] == pytest.approx(0.5)
     for _ in range(20):
-        await robot.type("faster")
-    await robot.type("forward")
+        await robot.send_text("faster")
+    await robot.send_text("forward")
     assert robot.speed[0] == pytest.approx(0.8), "four times as fast, and no faster"
 
 
 async def test_closing_node_stops_robot(stage, talk):
     robot = talk()
-    await robot.type("forward")
-    robot.running.close()
+    await robot.send_text("forward")
+    robot.commander.close()
     await stage.graph.settle()
     assert robot.speed == (0.0, 0.0, 0.0)
 
@@ -164,16 +164,16 @@ async def test_engine_gets_phrases_and_options(engine, talk, tmp_path):
     (options,) = engine.used_options
     assert (options.language, options.model) == ("zh", tmp_path)
     assert "左转九十度" in options.phrases
-    assert robot.said["text"] == []
+    assert robot.texts_by_topic["text"] == []
 
 
 async def test_sound_is_used_only_while_button_is_held(engine, talk):
     robot = talk(engine="told")
-    await robot.say()
+    await robot.process()
     await robot.hold(True)
-    await robot.say(partial("for"), final("forward"))
-    assert robot.said["partial_text"] == ["for"]
-    assert robot.said["command"] == ["forward"]
+    await robot.process(partial("for"), final("forward"))
+    assert robot.texts_by_topic["partial_text"] == ["for"]
+    assert robot.texts_by_topic["command"] == ["forward"]
     assert robot.speed == (0.2, 0.0, 0.0)
     await robot.hold(False)
     await eventually(lambda: engine.finished)
@@ -181,15 +181,15 @@ async def test_sound_is_used_only_while_button_is_held(engine, talk):
 
 async def test_open_listening_needs_no_button(engine, talk):
     robot = talk(engine="told", open_listening=True)
-    await robot.say(final("forward"))
-    assert robot.said["command"] == ["forward"]
+    await robot.process(final("forward"))
+    assert robot.texts_by_topic["command"] == ["forward"]
 
 
 async def test_uncertain_command_is_not_executed(engine, talk):
     robot = talk(engine="told", open_listening=True, confidence=0.7)
-    await robot.say(final("forward", 0.6))
-    await robot.say(final("", 0.9))
-    assert robot.said["command"] == []
+    await robot.process(final("forward", 0.6))
+    await robot.process(final("", 0.9))
+    assert robot.texts_by_topic["command"] == []
     assert robot.velocities == []
 
 
@@ -197,45 +197,45 @@ async def test_uncertain_command_is_not_executed(engine, talk):
 async def test_uncertain_command_during_press_is_answered(engine, talk, asked_for):
     robot = talk(engine="told", confidence=asked_for, language="zh")
     await robot.hold(True)
-    engine.says_at_end.append(final("前进", 0.6 * asked_for))
+    engine.results_at_end.append(final("前进", 0.6 * asked_for))
     await robot.hold(False)
-    await eventually(lambda: robot.said["response"])
-    assert robot.said["response"] == ["我不确定听到的是“前进”，请再说一遍"]
-    assert robot.said["text"] == ["前进"]
-    assert robot.said["command"] == []
+    await eventually(lambda: robot.texts_by_topic["response"])
+    assert robot.texts_by_topic["response"] == ["我不确定听到的是“前进”，请再说一遍"]
+    assert robot.texts_by_topic["text"] == ["前进"]
+    assert robot.texts_by_topic["command"] == []
 
 
 async def test_very_uncertain_result_is_not_answered(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
-    await robot.say(final("forward", 0.2), final("", 0.4))
-    assert robot.said["response"] == []
+    await robot.process(final("forward", 0.2), final("", 0.4))
+    assert robot.texts_by_topic["response"] == []
 
 
 async def test_open_listening_answers_uncertain_command_only_with_button(engine, talk):
     robot = talk(engine="told", open_listening=True)
-    await robot.say(final("forward", 0.4))
-    assert robot.said["response"] == []
+    await robot.process(final("forward", 0.4))
+    assert robot.texts_by_topic["response"] == []
     await robot.hold(True)
-    await robot.say(final("forward", 0.4, start=2.0))
-    assert robot.said["response"] == ["I am not sure that I heard 'forward', please repeat"]
+    await robot.process(final("forward", 0.4, start=2.0))
+    assert robot.texts_by_topic["response"] == ["I am not sure that I heard 'forward', please repeat"]
 
 
 async def test_command_with_gap_is_asked_again_but_stop_is_executed(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
     for index in range(5):
-        await robot.say(stamp=10.0 + 0.1 * index)
-    await robot.say(final("forward", start=-0.5), stamp=11.0)  # half a second is missing
-    assert robot.said["text"] == ["forward"]
-    assert robot.said["command"] == []
-    assert robot.said["response"] == ["I did not hear all of that, please repeat"]
-    await robot.say(final("forward", start=0.8), stamp=11.1)
-    assert robot.said["command"] == ["forward"]
+        await robot.process(stamp=10.0 + 0.1 * index)
+    await robot.process(final("forward", start=-0.5), stamp=11.0)  # half a second is missing
+    assert robot.texts_by_topic["text"] == ["forward"]
+    assert robot.texts_by_topic["command"] == []
+    assert robot.texts_by_topic["response"] == ["I did not hear all of that, please repeat"]
+    await robot.process(final("forward", start=0.8), stamp=11.1)
+    assert robot.texts_by_topic["command"] == ["forward"]
     for index in range(3):
-        await robot.say(stamp=11.2 + 0.1 * index)
-    await robot.say(final("stop", start=0.5), stamp=13.0)
-    assert robot.said["command"] == ["forward", "stop"]
+        await robot.process(stamp=11.2 + 0.1 * index)
+    await robot.process(final("stop", start=0.5), stamp=13.0)
+    assert robot.texts_by_topic["command"] == ["forward", "stop"]
     assert robot.speed == (0.0, 0.0, 0.0)
 
 
@@ -243,88 +243,88 @@ async def test_certain_command_with_small_gap_is_executed(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
     for index in range(5):
-        await robot.say(stamp=10.0 + 0.1 * index)
-    await robot.say(final("forward"), final(""), stamp=10.6)  # a tenth of a second is missing
-    assert robot.said["command"] == ["forward"]
-    assert robot.said["response"][-1] == "I did not hear all of that, please repeat"
+        await robot.process(stamp=10.0 + 0.1 * index)
+    await robot.process(final("forward"), final(""), stamp=10.6)  # a tenth of a second is missing
+    assert robot.texts_by_topic["command"] == ["forward"]
+    assert robot.texts_by_topic["response"][-1] == "I did not hear all of that, please repeat"
 
 
 async def test_next_press_has_no_gap(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
     for index in range(5):
-        await robot.say(stamp=10.0 + 0.1 * index)
+        await robot.process(stamp=10.0 + 0.1 * index)
     await robot.hold(False)
     await robot.hold(True)
-    await robot.say(final("forward", start=0.0), stamp=15.0)
-    assert robot.said["command"] == ["forward"]
+    await robot.process(final("forward", start=0.0), stamp=15.0)
+    assert robot.texts_by_topic["command"] == ["forward"]
 
 
 async def test_partial_stop_is_executed_once(engine, talk):
     robot = talk(engine="told", open_listening=True)
-    await robot.say(final("forward"))
-    await robot.say(partial("[unk] stop", start=2.0))
+    await robot.process(final("forward"))
+    await robot.process(partial("[unk] stop", start=2.0))
     assert robot.speed == (0.0, 0.0, 0.0)
-    await robot.say(partial("stop", start=2.0), final("stop", start=2.0))
-    assert robot.said["command"] == ["forward", "stop"]
+    await robot.process(partial("stop", start=2.0), final("stop", start=2.0))
+    assert robot.texts_by_topic["command"] == ["forward", "stop"]
 
 
 async def test_stop_is_executed_again_after_new_motion(engine, talk):
     robot = talk(engine="told", open_listening=True)
     for _ in range(2):
-        await robot.type("forward")
-        await robot.say(partial("stop"))
+        await robot.send_text("forward")
+        await robot.process(partial("stop"))
         assert robot.speed == (0.0, 0.0, 0.0)
 
 
 async def test_rest_of_utterance_after_stop_is_ignored(engine, talk):
     robot = talk(engine="told", open_listening=True)
-    await robot.say(final("left"))
-    await robot.say(partial("stop"), final("forward"))
-    assert robot.said["command"] == ["left", "stop"]
+    await robot.process(final("left"))
+    await robot.process(partial("stop"), final("forward"))
+    assert robot.texts_by_topic["command"] == ["left", "stop"]
     await robot.hold(True)
-    await robot.say(partial("go to the stop"), final("go to the stop sign"))
-    assert robot.said["command"] == ["left", "stop", "stop", "go_to_object object=stop_sign"]
+    await robot.process(partial("go to the stop"), final("go to the stop sign"))
+    assert robot.texts_by_topic["command"] == ["left", "stop", "stop", "go_to_object object=stop_sign"]
 
 
 async def test_engine_problem_is_logged(engine, talk, logged):
-    engine.trouble.append(Diagnostic("VOICE201", phrase("nothing is enrolled"), hint=phrase("enroll something")))
+    engine.problems.append(Diagnostic("VOICE201", phrase("nothing is enrolled"), hint=phrase("enroll something")))
     robot = talk(engine="told")
     await eventually(lambda: logged("WARN"))
     assert logged("WARN") == ["nothing is enrolled", "enroll something"]
-    assert not robot.running.finished.done()
+    assert not robot.commander.finished.done()
 
 
 async def test_uncertain_stop_stops_moving_robot(engine, talk):
     robot = talk(engine="told", open_listening=True)
-    await robot.say(final("stop", 0.1))
-    assert robot.said["command"] == []
-    await robot.say(final("forward", start=2.0))
-    await robot.say(final("stop", 0.1, start=4.0))
+    await robot.process(final("stop", 0.1))
+    assert robot.texts_by_topic["command"] == []
+    await robot.process(final("forward", start=2.0))
+    await robot.process(final("stop", 0.1, start=4.0))
     assert robot.speed == (0.0, 0.0, 0.0)
 
 
 async def test_lost_audio_source_stops_robot(engine, stage, talk):
     robot = talk(engine="told", open_listening=True)
-    await robot.say(final("forward"))
-    robot.mouth.destroy_node()
+    await robot.process(final("forward"))
+    robot.microphone_node.destroy_node()
     await stage.clock.advance(1.0)
     assert robot.speed == (0.0, 0.0, 0.0)
-    assert robot.said["response"][-1] == "the audio source is gone, so I am stopping"
+    assert robot.texts_by_topic["response"][-1] == "the audio source is gone, so I am stopping"
 
 
 async def test_unknown_engine_ends_node(engine, talk, logged):
     robot = talk(engine="tolt")
-    await eventually(robot.running.finished.done)
-    assert robot.running.finished.result() == 1
+    await eventually(robot.commander.finished.done)
+    assert robot.commander.finished.result() == 1
     assert logged("FATAL") == ["there is no speech engine 'tolt'", "did you mean 'told'?"]
 
 
 async def test_failing_engine_stops_robot_and_ends_node(engine, talk, logged):
     robot = talk(engine="told", open_listening=True)
-    await robot.say(final("forward"))
+    await robot.process(final("forward"))
     robot.sound.publish(audio_stamped(b"\xff\x7f", robot.stage.node.get_clock().now().to_msg()))
-    await eventually(robot.running.finished.done)
+    await eventually(robot.commander.finished.done)
     await robot.stage.graph.settle()
     assert robot.speed == (0.0, 0.0, 0.0)
     assert logged("FATAL") == ["the speech engine failed: KeyError: 32767"]
@@ -347,20 +347,20 @@ async def test_confirmation_is_required_before_command(stage, talk, tmp_path, an
     robot = talk(commands_file=commands(tmp_path, QUESTION))
     reset = []
     stage.node.create_subscription(STRING, "/reset", reset.append, 10)
-    assert await robot.type("reset") == "are you sure?"
+    assert await robot.send_text("reset") == "are you sure?"
     if answer:
-        await robot.type(answer)
+        await robot.send_text(answer)
     else:
         await stage.clock.advance(11.0)
-        assert robot.said["response"][-1] == "I received no answer, so I will not do it"
+        assert robot.texts_by_topic["response"][-1] == "I received no answer, so I will not do it"
     assert len(reset) == count
-    await robot.type("yes")
+    await robot.send_text("yes")
     assert len(reset) == count
 
 
 async def test_first_response_is_in_node_language(talk):
     robot = talk(language="zh")
-    assert await robot.type("唱歌") == "我没听懂“唱歌”"
+    assert await robot.send_text("唱歌") == "我没听懂“唱歌”"
 
 
 async def test_response_is_in_language_of_last_command(talk, tmp_path):
@@ -370,14 +370,14 @@ commands:
   forward: {phrases: {en: [forward], zh: [前进]}, drive: {x: 1}, response: {en: I drive, zh: 我走}}
 """
     robot = talk(commands_file=commands(tmp_path, text))
-    assert await robot.type("前进") == "我走"
-    assert await robot.type("sing") == "我没听懂“sing”"
-    assert await robot.type("停") == "停下了"
-    assert await robot.type("forward") == "I drive"
-    assert await robot.type("stop") == "stopped"
+    assert await robot.send_text("前进") == "我走"
+    assert await robot.send_text("sing") == "我没听懂“sing”"
+    assert await robot.send_text("停") == "停下了"
+    assert await robot.send_text("forward") == "I drive"
+    assert await robot.send_text("stop") == "stopped"
 
 
-PLACES = """
+PLACE_FILE = """
 places: {kitchen: {x: 1.5, y: -2, yaw: 3.14159, names: {en: kitchen, zh: 厨房}}}
 commands:
   go: {phrases: {en: "go to the {place}", zh: "去{place}"}, go_to: "{place}"}
@@ -387,10 +387,10 @@ commands:
 
 
 class Navigator:
-    """A server of NavigateToPose that goes on until it is told that it is there."""
+    """A server of NavigateToPose whose goals run until the test ends them."""
 
     def __init__(self, stage):
-        self.goals, self.canceled = [], 0
+        self.goals, self.cancel_count = [], 0
         kind = get_action("nav2_msgs/action/NavigateToPose")
         self.result = kind.Result
         self.server = ActionServer(
@@ -407,49 +407,51 @@ class Navigator:
         self.goals.append(goal)
 
     def cancel(self, goal):
-        self.canceled += 1
+        self.cancel_count += 1
         return CancelResponse.ACCEPT
 
 
 async def test_go_to_place_sends_goal_and_reports_arrival(stage, talk, tmp_path):
     navigator = Navigator(stage)
-    robot = talk(commands_file=commands(tmp_path, PLACES))
+    robot = talk(commands_file=commands(tmp_path, PLACE_FILE))
     await stage.graph.settle()
-    assert await robot.type("去厨房") == "去厨房"
+    assert await robot.send_text("去厨房") == "去厨房"
     (goal,) = navigator.goals
     pose = goal.request.pose
     assert (pose.header.frame_id, pose.pose.position.x, pose.pose.position.y) == ("map", 1.5, -2.0)
     assert pose.pose.orientation.z == pytest.approx(1.0)
-    assert robot.said["command"] == ["go place=kitchen"]
+    assert robot.texts_by_topic["command"] == ["go place=kitchen"]
     goal.succeed(navigator.result())
     await stage.graph.settle()
-    assert robot.said["response"][-1] == "完成了"
+    assert robot.texts_by_topic["response"][-1] == "完成了"
 
 
 @pytest.mark.parametrize("text", ["stop", "forward"])
 async def test_stop_or_other_command_cancels_goal(stage, talk, tmp_path, text):
     navigator = Navigator(stage)
-    robot = talk(commands_file=commands(tmp_path, PLACES))
+    robot = talk(commands_file=commands(tmp_path, PLACE_FILE))
     await stage.graph.settle()
-    await robot.type("go to the kitchen")
-    await robot.type(text)
-    assert navigator.canceled >= 1
+    await robot.send_text("go to the kitchen")
+    await robot.send_text(text)
+    assert navigator.cancel_count >= 1
 
 
 async def test_missing_action_server_is_reported(talk, tmp_path):
-    robot = talk(commands_file=commands(tmp_path, PLACES))
-    assert await robot.type("go to the kitchen") == "I cannot do it: no node serves 'navigate_to_pose'"
+    robot = talk(commands_file=commands(tmp_path, PLACE_FILE))
+    assert await robot.send_text("go to the kitchen") == "I cannot do it: no node serves 'navigate_to_pose'"
 
 
 async def test_service_response_is_spoken(stage, talk):
-    kind = get_service("std_srvs/srv/Trigger")
+    service_type = get_service("std_srvs/srv/Trigger")
     stage.node.create_service(
-        kind, "/vision/describe/en", lambda request, response: kind.Response(success=True, message="a red ball")
+        service_type,
+        "/vision/describe/en",
+        lambda request, response: service_type.Response(success=True, message="a red ball"),
     )
     robot = talk()
     await stage.graph.settle()
-    await robot.type("what do you see")
-    await eventually(lambda: robot.said["response"][-1] == "a red ball")
+    await robot.send_text("what do you see")
+    await eventually(lambda: robot.texts_by_topic["response"][-1] == "a red ball")
 
 
 def clients(stage):
@@ -460,19 +462,21 @@ async def test_missing_service_does_not_delay_other_commands(stage, talk):
     robot = talk()
     await stage.graph.settle()
     assert [client for client in clients(stage) if "/_action/" not in client] == []
-    assert await robot.type("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
-    kind = get_service("std_srvs/srv/Trigger")
+    assert await robot.send_text("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
+    service_type = get_service("std_srvs/srv/Trigger")
     stage.node.create_service(
-        kind, "/vision/describe/en", lambda request, response: kind.Response(success=True, message="a red ball")
+        service_type,
+        "/vision/describe/en",
+        lambda request, response: service_type.Response(success=True, message="a red ball"),
     )
-    await robot.type("what do you see")
-    await eventually(lambda: robot.said["response"][-1] == "a red ball")
+    await robot.send_text("what do you see")
+    await eventually(lambda: robot.texts_by_topic["response"][-1] == "a red ball")
     assert "/vision/describe/en" not in clients(stage)
 
 
 async def test_service_of_other_type_is_not_called(stage, talk):
     stage.node.create_service("std_srvs/srv/Empty", "/vision/describe/en", lambda request, response: response)
-    assert await talk().type("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
+    assert await talk().send_text("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
 
 
 LAUNCH = """
@@ -484,14 +488,14 @@ objects: {red ball: {en: red ball}}
 """
 
 
-class Launched:
+class FakeProcess:
     """A process that ends when it is interrupted."""
 
-    started: ClassVar[list[Launched]] = []
+    started: ClassVar[list[FakeProcess]] = []
 
     def __init__(self, command, **options):
         self.command, self.signals = command, []
-        Launched.started.append(self)
+        FakeProcess.started.append(self)
 
     def poll(self):
         return 0 if self.signals else None
@@ -507,33 +511,33 @@ class Launched:
 
 
 async def test_launch_file_is_started_without_shell_and_ended_by_stop(talk, tmp_path, monkeypatch):
-    Launched.started.clear()
-    monkeypatch.setattr("linkwright.speech.nodes.requests.subprocess.Popen", Launched)
+    FakeProcess.started.clear()
+    monkeypatch.setattr("linkwright.speech.nodes.requests.subprocess.Popen", FakeProcess)
     robot = talk(commands_file=commands(tmp_path, LAUNCH))
-    await robot.type("follow the red ball")
-    (process,) = Launched.started
+    await robot.send_text("follow the red ball")
+    (process,) = FakeProcess.started
     assert process.command[-6:] == ["linkwright", "launch", "p", "f.launch.py", "target:=red ball", "k:=2"]
     assert not process.signals
-    await robot.type("stop")
+    await robot.send_text("stop")
     assert len(process.signals) == 1
 
 
 async def test_go_to_object_publishes_target_and_stop(stage, talk):
-    heard = []
-    stage.node.create_subscription(STRING, "/vision/go_to/en", lambda message: heard.append(message.data), 10)
-    stage.node.create_subscription(STRING, "/vision/go_to/zh", lambda message: heard.append(("zh", message.data)), 10)
-    stage.node.create_subscription("std_msgs/msg/Empty", "/vision/stop", lambda message: heard.append("stop"), 10)
+    targets = []
+    stage.node.create_subscription(STRING, "/vision/go_to/en", lambda message: targets.append(message.data), 10)
+    stage.node.create_subscription(STRING, "/vision/go_to/zh", lambda message: targets.append(("zh", message.data)), 10)
+    stage.node.create_subscription("std_msgs/msg/Empty", "/vision/stop", lambda message: targets.append("stop"), 10)
     robot = talk()
-    await robot.type("forward")
-    await robot.type("go to the red ball")
+    await robot.send_text("forward")
+    await robot.send_text("go to the red ball")
     assert robot.speed == (0.0, 0.0, 0.0)
-    await robot.type("stop")
-    await robot.type("去红球那里")
-    assert heard == ["stop", "red ball", "stop", ("zh", "red ball")]
+    await robot.send_text("stop")
+    await robot.send_text("去红球那里")
+    assert targets == ["stop", "red ball", "stop", ("zh", "red ball")]
 
 
 async def test_invalid_command_file_ends_node(talk, tmp_path, logged):
-    with pytest.raises(LinkwrightError) as caught:
+    with pytest.raises(LinkwrightError) as error:
         talk(commands_file=commands(tmp_path, "commands: {a: {phrases: b}}"))
-    assert caught.value.diagnostics[0].code == "VOICE302"
+    assert error.value.diagnostics[0].code == "VOICE302"
     assert logged("FATAL") == ["the command 'a' has no action"]

@@ -1,4 +1,4 @@
-"""Words that pages enroll, in the user's file."""
+"""Words that pages enroll, and the user's file."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def _own_file(tmp_path, monkeypatch):
 
 
 @asynccontextmanager
-async def opened() -> AsyncIterator[tuple[Client, Client]]:
-    """Two pages that see the words, the first with its microphone open."""
+async def open_pages() -> AsyncIterator[tuple[Client, Client]]:
+    """Open two pages with the words; the first one's microphone is open."""
     async with open_world() as world, page(world.viewer) as client, page(world.viewer) as other:
         for client_page in (client, other):
             await client_page.opened()
@@ -45,34 +45,34 @@ async def record(client: Client, name: str, samples: np.ndarray, *, has_gaps: bo
 
 
 async def test_word_is_enrolled_from_recordings():
-    async with opened() as (client, other):
+    async with open_pages() as (client, other):
         for count in (1, 2, 3):
-            judged = await record(client, "stop", say(WORDS["stop"], seed=count))
-            assert (judged["code"], judged["number"]) == (None, count)
-            assert 0.1 < judged["peak"] < 1.0
-            assert judged["seconds"] == pytest.approx(1.0 + 0.4, abs=0.3)
+            result = await record(client, "stop", say(WORDS["stop"], seed=count))
+            assert (result["code"], result["number"]) == (None, count)
+            assert 0.1 < result["peak"] < 1.0
+            assert result["seconds"] == pytest.approx(1.0 + 0.4, abs=0.3)
             message = await other.until("voice_words")
             assert (message["words"], message["enough"]) == ([{"name": "stop", "takes": count}], 3)
         assert Words.read(words_path()).names == ("stop",)
 
 
 async def test_recording_with_gaps_is_rejected():
-    async with opened() as (client, _):
-        judged = await record(client, "stop", say(WORDS["stop"]), has_gaps=True)
-        assert judged["code"] == "VOICE212"
+    async with open_pages() as (client, _):
+        result = await record(client, "stop", say(WORDS["stop"]), has_gaps=True)
+        assert result["code"] == "VOICE212"
         assert not Words.read(words_path()).names
 
 
 async def test_silent_recording_is_rejected():
-    async with opened() as (client, _):
-        judged = await record(client, "stop", np.zeros(16_000, np.int16))
-        assert (judged["code"], judged["peak"]) == ("VOICE205", 0.0)
-        assert "no audible word" in judged["text"]
+    async with open_pages() as (client, _):
+        result = await record(client, "stop", np.zeros(16_000, np.int16))
+        assert (result["code"], result["peak"]) == ("VOICE205", 0.0)
+        assert "no audible word" in result["text"]
         assert Words.read(words_path()).names == ()
 
 
 async def test_words_are_renamed_and_removed_in_order():
-    async with opened() as (client, _):
+    async with open_pages() as (client, _):
         for name in ("stop", "back", "forward"):
             await record(client, name, say(WORDS[name]))
         await client.send("rename_word", name="stop", new_name="停止")
@@ -89,9 +89,9 @@ async def test_words_are_renamed_and_removed_in_order():
 
 
 async def test_words_file_is_exported_and_imported():
-    async with opened() as (client, _):
+    async with open_pages() as (client, _):
         await record(client, "stop", say(WORDS["stop"]))
-        await client.send("ask_words_file")
+        await client.send("request_words_file")
         text = (await client.until("voice_words_file"))["text"]
         words_path().unlink()
         await client.send("import_words", text=text)
@@ -105,7 +105,7 @@ async def test_words_file_is_exported_and_imported():
 
 
 async def test_damaged_words_file_is_reported_and_kept():
-    async with opened() as (client, other):
+    async with open_pages() as (client, other):
         words_path().parent.mkdir(parents=True)
         words_path().write_text("{")
         await client.send("begin_take", name="stop")
@@ -118,7 +118,9 @@ async def test_damaged_words_file_is_reported_and_kept():
 
 @pytest.mark.parametrize("language", ["en", "zh"])
 def test_words_suggested_by_page_are_commands(language):
-    (offered,) = re.findall(r"suggestions: \[(.*?)\]", (STRINGS / language / "voice.ts").read_text(encoding="utf-8"))
+    (suggestions,) = re.findall(
+        r"suggestions: \[(.*?)\]", (STRINGS / language / "voice.ts").read_text(encoding="utf-8")
+    )
     commands = read_command_file(DEFAULT_FILE)
-    for phrase in re.findall(r'"(.*?)"', offered):
+    for phrase in re.findall(r'"(.*?)"', suggestions):
         assert commands.match_command(phrase) is not None, phrase

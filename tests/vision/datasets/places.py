@@ -28,12 +28,12 @@ WALL = """<model name="wall"><static>true</static><link name="link"><visual name
 
 
 def world_text(*models: str) -> str:
-    """A world of models."""
+    """Return a world of models."""
     return f'<sdf version="1.7"><world name="yard">{"".join(models)}</world></sdf>'
 
 
 def yard(folder: Path) -> Path:
-    """A world with two balls, a crate, drums, a wall and a ground."""
+    """Write a world with two balls, a crate, drums, a wall and a ground."""
     path = folder / "yard.world"
     balls = BALL.format(name="red_ball", pose="1 0 0.2 0 0 0"), BALL.format(name="ball_2", pose="1 1 0.2 0 0 0")
     path.write_text(world_text(GROUND, WALL, *balls, CRATE.format(name="crate", pose="2 0 0.25 0 0 0"), DRUMS))

@@ -14,7 +14,7 @@ from linkwright.vision.datasets.classes import default_rules, find_objects
 from linkwright.vision.datasets.labels import box_of, label_image, run_lengths_of
 from linkwright.vision.datasets.options import Options
 from linkwright.vision.datasets.randomized_world import RandomizedWorld
-from tests.simulation.worlds import loaded
+from tests.simulation.worlds import load_simulation
 from tests.vision.datasets.masks import color_mask
 from tests.vision.datasets.places import SIGN, world_text, yard
 
@@ -23,7 +23,7 @@ OPTIONS = Options(width=320, height=240)
 
 @pytest.fixture
 def world(tmp_path):
-    simulation = loaded(yard(tmp_path))
+    simulation = load_simulation(yard(tmp_path))
     world = RandomizedWorld(simulation, find_objects(simulation, default_rules([simulation])), 2, 4)
     world.set_patterns(np.random.default_rng(0))
     yield world
@@ -62,7 +62,7 @@ def test_box_of_mask_is_computed():
 
 
 def test_full_boxes_of_balls_match_projected_outlines(world):
-    """The outline of a ball is the cone of rays that touch it: its ends are known to the last digit."""
+    """The outline of a ball is the cone of tangent rays: its ends are known exactly."""
     compared = 0
     for arrangement in shots(world, 12):
         labels, _ = labeled(world, arrangement)
@@ -96,7 +96,7 @@ def is_covered(world, arrangement, movable):
 
 
 def outline(across, ahead, radius):
-    """The least and the greatest slope of rays in a plane that touch a circle."""
+    """Return the smallest and the largest slope of rays in a plane that touch a circle."""
     distance = np.hypot(across, ahead)
     middle, half = np.arctan2(across, ahead), np.arcsin(min(radius / distance, 1.0))
     return np.tan(middle - half), np.tan(middle + half)
@@ -167,7 +167,7 @@ def test_placed_objects_do_not_overlap(world):
 def test_sign_is_ignored_unless_its_plate_is_visible(tmp_path, height, focal, ignored):
     path = tmp_path / "signs.world"
     path.write_text(world_text(SIGN))
-    simulation = loaded(path)
+    simulation = load_simulation(path)
     world = RandomizedWorld(simulation, find_objects(simulation, default_rules([simulation])), 1, 0)
     try:
         world.set_patterns(np.random.default_rng(0))

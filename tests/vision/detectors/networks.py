@@ -1,4 +1,4 @@
-"""Small networks with random weights in ONNX files, whose outputs are laid out as those of YOLO's."""
+"""Small networks with random weights in ONNX files, whose outputs have YOLO's layout."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def columns(
 
 
 def constant(path: Path, array, metadata=None, shape=(1, 3, 96, 128), names=("images",)) -> Path:
-    """A network that gives the same whatever it sees."""
+    """Write a network with a constant output."""
     weights = [numpy_helper.from_array(np.asarray(array), "numbers"), numpy_helper.from_array(np.float32(0), "zero")]
     nodes = [
         helper.make_node("ReduceMean", [names[0]], ["mean"], keepdims=0),

@@ -1,4 +1,4 @@
-"""EfficientDet-Lite in TFLite files, with an interpreter that stands in for LiteRT."""
+"""EfficientDet-Lite in TFLite files, with a fake of LiteRT's interpreter."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ OPERATIONS = [
 
 
 class Interpreter:
-    """What of LiteRT's interpreter is used; three boxes, and room for a fourth."""
+    """A fake of LiteRT's interpreter with three boxes, and space for a fourth."""
 
     shape = (1, 320, 320, 3)
     kind = np.uint8
@@ -59,7 +59,7 @@ class Interpreter:
 
 @pytest.fixture
 def litert(monkeypatch):
-    """The stand-in, whose class a test may change."""
+    """Return the fake's module, whose class a test may change."""
     kind = type("Changed", (Interpreter,), {"seen": []})
     package, module = ModuleType("ai_edge_litert"), ModuleType("ai_edge_litert.interpreter")
     package.interpreter, module.Interpreter = module, kind

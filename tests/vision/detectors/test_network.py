@@ -34,7 +34,7 @@ def opened(path, **options):
 
 
 def by_hand(path, image, rows, cols, padded=None):
-    """The input made step by step, and what onnxruntime makes of it."""
+    """Compute the input step by step, and return onnxruntime's output for it."""
     height, width = image.shape[:2]
     scale = min(rows / height, cols / width)
     new = (round(width * scale), round(height * scale))
@@ -206,7 +206,7 @@ def test_missing_gpu_is_noted(tmp_path):
 
 
 def test_missing_cuda_libraries_fall_back_to_cpu_with_note(tmp_path, monkeypatch):
-    """As onnxruntime-gpu does without CUDA: it knows the provider, and makes a session without it."""
+    """As onnxruntime-gpu behaves without CUDA: it lists the provider, and creates a session without it."""
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     monkeypatch.setattr(sessions, "has_cuda", lambda: True)
     monkeypatch.setattr(sessions, "load_session", lambda file, gpu: load_session(file))

@@ -1,4 +1,4 @@
-"""The network that comes with us, in images of our worlds that are rendered here."""
+"""The shipped network on rendered images of our worlds."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def things():
 
 
 def look(playground, eye, model):
-    """An image with a model in the middle, and the box around the pixels that show it."""
+    """Return an image with a model at its center, and the box around the model's visible pixels."""
     simulation, renderer = playground
     geoms = [
         number

@@ -1,4 +1,4 @@
-"""A detector for tests that needs no network and no library: everything of one color in an image, in one box."""
+"""A detector for tests without a network or library: one box around all pixels of one color."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class ColorDetector:
 
 
 def detection(header: Any, left: float, top: float, right: float, bottom: float, name: str, score: float = 0.9) -> Any:
-    """A vision_msgs/msg/Detection2D of a box."""
+    """Return a vision_msgs/msg/Detection2D of a box."""
     message = get_message("vision_msgs/msg/Detection2D")(header=header)
     message.bbox.center.position.x, message.bbox.center.position.y = (left + right) / 2, (top + bottom) / 2
     message.bbox.size_x, message.bbox.size_y = float(right - left), float(bottom - top)
@@ -57,7 +57,7 @@ def detection(header: Any, left: float, top: float, right: float, bottom: float,
 
 
 def yolo_detection(left: float, top: float, right: float, bottom: float, name: str, score: float) -> Any:
-    """A yolo_msgs/msg/Detection of a box, of class 4."""
+    """Return a yolo_msgs/msg/Detection of a box of class 4."""
     message = get_message("yolo_msgs/msg/Detection")(class_id=4, class_name=name, score=score)
     message.bbox.center.position.x, message.bbox.center.position.y = (left + right) / 2, (top + bottom) / 2
     message.bbox.size.x, message.bbox.size.y = float(right - left), float(bottom - top)

@@ -114,15 +114,15 @@ class SeekingRobot(SteppedSimulation):
         self.publish(topic, get_message("std_msgs/msg/String")(data=text))
 
     def tell_to_stop(self) -> None:
-        """What ends all seeking."""
+        """Publish the message that ends all seeking."""
         self.publish("/vision/stop", get_message("std_msgs/msg/Empty")())
 
     def spoken(self) -> list[str]:
-        """What the robot has said."""
+        """Return the robot's utterances."""
         return [said_message.data for said_message in self.said_messages]
 
     def advance_until_said(self, word: str, seconds: float = 60.0) -> bool:
-        """Let time pass until the robot says something with a word in it."""
+        """Advance the time until the robot says a text with a word."""
         for _ in range(round(seconds / 0.5)):
             self.advance(0.5)
             if any(word in text for text in self.spoken()):
@@ -136,7 +136,7 @@ class SeekingRobot(SteppedSimulation):
         return math.dist((x, y), ball[:2])
 
     def _detect(self) -> None:
-        """The box of the ball, as a detector would see it: give or take a pixel."""
+        """Return the box of the ball as from a detector, with an error of about a pixel."""
         header = get_message("std_msgs/msg/Header")(frame_id="camera_optical_frame")
         now_ns = self.simulation.time
         header.stamp = Time.from_nanoseconds(now_ns)

@@ -72,8 +72,8 @@ def compressed():
     return message
 
 
-async def seen(test, recording, topic, message):
-    """What is published for an image."""
+async def detections_of(test, recording, topic, message):
+    """Publish an image, and return the published detections."""
     before = len(recording)
     test.publish(topic, message)
     await test.settle()
@@ -94,7 +94,7 @@ async def test_detections_have_class_center_size_and_image_header(test, start, e
     await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
-    message = await seen(test, recording, "/yolo/image_raw", image(encoding))
+    message = await detections_of(test, recording, "/yolo/image_raw", image(encoding))
     assert (message.header.stamp.sec, message.header.frame_id) == (7, "camera")
     assert classes(message) == ["blue", "red"]
     (blue,) = [detection for detection in message.detections if detection.results[0].hypothesis.class_id == "blue"]
@@ -108,7 +108,7 @@ async def test_compressed_images_are_detected(test, start):
     await start(model="colors", input_image_topic="/camera/image_raw/compressed")
     recording = test.record("/yolo/detections")
     await test.settle()
-    message = await seen(test, recording, "/camera/image_raw/compressed", compressed())
+    message = await detections_of(test, recording, "/camera/image_raw/compressed", compressed())
     assert classes(message) == ["blue", "red"]
 
 
@@ -117,7 +117,7 @@ async def test_onnx_network_is_used(test, start, tmp_path):
     await start(model=str(columns(tmp_path / "v8.onnx", metadata=names)), threshold=0.6, max_det=5)
     recording = test.record("/yolo/detections")
     await test.settle()
-    message = await seen(test, recording, "/yolo/image_raw", image())
+    message = await detections_of(test, recording, "/yolo/image_raw", image())
     assert len(message.detections) == 5
     assert set(classes(message)) <= {"ball", "box", "cat"}
 
@@ -126,7 +126,7 @@ async def test_debug_image_is_published_if_subscribed(test, start):
     await start(model="colors")
     recording = test.record("/yolo/debug_image")
     await test.settle()
-    message = await seen(test, recording, "/yolo/image_raw", image())
+    message = await detections_of(test, recording, "/yolo/image_raw", image())
     assert (message.encoding, message.width, message.height, message.step) == ("rgb8", 160, 120, 480)
     assert message.header.frame_id == "camera"
     assert (np.frombuffer(bytes(message.data), np.uint8) != scene().reshape(-1)).any()
@@ -152,7 +152,7 @@ async def test_limits_can_change_at_runtime(test, start):
     ]:
         (result,) = node.set_parameters([Parameter(name, value=value)])
         assert result.successful, result.reason
-        assert classes(await seen(test, recording, "/yolo/image_raw", image())) == expected
+        assert classes(await detections_of(test, recording, "/yolo/image_raw", image())) == expected
 
 
 @pytest.mark.parametrize(
@@ -177,7 +177,7 @@ async def test_services_enable_and_set_classes(test, start):
     await test.settle()
     switch, choose = get_service("std_srvs/srv/SetBool"), get_service("yolo_msgs/srv/SetClasses")
     assert (await test.call("/yolo/set_classes", choose.Request(classes=["red"]))).success
-    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["red"]
+    assert classes(await detections_of(test, recording, "/yolo/image_raw", image())) == ["red"]
     assert "did you mean 'red'?" in (await test.call("/yolo/set_classes", choose.Request(classes=["rd"]))).message
     assert (await test.call("/yolo/set_classes", choose.Request(classes=[]))).success
     assert (await test.call("/yolo/enable", switch.Request(data=False))).success
@@ -185,7 +185,7 @@ async def test_services_enable_and_set_classes(test, start):
     test.publish("/yolo/image_raw", image(seconds=8))
     await test.settle()
     assert (await test.call("/yolo/enable", switch.Request(data=True))).success
-    message = await seen(test, recording, "/yolo/image_raw", image(seconds=9))
+    message = await detections_of(test, recording, "/yolo/image_raw", image(seconds=9))
     assert (message.header.stamp.sec, len(recording) - before) == (9, 1)
 
 
@@ -193,12 +193,12 @@ async def test_max_rate_limits_images_per_second(test, start):
     await start(model="colors", max_rate=10.0)
     recording = test.record("/yolo/detections")
     await test.settle()
-    await seen(test, recording, "/yolo/image_raw", image(seconds=1))
+    await detections_of(test, recording, "/yolo/image_raw", image(seconds=1))
     await test.advance(0.05)
     test.publish("/yolo/image_raw", image(seconds=2))
     await test.settle()
     await test.advance(0.05)
-    message = await seen(test, recording, "/yolo/image_raw", image(seconds=3))
+    message = await detections_of(test, recording, "/yolo/image_raw", image(seconds=3))
     assert (message.header.stamp.sec, len(recording)) == (3, 2)
 
 
@@ -211,21 +211,21 @@ async def test_malformed_image_is_reported_and_next_one_is_processed(test, start
     test.publish("/yolo/image_raw", broken)
     await test.settle()
     await eventually(lambda: any("rainbow8" in record.text for record in test.log))
-    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
+    assert classes(await detections_of(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
 
 
 async def test_custom_colors_are_detected(test, start):
     await start(model="colors", colors={"sky": [95, 110, 50, 130, 255, 255]}, least_area=10.0)
     recording = test.record("/yolo/detections")
     await test.settle()
-    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["sky"]
+    assert classes(await detections_of(test, recording, "/yolo/image_raw", image())) == ["sky"]
 
 
 async def test_yolo_ros_messages_and_older_topic_are_supported(test, start):
     await start(YoloRosNode, model="colors", remappings=[("image_raw", "/camera/rgb/image_raw")])
     recording, debug_images = test.record("/yolo/detections"), test.record("/yolo/dbg_image")
     await test.settle()
-    message = await seen(test, recording, "/camera/rgb/image_raw", image())
+    message = await detections_of(test, recording, "/camera/rgb/image_raw", image())
     (blue,) = [detection for detection in message.detections if detection.class_name == "blue"]
     assert (blue.class_id, blue.score) == (4, pytest.approx(1.0))
     assert (blue.bbox.center.position.x, blue.bbox.size.y) == (115.0, 40.0)
@@ -254,7 +254,7 @@ async def test_topics_and_parameters_of_other_packages_are_supported(test, start
     await start(kind, namespace="/", **parameters)
     recording = test.record(output)
     await test.settle()
-    assert classes(await seen(test, recording, topic, image())) == ["blue", "red"]
+    assert classes(await detections_of(test, recording, topic, image())) == ["blue", "red"]
     assert not any("no parameter" in record.text or "not read" in record.text for record in test.log)
 
 
@@ -302,7 +302,7 @@ IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 
 @pytest.fixture
 def warnings(test):
-    """What was warned of."""
+    """Return the warnings."""
     return lambda: [record.text for record in test.log if record.level is LogLevel.WARN]
 
 
@@ -350,12 +350,12 @@ async def test_stopped_camera_is_reported_and_later_each_time(test, start, warni
     recording = test.record("/yolo/detections")
     await test.settle()
     stopped = "no image has arrived on '/yolo/image_raw' for {} s".format
-    await seen(test, recording, "/yolo/image_raw", image())
+    await detections_of(test, recording, "/yolo/image_raw", image())
     await test.advance(9.0)
     assert warnings() == []
     await test.advance(3.0)
     assert warnings() == [stopped(5)]
-    await seen(test, recording, "/yolo/image_raw", image())
+    await detections_of(test, recording, "/yolo/image_raw", image())
     await test.advance(5.0)
     assert [record.text for record in test.log][-1] == "images are arriving"
     await test.advance(7.0)
@@ -374,7 +374,7 @@ async def test_missing_images_are_not_reported_without_subscribers(test, start, 
 
 
 class Slow:
-    """Has detectors loaded when it is told to."""
+    """A detector class whose loading the test delays."""
 
     def __init__(self, make):
         self._make, self.proceed, self.begun = make, threading.Event(), threading.Event()
@@ -408,7 +408,7 @@ async def test_node_answers_services_while_detector_loads(test, start, slow):
     slow.proceed.set()
     await eventually(running.loaded.done)
     await test.settle()
-    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
+    assert classes(await detections_of(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
 
 
 async def test_classes_set_during_loading_apply_after_loading(test, start, slow):
@@ -424,7 +424,7 @@ async def test_classes_set_during_loading_apply_after_loading(test, start, slow)
     await eventually(lambda: all(answer.done() for answer in answers))
     assert [answer.result().success for answer in answers] == [False, True]
     assert "did you mean 'red'?" in answers[0].result().message
-    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["red"]
+    assert classes(await detections_of(test, recording, "/yolo/image_raw", image())) == ["red"]
 
 
 async def test_closing_node_waits_silently_for_loading_detector(test, start, monkeypatch):

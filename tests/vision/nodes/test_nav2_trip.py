@@ -1,4 +1,4 @@
-"""object_seeker sends nav2 to what it sees, where it is told to and nav2 is there."""
+"""object_seeker with nav2: it sends goals to detected objects if this is enabled and nav2 runs."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NAVIGATE = "nav2_msgs/action/NavigateToPose"
 
 
 class Navigator:
-    """A server of the action: keeps the goals that it is given, and ends them when it is told to."""
+    """A server of the action that records its goals; the test ends them."""
 
     def __init__(self, test: SeekingRobot) -> None:
         self.goals: list[Any] = []

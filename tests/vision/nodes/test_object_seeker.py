@@ -1,4 +1,4 @@
-"""mbot goes to a ball in a simulated world, in lock-step: twice the same test gives the same bits."""
+"""mbot drives to a ball in a simulated world, in lock-step: the same test twice gives the same bits."""
 
 from __future__ import annotations
 

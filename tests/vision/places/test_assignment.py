@@ -11,7 +11,7 @@ from linkwright.vision.places.assignment import assign
 
 
 def least(costs, most):
-    """By trying all: how much the best assignment costs, where each that stays alone costs `most`."""
+    """Return the cost of the best assignment by exhaustive search; an unassigned element costs `most`."""
     rows, columns = costs.shape
     padded = np.full((rows, columns + rows), most)
     padded[:, :columns] = np.where(costs <= most, costs, np.inf)

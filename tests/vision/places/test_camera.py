@@ -1,4 +1,4 @@
-"""How pixels look into the world, and back."""
+"""Projection from pixels into the world, and back."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the objects in boxes are."""
+"""The positions of objects in boxes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ UP = np.array([0.0, -1.0, 0.0])
 
 
 def ball(center, radius, behind=4.0, camera=CAMERA):
-    """The depth image of a ball before a wall, and its box."""
+    """Return the depth image of a ball in front of a wall, and its box."""
     size = camera.width, camera.height
     columns, rows = np.meshgrid(np.arange(size[0]) + 0.5, np.arange(size[1]) + 0.5)
     rays = camera.rays(np.stack([columns.ravel(), rows.ravel()], axis=1))
@@ -74,7 +74,7 @@ def test_few_near_depths_are_ignored_as_noise():
 
 
 def drum(x, z, radius, height, above):
-    """The box of an upright drum on the ground, for a camera that looks along z."""
+    """Return the box of an upright drum on the ground, for a camera that looks along z."""
     turns = np.linspace(0, 2 * np.pi, 200)
     circle = np.stack([x + radius * np.cos(turns), np.zeros(200), z + radius * np.sin(turns)], axis=1)
     points = np.concatenate([circle + np.array([0, above, 0]), circle + np.array([0, above - height, 0])])

@@ -1,4 +1,4 @@
-"""How a robot looks for an object and goes to it, with a robot that is made up."""
+"""Searching for an object and driving to it, with a simulated robot."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PERIOD = 0.1
 
 
 class Robot:
-    """A robot that does what it is told, in a plane with one object; it sees 40 degrees to either side."""
+    """A robot that follows its commands in a plane with one object; its field of view is 40 degrees to either side."""
 
     def __init__(self, seeker, target=None, radius=0.15):
         self.seeker, self.target, self.radius = seeker, target, radius
@@ -50,7 +50,7 @@ class Robot:
         return move
 
     def advance(self, seconds):
-        """The events of the next seconds, and the largest speeds."""
+        """Return the events of the next seconds, and the maximum speeds."""
         moves = [self.step() for _ in range(round(seconds / PERIOD))]
         return [move.event for move in moves if move.event is not None]
 

@@ -1,4 +1,4 @@
-"""Which object is which, on trajectories that are made up."""
+"""Identities of objects on synthetic trajectories."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PERIOD = 1 / 30
 
 
 def detections_of(*objects):
-    """Detections of (center x, center y, size, score, class)."""
+    """Return detections of (center x, center y, size, score, class)."""
     if not objects:
         return Detections.empty(NAMES)
     boxes = [[x - size / 2, y - size / 2, x + size / 2, y + size / 2] for x, y, size, *_ in objects]

@@ -1,4 +1,4 @@
-"""A dataset of colored shapes, small enough to be learned in a test."""
+"""A dataset of colored shapes, small enough for training in a test."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def sum_of(world):
 
 
 def write_card(folder, *worlds, more=()):
-    """What `linkwright dataset` writes down of images that were made in one run, or in more."""
+    """Write the notes of `linkwright dataset` about images of one run, or of more."""
     folder.mkdir(exist_ok=True)
     listed = [{"name": f"rooms/{world}.world", "file": f"{world}.world", "sha256": sum_of(world)} for world in worlds]
     runs = [{"seed": 3, "most": 10}, *more]

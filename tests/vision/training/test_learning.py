@@ -148,7 +148,7 @@ def test_exported_network_matches_trained_network():
 
 @pytest.fixture
 def exported(tmp_path):
-    """A network of three classes whose normalizations are not those of the beginning, and its file."""
+    """Export a network of three classes with changed normalizations, and return it with its file."""
     torch.manual_seed(3)
     network = Network(Shape(3, 4))
     with torch.no_grad():

@@ -22,13 +22,13 @@ def wire() -> str:
 
 @pytest.fixture(autouse=True)
 def over_zenoh(zenoh_variables: None) -> None:
-    """Zenoh for programs, too, and for tests that start no process of their own."""
+    """Use Zenoh in programs, too, and in tests that start no process of their own."""
 
 
 @pytest.fixture
 def start_router(router_port) -> Iterator[Callable[[], subprocess.Popen[str]]]:
-    """Starts a router at the port of the test; it has said that it is one when this returns."""
-    started: list[subprocess.Popen[str]] = []
+    """Return a function that starts a router at the test's port, and returns when it listens."""
+    routers: list[subprocess.Popen[str]] = []
 
     def start() -> subprocess.Popen[str]:
         settings = f'listen/endpoints=["tcp/localhost:{router_port}"];connect/endpoints=[]'
@@ -39,12 +39,12 @@ def start_router(router_port) -> Iterator[Callable[[], subprocess.Popen[str]]]:
             stdout=subprocess.PIPE,
             text=True,
         )
-        started.append(router)
+        routers.append(router)
         assert router.stdout is not None
         assert f"Zenoh router at tcp/localhost:{router_port}" in router.stdout.readline()
         return router
 
     yield start
-    for router in started:
+    for router in routers:
         router.kill()
         router.communicate()

@@ -1,4 +1,4 @@
-"""Clients of a router: they are told of what their own endpoints need, and of all else when somebody asks."""
+"""Clients of a router: they receive only the announcements that their own endpoints need, and the rest on request."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ Int32 = get_interface("std_msgs/msg/Int32")
 
 @pytest.fixture(autouse=True)
 def router(start_router, monkeypatch, router_port) -> None:
-    """A router, and nothing but clients of it."""
+    """Start a router, and make all sessions its clients."""
     start_router()
     monkeypatch.setenv(OVERRIDES, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
 
 
 def remote_node_names(process):
-    """The nodes that a process was told of, without asking for any."""
+    """Return the nodes that a process knows without a query."""
     return sorted(node.name for node in process.transport.remote_nodes())
 
 
 def liveliness_listeners(process, session):
-    """How many listeners a process has for what a session does."""
+    """Return the number of a process's liveliness subscribers for a session."""
     return sum(session in key for key in tuple(process.transport._zenoh_engine._interests._declared))
 
 
-def sessions_here(process):
-    """How many sessions a process was told of that say so when they leave."""
+def live_session_count(process):
+    """Return the number of sessions known to a process that announce their departure."""
     return len(process.transport._departures.live_sessions)
 
 
@@ -76,7 +76,7 @@ def test_first_graph_query_is_answered_completely(processes, monkeypatch):
 
 
 def test_recreated_subscription_counts_publishers_correctly(processes):
-    """What was heard of for its sake is forgotten with it."""
+    """Data that was discovered for a subscription is dropped with it."""
     talker, ear = processes("talker"), processes("ear")
     first = talker.node.create_publisher(String, "chatter", 10)
     subscription = ear.node.create_subscription(String, "chatter", print, 10)
@@ -85,12 +85,12 @@ def test_recreated_subscription_counts_publishers_correctly(processes):
     talker.node.destroy_publisher(first)
     talker.node.create_publisher(String, "chatter", 10)
     talker.node.create_publisher(String, "chatter", 10)
-    again = ear.node.create_subscription(String, "chatter", print, 10)
-    ear.spin_until(lambda: again.get_publisher_count() == 2)
+    recreated = ear.node.create_subscription(String, "chatter", print, 10)
+    ear.spin_until(lambda: recreated.get_publisher_count() == 2)
 
 
 def test_outdated_liveliness_news_is_ignored_and_returned_token_kept(processes, monkeypatch):
-    """Zenoh tells of what it knows already in a task of its own, after news that it is gone."""
+    """Zenoh delivers known tokens in a task of its own, possibly after the news of their removal."""
     talker, ear = processes("talker"), processes("ear")
     publisher = talker.node.create_publisher(String, "chatter", 10)
     subscription = ear.node.create_subscription(String, "chatter", print, 10)
@@ -143,7 +143,7 @@ def test_killed_publisher_is_lost_and_closed_one_is_not(processes, programs, its
     left.create_publisher(Int32, "flood", 10)
     victim = programs("our_program", "victim")
     ours.spin_until(lambda: subscription.get_publisher_count() == 2)
-    ours.spin_until(lambda: sessions_here(ours) == 2)  # of one that ends before that nobody knows how
+    ours.spin_until(lambda: live_session_count(ours) == 2)  # before that, the way a session ends is unknown
     if its_process_goes_on:
         left.destroy_node()
     else:
@@ -155,7 +155,7 @@ def test_killed_publisher_is_lost_and_closed_one_is_not(processes, programs, its
 
 
 def test_ended_sessions_are_no_longer_watched(processes):
-    """A robot that runs for months hears many come and go."""
+    """A robot that runs for months sees many sessions come and go."""
     ours = processes("ours")
     subscription = ours.node.create_subscription(Int32, "flood", print, 10)
     subscription.watch_lost(print)

@@ -1,4 +1,4 @@
-"""What is known of other sessions, and that nothing stays of those that are gone."""
+"""The data about other sessions: none remains of sessions that are gone."""
 
 from __future__ import annotations
 
@@ -27,5 +27,5 @@ def test_departed_sessions_leave_no_data(monkeypatch):
         now += 1.0
         assert remote.remove(token.key) is token
         assert remote.count(token.kind, token.data_key) == 0
-    left = {name: len(value) for name, value in vars(remote).items() if hasattr(value, "__len__")}
-    assert left == {**empty, "_removal_times": 1}  # when the last one went
+    remaining = {name: len(value) for name, value in vars(remote).items() if hasattr(value, "__len__")}
+    assert remaining == {**empty, "_removal_times": 1}  # the time of the last departure

@@ -1,4 +1,4 @@
-"""Hosts beyond one machine, as `docs/beyond-one-machine.md` joins them, with the files that stand there."""
+"""Hosts in several networks, joined as `docs/beyond-one-machine.md` says, with the files on that page."""
 
 from __future__ import annotations
 
@@ -14,7 +14,16 @@ import pytest
 
 from tests.docs.pages import DOCS
 from tests.wire.programs import Program
-from tests.wire.zenoh.hosts import CLOUD, CLOUD_ADDRESS, DESK, DESKS_CLOUD_ADDRESS, GATEWAY, ROBOT, Hosts, why_not
+from tests.wire.zenoh.hosts import (
+    CLOUD,
+    CLOUD_ADDRESS,
+    DESK,
+    DESKS_CLOUD_ADDRESS,
+    GATEWAY,
+    ROBOT,
+    Hosts,
+    unsupported_reason,
+)
 
 NAME = "cloud.example.com"
 COUNT = 400
@@ -23,7 +32,7 @@ pytestmark = pytest.mark.slow
 
 
 class Site:
-    """A robot behind a gateway, a cloud and a desk, each with its program; certificates and files in a folder."""
+    """A robot behind a gateway, a cloud and a desk, each with its program; certificates and files are in a folder."""
 
     def __init__(self, folder: Path) -> None:
         page = (DOCS / "beyond-one-machine.md").read_text(encoding="utf-8")
@@ -39,7 +48,7 @@ class Site:
         self._started: list[Program | subprocess.Popen[str]] = []
 
     def router(self, host: str, file: str) -> None:
-        """Start a router; it listens when this returns."""
+        """Start a router, and return when it listens."""
         command = [sys.executable, "-m", "linkwright.node_program", "rmw_zenoh_cpp", "rmw_zenohd"]
         router = subprocess.Popen(
             [*self.hosts.within(host), *command],
@@ -60,7 +69,7 @@ class Site:
         return program
 
     def close(self) -> None:
-        """End all, and take the hosts away."""
+        """End all programs, and remove the hosts."""
         for process in self._started:
             if isinstance(process, Program):
                 process.end()
@@ -72,7 +81,7 @@ class Site:
 
 @pytest.fixture
 def site(tmp_path, monkeypatch) -> Iterator[Site]:
-    reason = why_not()
+    reason = unsupported_reason()
     if reason:
         pytest.skip(reason)
     monkeypatch.delenv("ZENOH_CONFIG_OVERRIDE")
@@ -98,60 +107,60 @@ def desk(site, robot) -> Program:
     return desk
 
 
-def start_publishing(robot: Program, desk: Program, topic: str, qos: str, **saying: Any) -> None:
-    """Have the robot say numbers that the desk takes down."""
-    robot.ask("offer", topic, qos)
-    desk.ask("hear", topic, qos)
-    robot.ask_until(bool, "listeners", topic)
-    robot.ask("say", topic, saying["count"], saying["rate"], saying["size"])
+def start_publishing(robot: Program, desk: Program, topic: str, qos: str, **options: Any) -> None:
+    """Let the robot publish numbers that the desk records."""
+    robot.ask("advertise", topic, qos)
+    desk.ask("subscribe", topic, qos)
+    robot.ask_until(bool, "subscription_count", topic)
+    robot.ask("publish_numbers", topic, options["count"], options["rate"], options["size"])
 
 
 def test_reliable_topics_survive_link_failure_and_packet_loss(site, robot, desk):
     topics = {"/robot1/everything": "everything", "/robot1/lasting": "lasting"}
     for topic, qos in topics.items():
         start_publishing(robot, desk, topic, qos, count=COUNT, rate=40.0, size=100)
-    desk.ask_until(lambda heard: len(heard) > COUNT // 10, "heard", "/robot1/everything")
+    desk.ask_until(lambda numbers: len(numbers) > COUNT // 10, "received", "/robot1/everything")
     site.hosts.link(is_up=False)
-    answer = robot.ask_until(lambda answer: answer > COUNT // 2, "said", "/robot1/lasting")
-    assert len(desk.ask("heard", "/robot1/lasting")) < answer
+    count = robot.ask_until(lambda count: count > COUNT // 2, "published_count", "/robot1/lasting")
+    assert len(desk.ask("received", "/robot1/lasting")) < count
     site.hosts.link(is_up=True)
     lossy = ("-m", "statistic", "--mode", "random", "--probability", "0.05", "-j", "DROP")
     site.hosts.run(GATEWAY, "iptables", "-A", "FORWARD", *lossy)
     for topic in topics:
-        heard = desk.ask_until(lambda heard: len(heard) >= COUNT, "heard", topic, seconds=180)
-        assert heard == list(range(COUNT))
+        numbers = desk.ask_until(lambda numbers: len(numbers) >= COUNT, "received", topic, seconds=180)
+        assert numbers == list(range(COUNT))
 
 
 def test_latched_topic_catches_up_after_reconnect(site, robot, desk):
     start_publishing(robot, desk, "/robot1/lasting", "lasting", count=COUNT, rate=40.0, size=100)
-    desk.ask_until(lambda heard: len(heard) > COUNT // 10, "heard", "/robot1/lasting")
-    site.hosts.run(GATEWAY, "ip", "link", "set", f"to{CLOUD}", "down")  # which has it forget whom it translates for
-    robot.ask_until(lambda text: text > COUNT // 2, "said", "/robot1/lasting")
+    desk.ask_until(lambda numbers: len(numbers) > COUNT // 10, "received", "/robot1/lasting")
+    site.hosts.run(GATEWAY, "ip", "link", "set", f"to{CLOUD}", "down")  # the gateway then drops its NAT table
+    robot.ask_until(lambda count: count > COUNT // 2, "published_count", "/robot1/lasting")
     site.hosts.run(GATEWAY, "ip", "link", "set", f"to{CLOUD}", "up")
-    heard = desk.ask_until(lambda heard: len(set(heard)) >= COUNT, "heard", "/robot1/lasting", seconds=180)
-    assert sorted(set(heard)) == list(range(COUNT))
+    numbers = desk.ask_until(lambda numbers: len(set(numbers)) >= COUNT, "received", "/robot1/lasting", seconds=180)
+    assert sorted(set(numbers)) == list(range(COUNT))
 
 
 def test_desk_receives_only_subscribed_and_publishes_only_allowed_topics(site, robot, desk):
     for topic in ("/robot1/cmd_vel", "/robot1/secret"):
-        desk.ask("offer", topic, "everything")
-        robot.ask("hear", topic, "everything")
-    desk.ask_until(bool, "listeners", "/robot1/cmd_vel")
+        desk.ask("advertise", topic, "everything")
+        robot.ask("subscribe", topic, "everything")
+    desk.ask_until(bool, "subscription_count", "/robot1/cmd_vel")
     for topic in ("/robot1/secret", "/robot1/cmd_vel"):
-        desk.ask("say", topic, 20, 100.0, 10)
-    robot.ask_until(lambda heard: len(heard) == 20, "heard", "/robot1/cmd_vel")
-    assert robot.ask("heard", "/robot1/secret") == []
+        desk.ask("publish_numbers", topic, 20, 100.0, 10)
+    robot.ask_until(lambda numbers: len(numbers) == 20, "received", "/robot1/cmd_vel")
+    assert robot.ask("received", "/robot1/secret") == []
 
     image = 200_000
-    robot.ask("offer", "/robot1/camera", "last")
-    robot.ask("say", "/robot1/camera", 1_000_000, 20.0, image)
-    before = site.hosts.received(DESK, CLOUD)
-    first = robot.ask_until(lambda text: text > 20, "said", "/robot1/camera")
-    unheard = site.hosts.received(DESK, CLOUD) - before
-    assert unheard < image * first / 20, "images came though nobody listens"
-    desk.ask("hear", "/robot1/camera", "last")
-    heard = len(desk.ask_until(lambda heard: len(heard) > 5, "heard", "/robot1/camera"))
-    assert site.hosts.received(DESK, CLOUD) - before > image * heard
+    robot.ask("advertise", "/robot1/camera", "last")
+    robot.ask("publish_numbers", "/robot1/camera", 1_000_000, 20.0, image)
+    bytes_before = site.hosts.received(DESK, CLOUD)
+    first = robot.ask_until(lambda count: count > 20, "published_count", "/robot1/camera")
+    bytes_without_subscription = site.hosts.received(DESK, CLOUD) - bytes_before
+    assert bytes_without_subscription < image * first / 20, "images were sent without a subscription"
+    desk.ask("subscribe", "/robot1/camera", "last")
+    numbers = len(desk.ask_until(lambda numbers: len(numbers) > 5, "received", "/robot1/camera"))
+    assert site.hosts.received(DESK, CLOUD) - bytes_before > image * numbers
 
 
 def test_host_without_valid_certificate_is_rejected(site, robot, tmp_path):

@@ -1,4 +1,4 @@
-"""Routers: ours is one for whoever looks for it where rmw_zenoh_cpp does."""
+"""Routers: ours serves nodes that look for one where rmw_zenoh_cpp does."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ AddTwoInts = get_interface("example_interfaces/srv/AddTwoInts")
 
 @pytest.fixture
 def by_router_alone(monkeypatch, router_port) -> None:
-    """Nobody is found by multicast."""
+    """Turn multicast discovery off."""
     settings = f'connect/endpoints=["tcp/localhost:{router_port}"];scouting/multicast/enabled=false'
     monkeypatch.setenv(OVERRIDES, settings)
 
@@ -40,7 +40,7 @@ def test_processes_discover_by_router_and_continue_without_it(processes, start_r
 
 
 def test_graph_is_restored_after_router_restart(processes, start_router, monkeypatch, router_port):
-    """Clients have no link but that to their router: they lose the graph with it, and then get it back."""
+    """Clients have no link except to their router: they lose the graph with it, and then regain it."""
     monkeypatch.setenv(OVERRIDES, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
     router = start_router()
     a, b = processes("a"), processes("b")

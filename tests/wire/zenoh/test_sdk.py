@@ -1,6 +1,6 @@
-"""Over Zenoh with nodes that another program makes of it: zenoh-ros2-sdk, which wrote keys, tokens and hashes itself.
+"""Nodes of zenoh-ros2-sdk, another implementation of ROS 2's keys, tokens and hashes over Zenoh.
 
-They run where LINKWRIGHT_ZENOH_SDK_PYTHON names an interpreter that has it; see ``make test-zenoh-sdk``.
+The tests run where LINKWRIGHT_ZENOH_SDK_PYTHON names an interpreter with it; see ``make test-zenoh-sdk``.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ZENOH_SDK_PYTHON 
 
 @pytest.fixture
 def peer(programs, router_port, monkeypatch):
-    """A program with the SDK, and a session of ours that it connects to, as there is no router."""
+    """Start a program with the SDK that connects to a session of ours, because there is no router."""
     settings = os.environ[OVERRIDES]
     monkeypatch.setenv(OVERRIDES, f'connect/endpoints=[];listen/endpoints=["tcp/127.0.0.1:{router_port}"]')
     return lambda: programs(
@@ -37,7 +37,7 @@ def peer(programs, router_port, monkeypatch):
 
 
 def ask_while_spinning(process, question):
-    """The answer to something asked of the peer, for which our callbacks have to run."""
+    """Ask the peer a question, and run our callbacks until it answers."""
     answers = []
     thread = threading.Thread(target=lambda: answers.append(question()))
     thread.start()
@@ -53,13 +53,13 @@ def test_messages_work_in_both_directions(processes, peer):
     publisher = process.node.create_publisher(String, "to_sdk", EVERYTHING)
     sdk_peer = peer()
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
-    sdk_peer.ask_until(bool, "listeners")
-    sdk_peer.ask("say", 0, 100)
+    sdk_peer.ask_until(bool, "has_subscription")
+    sdk_peer.ask("publish", 0, 100)
     for number in range(1000):
         publisher.publish(String(data=str(number)))
     process.spin_until(lambda: len(texts) == 100)
     assert texts == [str(number) for number in range(100)]
-    assert sdk_peer.ask_until(lambda heard: len(heard) == 1000, "heard") == [str(number) for number in range(1000)]
+    assert sdk_peer.ask_until(lambda heard: len(heard) == 1000, "received") == [str(number) for number in range(1000)]
 
 
 def test_sdk_and_linkwright_discover_endpoints(processes, peer):
@@ -109,4 +109,4 @@ def test_thousand_calls_of_linkwright_clients_get_their_own_responses(processes,
 
     process.spin_until(all_answered, 300)
     assert answers == [[number % 2 == 0 for number in range(CALLS // CLIENTS)]] * CLIENTS
-    assert sdk_peer.ask("served") == CALLS
+    assert sdk_peer.ask("request_count") == CALLS

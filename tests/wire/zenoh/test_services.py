@@ -81,7 +81,7 @@ def test_failed_request_is_reported_once(processes):
 
 
 class LateQuery:
-    """A request that Zenoh hands on after the service was closed, as far as it is looked at."""
+    """A request that Zenoh delivers after the service was closed, with the attributes that are read."""
 
     payload = zenoh.ZBytes(b"\0\1\0\0\1")
     attachment = zenoh.ZBytes(attachment.write(1, 2, bytes(16)))
@@ -91,11 +91,11 @@ class LateQuery:
         self.dropped = True
 
 
-class Declared:
-    """A session that keeps what takes its requests."""
+class DeclaredSession:
+    """A session that keeps the handler of its requests."""
 
     def declare_queryable(self, key, handler, **options):
-        self.take = handler.callback
+        self.on_request = handler.callback
         return self
 
     def undeclare(self):
@@ -103,27 +103,27 @@ class Declared:
 
 
 def test_request_in_transit_ends_when_service_closes(processes):
-    """Undeclaring does not wait for it: its client waited for ten minutes."""
+    """Undeclaring does not wait for such a request: its client waited for ten minutes."""
     node = processes("ours", join_now=False).node
     service = node.create_service(SetBool, "flip", flip)
     names = (EndpointKind.SERVICE, "/flip", "std_srvs::srv::dds_::SetBool_", "RIHS01_00")
-    session, query = Declared(), LateQuery()
+    session, query = DeclaredSession(), LateQuery()
     incoming = IncomingService(service, Token(0, "0", "0", "1", NodeIdentity("ours", "/"), *names), session)
     incoming.close()
-    session.take(query)
+    session.on_request(query)
     assert query.dropped
 
 
 def test_request_without_attachment_is_rejected(processes):
     process = processes("ours")
-    asked = []
-    process.node.create_service(SetBool, "flip", lambda request, response: asked.append(request) or response)
+    requests = []
+    process.node.create_service(SetBool, "flip", lambda request, response: requests.append(request) or response)
     with open_with(configuration(read_settings())) as session:
         key = f"{read_settings().domain_id}/flip/std_srvs::srv::dds_::SetBool_/{type_hash(SetBool)}"
-        asking = session.declare_querier(key)
-        process.spin_until(lambda: asking.matching_status.matching)
+        querier = session.declare_querier(key)
+        process.spin_until(lambda: querier.matching_status.matching)
         body = b"\0\1\0\0\1"
-        assert list(asking.get(payload=body)) == []
-        assert list(asking.get(payload=body, attachment=b"nonsense")) == []
-        assert list(asking.get(attachment=attachment.write(1, 2, bytes(16)))) == []
-        assert not asked
+        assert list(querier.get(payload=body)) == []
+        assert list(querier.get(payload=body, attachment=b"nonsense")) == []
+        assert list(querier.get(attachment=attachment.write(1, 2, bytes(16)))) == []
+        assert not requests

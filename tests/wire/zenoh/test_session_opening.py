@@ -1,4 +1,4 @@
-"""Sessions that wait for a router, and what is said of who is not reached."""
+"""Sessions that wait for a router, and messages about hosts that are not reached."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from linkwright.wire.zenoh.settings import OVERRIDES
 from tests.wire.zenoh.conftest import ROUTER
 
 AT_ONCE = 5.0
-"""Seconds, of a busy machine; what is refused here takes ten and more."""
+"""A limit in seconds for a busy machine; without an immediate answer, opening takes ten and more."""
 
 
 def client_of(port: int, timeout_ms: int = -1) -> str:
@@ -32,7 +32,7 @@ def client_of(port: int, timeout_ms: int = -1) -> str:
 
 @pytest.fixture
 def silent_port() -> Iterator[int]:
-    """A port at which somebody is called and never answers."""
+    """Return a port at which connections are accepted and never answered."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         yield server.getsockname()[1]
 
@@ -110,7 +110,7 @@ def test_duplicate_session_id_is_reported(silent_port):
 
 
 class Certificates:
-    """Certificates of an authority, and of a stranger, as files."""
+    """Files with certificates of an authority, and one of another authority."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -119,11 +119,11 @@ class Certificates:
         (folder / "name.ext").write_text("subjectAltName=DNS:localhost\n")
         for name in ("cloud", "desk"):
             self._openssl(f"req -newkey rsa:2048 -nodes -keyout {name}-key.pem -out {name}.csr -subj /CN={name}")
-            signing = "-CA ca.pem -CAkey ca-key.pem -CAcreateserial -days 9 -extfile name.ext"
-            self._openssl(f"x509 -req -in {name}.csr {signing} -out {name}.pem")
+            options = "-CA ca.pem -CAkey ca-key.pem -CAcreateserial -days 9 -extfile name.ext"
+            self._openssl(f"x509 -req -in {name}.csr {options} -out {name}.pem")
 
     def settings(self, certificate: str = "desk", key: str = "desk", authority: str = "ca") -> dict[str, Any]:
-        """What stands below ``transport/link/tls``."""
+        """Return the settings below ``transport/link/tls``."""
         return {
             "enable_mtls": True,
             "root_ca_certificate": str(self.folder / f"{authority}.pem"),
@@ -132,7 +132,7 @@ class Certificates:
         }
 
     def serve(self) -> int:
-        """The port of a server that lets in whom the authority has signed, one after the other."""
+        """Start a server that accepts only the authority's certificates, one client at a time, and return its port."""
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
         context.load_cert_chain(self.folder / "cloud.pem", self.folder / "cloud-key.pem")
         context.load_verify_locations(self.folder / "ca.pem")
@@ -141,25 +141,25 @@ class Certificates:
 
         def run() -> None:
             while True:
-                called = server.accept()[0]
+                connection = server.accept()[0]
                 try:
-                    with context.wrap_socket(called, server_side=True) as secured:
-                        secured.recv(1)
+                    with context.wrap_socket(connection, server_side=True) as tls_connection:
+                        tls_connection.recv(1)
                 except OSError:
-                    called.close()
+                    connection.close()
 
         threading.Thread(target=run, daemon=True).start()
         port: int = server.getsockname()[1]
         return port
 
-    def _openssl(self, words: str) -> None:
-        subprocess.run(["openssl", *words.split()], cwd=self.folder, check=True, capture_output=True)
+    def _openssl(self, arguments: str) -> None:
+        subprocess.run(["openssl", *arguments.split()], cwd=self.folder, check=True, capture_output=True)
 
 
 @pytest.fixture(scope="module")
 def certificates(tmp_path_factory) -> Certificates:
     if which("openssl") is None:
-        pytest.skip("there is no program 'openssl'")
+        pytest.skip("the program 'openssl' is not installed")
     return Certificates(tmp_path_factory.mktemp("certificates"))
 
 
@@ -192,7 +192,7 @@ def test_tls_and_tcp_mismatch_is_reported(certificates, silent_port):
 
         def refuse() -> None:
             with server.accept()[0] as called:
-                called.sendall(b"\x15\3\3\0\2\2\x46")  # an alert, as Zenoh answers what is no TLS
+                called.sendall(b"\x15\3\3\0\2\2\x46")  # an alert, as Zenoh answers connections without TLS
                 called.recv(16)
 
         threading.Thread(target=refuse, daemon=True).start()

@@ -50,8 +50,8 @@ def test_failed_session_opening_is_reported_with_advice(router_port, override, m
     assert "/src/" not in render(finding)
 
 
-class StandsStill:
-    """A session on a line that is full, which Zenoh waits for."""
+class BlockedSession:
+    """A session whose transport is full, so that closing it blocks."""
 
     def __init__(self):
         self.free = threading.Event()
@@ -64,17 +64,17 @@ class StandsStill:
 
 def test_process_exit_does_not_wait_for_blocked_session(monkeypatch):
     monkeypatch.setattr("linkwright.wire.zenoh.session._CLOSING_LIMIT", 0.01)
-    session = StandsStill()
-    begun = time.monotonic()
+    session = BlockedSession()
+    start = time.monotonic()
     close_session(session)
-    assert time.monotonic() - begun < 60
+    assert time.monotonic() - start < 60
     assert not session.closed.is_set()
     session.free.set()
     assert session.closed.wait(60)
 
 
 def test_session_is_closed_at_process_exit():
-    session = StandsStill()
+    session = BlockedSession()
     session.free.set()
     close_session(session)
     assert session.closed.is_set()

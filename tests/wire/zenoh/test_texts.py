@@ -1,4 +1,4 @@
-"""What is written in keys, tokens and attachments, with the texts that rmw_zenoh_cpp writes."""
+"""The texts in keys, tokens and attachments, compared with those of rmw_zenoh_cpp."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
-from linkwright.graph.qos.compatibility import resolved
+from linkwright.graph.qos.compatibility import resolve_defaults
 from linkwright.graph.qos.profile import (
     DurabilityPolicy,
     HistoryPolicy,
@@ -40,7 +40,7 @@ HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 )
 def test_qos_text_matches_rmw_zenoh(profile, text):
     assert qos_text.write(profile) == text
-    assert qos_text.read(text) == resolved(profile)
+    assert qos_text.read(text) == resolve_defaults(profile)
 
 
 def test_qos_text_of_keep_all_history():

@@ -50,7 +50,7 @@ def test_qos_of_remote_endpoints_is_available_and_always_matches(processes):
 
 
 def test_closing_latched_publisher_does_not_wait_for_callbacks(processes):
-    """A callback in a thread of Zenoh that needs Python's lock is not waited for by who has that lock: it took 10 s."""
+    """The thread that holds Python's lock does not wait for a Zenoh callback that needs it: that took 10 s."""
     node = processes("ours", join_now=False).node
     result = threading.Event()
 
@@ -60,21 +60,21 @@ def test_closing_latched_publisher_does_not_wait_for_callbacks(processes):
 
     with open_with(configuration(read_settings())) as ours, open_with(configuration(read_settings())) as theirs:
 
-        def announced(name: str, number: str, qos: QoSProfile) -> OutgoingTopic:
+        def announce(name: str, number: str, qos: QoSProfile) -> OutgoingTopic:
             publisher = node.create_publisher(String, name, qos)
             names = (EndpointKind.PUBLISHER, name, "std_msgs::msg::dds_::String_", "RIHS01_00")
             token = Token(0, str(ours.zid()), "0", number, NodeIdentity("ours", "/"), *names)
             return OutgoingTopic(publisher, token, ours, changed)
 
-        keeping, other = announced("/kept", "1", LASTING), announced("/other", "2", QoSProfile(10))
-        known = f"{keeping.token.data_key}/@adv/**"
-        wait_until(lambda: list(theirs.liveliness().get(known)))
+        latched, other = announce("/kept", "1", LASTING), announce("/other", "2", QoSProfile(10))
+        history_key = f"{latched.token.data_key}/@adv/**"
+        wait_until(lambda: list(theirs.liveliness().get(history_key)))
         listener = theirs.declare_subscriber(other.token.data_key)
         assert result.wait(SECONDS)
-        began = time.monotonic()
-        keeping.close()
-        assert time.monotonic() - began < 5.0
-        wait_until(lambda: not list(theirs.liveliness().get(known)))
+        start = time.monotonic()
+        latched.close()
+        assert time.monotonic() - start < 5.0
+        wait_until(lambda: not list(theirs.liveliness().get(history_key)))
         other.close()
         listener.undeclare()
 
@@ -191,7 +191,7 @@ def generate_launch_description():
 
 
 def test_verb_receives_messages_of_launched_node(tmp_path):
-    """Launch files are told that this is Humble, where types have no hash on the wire; nobody said so to the verb."""
+    """The launch sets Humble, whose types have no hash on the wire, for its nodes; the verb does not know that."""
     (tmp_path / "talk.launch.py").write_text(LAUNCH_FILE)
     words = [sys.executable, "-m", "linkwright", "launch", str(tmp_path / "talk.launch.py")]
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=tmp_path) as launch:

@@ -1,6 +1,6 @@
 import { button, coalesce, h } from "../../dom";
 import { icon, type IconName } from "../../icons";
-import type { ComparedItem, ComparedPlace } from "../../protocol";
+import type { ComparedItem, ComparedLocation } from "../../protocol";
 import { groupDifferences, MARK_COLORS, listUsedMarks, type DifferenceGroup } from "../../state/comparison";
 import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
@@ -171,7 +171,7 @@ export class ComparisonPanel implements Panel {
   }
 
   /** Returns the place in the text: a link into the Source panel if that can show it. */
-  private createPlace(place: ComparedPlace | null, side: "old" | "new"): HTMLElement | null {
+  private createPlace(place: ComparedLocation | null, side: "old" | "new"): HTMLElement | null {
     if (!place) return null;
     const { text, file, line } = place;
     const parts = [h("span", { class: "difference-side" }, strings.comparison[side]), shortenPlace(text)] as const;

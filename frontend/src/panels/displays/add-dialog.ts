@@ -108,10 +108,10 @@ export class AddDialog {
     this.list.replaceChildren(...entries);
     this.list.role = entries.length > 0 ? "listbox" : "group"; // a listbox without options is none
     if (entries.length === 0) this.list.append(h("p", { class: "empty" }, this.explainEmptyList()));
-    const again = this.choices.find((choice) => choice.cls === previousChoice?.cls && choice.topic === previousChoice.topic);
-    this.choose(again ?? (query === "" ? null : (this.choices[0] ?? null)));
+    const sameChoice = this.choices.find((choice) => choice.cls === previousChoice?.cls && choice.topic === previousChoice.topic);
+    this.choose(sameChoice ?? (query === "" ? null : (this.choices[0] ?? null)));
     const first = this.choices[0];
-    if (first && !again) first.element.tabIndex = 0;
+    if (first && !sameChoice) first.element.tabIndex = 0;
   }
 
   private explainEmptyList(): string {

@@ -27,8 +27,8 @@ export class SweepBar {
     ]);
     fillSelect(this.speedSelect, texts.speed, SPEEDS.map((speed) => [String(speed), `${speed}×`]));
     this.speedSelect.value = "1";
-    this.orderSelect.addEventListener("change", () => this.sweep && this.begin());
-    this.startButton = button(texts.start, () => (this.sweep ? this.end() : this.begin()), "tool bare", icon("play"));
+    this.orderSelect.addEventListener("change", () => this.sweep && this.startSweep());
+    this.startButton = button(texts.start, () => (this.sweep ? this.end() : this.startSweep()), "tool bare", icon("play"));
     const row = h(
       "div",
       { class: "bar-row" },
@@ -41,7 +41,7 @@ export class SweepBar {
     joints.controlsChanged.on(() => this.end());
   }
 
-  private begin(): void {
+  private startSweep(): void {
     this.sweep = new Sweep(this.joints.controls ?? [], this.joints.positions, this.orderSelect.value as SweepOrder);
     this.seconds = 0;
     this.sentPositions = this.joints.positions;

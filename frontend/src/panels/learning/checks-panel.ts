@@ -25,7 +25,7 @@ export class ChecksPanel implements Panel {
     const texts = strings.learning;
     const checkButton = button(`${texts.checkHint} (${formatShortcut(SHORTCUTS.checkStep)})`, () => state.check(), "tool framed", texts.check);
     this.nextButton = button(`${texts.nextHint} (${formatShortcut(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed primary", texts.nextStep);
-    this.offerBox = h("div", { class: "checks-offer" }, this.offerText, button(texts.catchUpHint, () => state.askCatchUp(), "tool framed", texts.catchUp));
+    this.offerBox = h("div", { class: "checks-offer" }, this.offerText, button(texts.catchUpHint, () => state.requestCatchUp(), "tool framed", texts.catchUp));
     this.content = h(
       "div",
       { class: "checks" },

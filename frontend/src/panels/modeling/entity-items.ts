@@ -21,7 +21,7 @@ export function createEntityItems(modeling: Modeling, angles: AngleUnits): TreeI
   const areModels = entities.every(({ kind }) => kind === "model");
   const haveSameShape = areModels && first.shape !== null && entities.every(({ shape }) => shape === first.shape);
   return [
-    entities.length === 1 ? createNameItem(first, modeling) : createNote("count", texts.several(entities.length)),
+    entities.length === 1 ? createNameItem(first, modeling) : createNote("count", texts.selectedCount(entities.length)),
     createGroup("position", texts.position, createPoseItems(entities, 0, ["X", "Y", "Z"], 1, edit)),
     createGroup("rotation", `${texts.rotation}, ${angles.current === "deg" ? "°" : "rad"}`, createPoseItems(entities, ROLL, ["Roll", "Pitch", "Yaw"], angles.scale("revolute"), edit)),
     ...(haveSameShape ? [createGroup("size", texts.size, createSizeItems(entities, edit))] : []),

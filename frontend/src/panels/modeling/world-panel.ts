@@ -32,8 +32,8 @@ export class WorldPanel implements Panel {
     commands: WorldCommands,
   ) {
     const texts = strings.modeling;
-    const beginButton = button(texts.begin, () => modeling.setActive(true), "tool framed", texts.start);
-    this.inactiveView = h("div", { class: "world-off" }, h("p", { class: "hint" }, texts.off), beginButton);
+    const startButton = button(texts.startEditing, () => modeling.setActive(true), "tool framed", texts.start);
+    this.inactiveView = h("div", { class: "world-off" }, h("p", { class: "hint" }, texts.inactiveHint), startButton);
     const hasSelection = (): boolean => modeling.selectedNames.length > 0;
     this.actions = [
       [createAction(texts.duplicate, WORLD_KEYS.duplicate, "duplicate", () => modeling.duplicate()), hasSelection],

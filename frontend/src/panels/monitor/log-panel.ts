@@ -98,8 +98,8 @@ export class LogPanel implements Panel {
     const texts = strings.monitor.log;
     const { lines, shownLines, missedCount, isPaused } = this.state;
     this.list.show(shownLines);
-    const counted = texts.shown(shownLines.length, lines.length);
-    this.count.textContent = missedCount > 0 ? `${counted}, ${texts.missed(missedCount)}` : counted;
+    const countText = texts.shown(shownLines.length, lines.length);
+    this.count.textContent = missedCount > 0 ? `${countText}, ${texts.missed(missedCount)}` : countText;
     this.pause.replaceChildren(icon(isPaused ? "play" : "pause"), isPaused ? strings.monitor.resume : strings.monitor.pause);
     this.pause.classList.toggle("on", isPaused);
     const { nodes } = this.state;

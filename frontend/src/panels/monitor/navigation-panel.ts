@@ -30,14 +30,14 @@ export class NavigationPanel implements Panel {
       taken: createValue(),
       recoveries: createValue(),
     };
-    const make = (command: NavigationCommand): HTMLButtonElement =>
+    const createCommandButton = (command: NavigationCommand): HTMLButtonElement =>
       button(texts.hints[command], () => state.sendCommand(command), "tool", texts.commands[command]);
     this.buttons = {
-      startup: make("startup"),
-      pause: make("pause"),
-      resume: make("resume"),
-      reset: make("reset"),
-      cancel: make("cancel"),
+      startup: createCommandButton("startup"),
+      pause: createCommandButton("pause"),
+      resume: createCommandButton("resume"),
+      reset: createCommandButton("reset"),
+      cancel: createCommandButton("cancel"),
     };
     this.element = h(
       "div",
@@ -58,21 +58,21 @@ export class NavigationPanel implements Panel {
   private show(): void {
     const texts = strings.monitor.navigation;
     const { lastState } = this.state;
-    const put = (row: Row, text: string, kind = ""): void => {
+    const setRow = (row: Row, text: string, kind = ""): void => {
       this.values[row].textContent = text;
       this.values[row].dataset["state"] = kind;
     };
     const formatSeconds = (value: number | null | undefined): string => (value === null || value === undefined ? texts.none : texts.duration(value));
     for (const manager of ["navigation", "localization"] as const) {
       const state = lastState?.[manager] ?? "unknown";
-      put(manager, texts.states[state], state);
+      setRow(manager, texts.states[state], state);
     }
     const goal = lastState?.goal ?? "none";
-    put("goal", texts.goals[goal], goal);
-    put("eta", formatSeconds(lastState?.eta));
-    put("taken", formatSeconds(lastState?.taken));
-    put("distance", lastState?.distance === null || lastState?.distance === undefined ? texts.none : `${lastState.distance.toFixed(2)} m`);
-    put("recoveries", lastState?.recoveries === null || lastState?.recoveries === undefined ? texts.none : String(lastState.recoveries));
+    setRow("goal", texts.goals[goal], goal);
+    setRow("eta", formatSeconds(lastState?.eta));
+    setRow("taken", formatSeconds(lastState?.elapsed));
+    setRow("distance", lastState?.distance === null || lastState?.distance === undefined ? texts.none : `${lastState.distance.toFixed(2)} m`);
+    setRow("recoveries", lastState?.recoveries === null || lastState?.recoveries === undefined ? texts.none : String(lastState.recoveries));
     this.problem.textContent = lastState?.problem ?? "";
     this.enable();
   }

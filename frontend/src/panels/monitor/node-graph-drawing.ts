@@ -11,7 +11,7 @@ const TEXT_PX = 12;
 /** The graph as SVG; it can be dragged, zoomed with the wheel, and one vertex chosen by mouse or keyboard. */
 export class NodeGraphDrawing {
   readonly element = h("div", { class: "graph-drawing", tabIndex: 0, role: "group" });
-  private readonly scene = make("g", {});
+  private readonly scene = createSvgElement("g", {});
   private readonly measure = document.createElement("canvas").getContext("2d");
   private graph: DrawnGraph = { vertices: [], edges: [] };
   private size: readonly [number, number] = [1, 1];
@@ -29,7 +29,7 @@ export class NodeGraphDrawing {
     private readonly onChosen: (vertex: GraphVertex | null) => void,
   ) {
     this.element.setAttribute("aria-label", label);
-    const svg = make("svg", {});
+    const svg = createSvgElement("svg", {});
     svg.append(createArrowHeads(), this.scene);
     this.element.append(svg);
     this.pan = new PanZoom(this.element, (x, y, scale) => this.onMoved(x, y, scale), () => this.fit());
@@ -42,7 +42,7 @@ export class NodeGraphDrawing {
     }).observe(this.element);
   }
 
-  /** Draws a graph; a view that the user moved stays. */
+  /** Draws a graph; keeps the view if the user has moved it. */
   show(graph: DrawnGraph): void {
     this.graph = graph;
     if (this.measure) this.measure.font = `12px ${getComputedStyle(document.body).fontFamily}`;
@@ -98,7 +98,7 @@ export class NodeGraphDrawing {
   }
 
   private drawBox(box: PlacedBox, vertex: GraphVertex | undefined): SVGElement {
-    const shape = make("g", {
+    const shape = createSvgElement("g", {
       class: "vertex",
       "data-kind": vertex?.kind ?? "node",
       transform: `translate(${box.x - box.width / 2} ${box.y - box.height / 2})`,
@@ -106,10 +106,10 @@ export class NodeGraphDrawing {
       role: "button",
       "data-id": box.id,
     });
-    const round = vertex?.kind === "topic" || vertex?.kind === "action" ? "3" : String(box.height / 2);
-    const text = make("text", { x: String(box.width / 2), y: String(box.height / 2), dy: "0.34em" });
+    const cornerRadius = vertex?.kind === "topic" || vertex?.kind === "action" ? "3" : String(box.height / 2);
+    const text = createSvgElement("text", { x: String(box.width / 2), y: String(box.height / 2), dy: "0.34em" });
     text.textContent = labelOf(vertex);
-    shape.append(make("rect", { width: String(box.width), height: String(box.height), rx: round }), text);
+    shape.append(createSvgElement("rect", { width: String(box.width), height: String(box.height), rx: cornerRadius }), text);
     shape.addEventListener("keydown", (event) => {
       if (event.key !== "Enter" && event.key !== " ") return;
       event.preventDefault();
@@ -155,9 +155,9 @@ function drawRoute({ source, target, points }: Route, topics: string): SVGElemen
     path += `C${x + bend} ${y} ${nextX - bend} ${nextY} ${nextX} ${nextY}`;
     [x, y] = [nextX, nextY];
   }
-  const edge = make("path", { class: "edge", d: path, "data-from": source, "data-to": target, "marker-end": "url(#graph-arrow)" });
+  const edge = createSvgElement("path", { class: "edge", d: path, "data-from": source, "data-to": target, "marker-end": "url(#graph-arrow)" });
   if (topics !== "") {
-    const title = make("title", {});
+    const title = createSvgElement("title", {});
     title.textContent = topics;
     edge.append(title);
   }
@@ -165,7 +165,7 @@ function drawRoute({ source, target, points }: Route, topics: string): SVGElemen
 }
 
 function createArrowHeads(): SVGElement {
-  const marker = make("marker", {
+  const marker = createSvgElement("marker", {
     id: "graph-arrow",
     viewBox: "0 0 8 8",
     refX: "7.5",
@@ -174,13 +174,13 @@ function createArrowHeads(): SVGElement {
     markerHeight: "7",
     orient: "auto",
   });
-  marker.append(make("path", { d: "M0 1L8 4L0 7z", class: "arrow-head" }));
-  const defs = make("defs", {});
+  marker.append(createSvgElement("path", { d: "M0 1L8 4L0 7z", class: "arrow-head" }));
+  const defs = createSvgElement("defs", {});
   defs.append(marker);
   return defs;
 }
 
-function make<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Readonly<Record<string, string>>): SVGElementTagNameMap[K] {
+function createSvgElement<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Readonly<Record<string, string>>): SVGElementTagNameMap[K] {
   const element = document.createElementNS(SVG, tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
   return element;

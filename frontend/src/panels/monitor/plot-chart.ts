@@ -157,8 +157,8 @@ function rangeOf([, ...columns]: ReturnType<typeof tabulatePlot>): [number, numb
     }
   }
   if (low > high) return [-1, 1];
-  const room = high > low ? (high - low) * 0.06 : Math.max(1e-3, Math.abs(low) * 0.1);
-  return [low - room, high + room];
+  const margin = high > low ? (high - low) * 0.06 : Math.max(1e-3, Math.abs(low) * 0.1);
+  return [low - margin, high + margin];
 }
 
 /** Returns the label of a time on the axis: the time of day, or seconds if it is not a calendar time. */

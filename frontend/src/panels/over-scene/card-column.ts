@@ -5,11 +5,11 @@ export interface CoveredScene {
   /** Returns the width covered at the right, pixels. */
   getCoveredWidth: () => number;
   /** The rightmost pixel column that robots cover, from the left edge. */
-  readonly robotsReach: number;
-  /** Moves the focal point to the center of the uncovered part. */
-  makeRoom(): void;
-  /** Moves the visible content below an element of this height (pixels) that covers the upper edge. */
-  makeRoomAbove(height: number): void;
+  readonly robotsRightEdge: number;
+  /** Shifts the view left, so that the focal point is in the center of the part beside the cards. */
+  avoidCards(): void;
+  /** Shifts the view down so that a notice of this height (pixels) at the upper edge does not cover the robots. */
+  avoidNotices(height: number): void;
 }
 
 /** The cards over the right side of the scene, one below the other, which share its height. */
@@ -24,11 +24,11 @@ export class CardColumn {
 
   /** Whether a card that opens would cover a robot. */
   get isOverRobots(): boolean {
-    return this.scene !== null && this.scene.robotsReach > this.left;
+    return this.scene !== null && this.scene.robotsRightEdge > this.left;
   }
 
   /** Updates the scene after the user opened or closed a card. */
-  readonly onCardToggled = (): void => this.scene?.makeRoom();
+  readonly onCardToggled = (): void => this.scene?.avoidCards();
 
   private get coveredWidth(): number {
     const cards = [...this.element.querySelectorAll<HTMLElement>(".inspect-card, .selection-card:not(.folded)")];

@@ -77,6 +77,6 @@ export class ScenePanel implements Panel {
   /** Connects the cards with the scene below them. */
   connectScene(scene: CoveredScene): void {
     this.column.connectScene(scene);
-    new ResizeObserver(() => scene.makeRoomAbove(this.notices.offsetHeight > 0 ? this.notices.offsetTop + this.notices.offsetHeight : 0)).observe(this.notices);
+    new ResizeObserver(() => scene.avoidNotices(this.notices.offsetHeight > 0 ? this.notices.offsetTop + this.notices.offsetHeight : 0)).observe(this.notices);
   }
 }

@@ -47,7 +47,7 @@ export class SelectionCard {
       createPlace(link, (file, line) => this.session.description.placeRequested.emit({ file, line })),
       ...createTrail(link),
     );
-    if (link.place) this.session.connection.send({ type: "ask_provenance", display: selectedLink.display, link: link.name });
+    if (link.place) this.session.connection.send({ type: "request_provenance", display: selectedLink.display, link: link.name });
   }
 
   /** Returns the button that folds the card to the link's name, or unfolds it. */

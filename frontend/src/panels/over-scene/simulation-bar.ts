@@ -31,7 +31,7 @@ export class SimulationBar {
     this.stepButton = button(texts.step, () => simulation.sendControl("step"), "scene-tool small", icon("step"));
     const resetButton = button(texts.reset, () => simulation.sendControl("reset"), "scene-tool small", icon("reset"));
     const addButton = button(texts.spawn, () => this.askSpawn(simulation.findFreePlace()), "scene-tool small", icon("plus"));
-    this.modelButton = button(strings.modeling.begin, () => modeling.setActive(!modeling.isActive), "scene-tool small", icon("build"));
+    this.modelButton = button(strings.modeling.startEditing, () => modeling.setActive(!modeling.isActive), "scene-tool small", icon("build"));
     const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: texts.label } }, this.playButton, this.stepButton, resetButton, addButton, this.modelButton, this.factor, this.time);
     this.element = h("div", { class: "simulation-bar" }, bar, new ModelingBar(modeling, commands).element, this.notice);
     simulation.changed.on(() => this.show());
@@ -59,7 +59,7 @@ export class SimulationBar {
 
   private showModeling(): void {
     const { isAvailable, isActive } = this.modeling;
-    const label = isActive ? strings.modeling.end : strings.modeling.begin;
+    const label = isActive ? strings.modeling.stopEditing : strings.modeling.startEditing;
     this.modelButton.hidden = !isAvailable;
     this.modelButton.title = label;
     this.modelButton.setAttribute("aria-label", label);

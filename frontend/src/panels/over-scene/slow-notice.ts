@@ -33,7 +33,7 @@ export class SlowNotice {
     const texts = strings.sharing;
     const cause = chooseCause(slowness.cause, this.slowPageNotice === "now", reducedDisplays.length);
     this.element.hidden = reducedDisplays.length === 0 && this.slowPageNotice !== "now";
-    const lines = reducedDisplays.map((reduced) => h("div", {}, h("b", {}, this.nameOf(reduced)), ` ${formatReduction(reduced)}`));
+    const lines = reducedDisplays.map((display) => h("div", {}, h("b", {}, this.nameOf(display)), ` ${formatReduction(display)}`));
     if (this.slowPageNotice === "now" && drawingPace.software !== null) lines.push(h("div", {}, texts.software(drawingPace.software)));
     if (this.slowPageNotice === "now" && this.isLitAutomatically) lines.push(h("div", {}, texts.plainLight));
     this.element.replaceChildren(h("strong", {}, texts.slow[cause]), h("div", {}, texts.slowHints[cause]), ...lines);

@@ -35,18 +35,18 @@ export class CodeActions {
   /**
    * @param client - the connection to the language server.
    * @param findingsOf - returns the findings of a file by its URI.
-   * @param tell - called with messages for the user.
+   * @param showMessage - called with messages for the user.
    */
   constructor(
     private readonly client: LSPClient,
     private readonly documents: Documents,
     private readonly findingsOf: (uri: string) => readonly ServerFinding[],
-    private readonly tell: (message: string) => void,
+    private readonly showMessage: (message: string) => void,
   ) {}
 
   /** Opens the menu for the selection, or for another range. */
   open(view: EditorView, range: { from: number; to: number } = view.state.selection.main): boolean {
-    void this.list(view, range).catch((error: unknown) => this.tell(messageOf(error)));
+    void this.list(view, range).catch((error: unknown) => this.showMessage(messageOf(error)));
     return true;
   }
 
@@ -63,7 +63,7 @@ export class CodeActions {
     if (shownDocument !== this.documents.shownDocument) return;
     const color = colorChoice(view, from);
     if (actions.length === 0 && color === null) {
-      this.tell(strings.sourceEditor.noActions);
+      this.showMessage(strings.sourceEditor.noActions);
       return;
     }
     const anchor = view.coordsAtPos(Math.min(from, view.state.doc.length)) ?? view.dom.getBoundingClientRect();
@@ -81,7 +81,7 @@ export class CodeActions {
         label: action.title,
         hint: action.title,
         hasLineAbove: previous !== undefined && groupOf(previous) !== groupOf(action),
-        run: () => void this.run(action).then(this.tell, (error: unknown) => this.tell(messageOf(error))),
+        run: () => void this.run(action).then(this.showMessage, (error: unknown) => this.showMessage(messageOf(error))),
       };
     });
   }

@@ -30,7 +30,7 @@ export interface MergedChange {
  * user must choose.
  */
 export function mergeChanges(disk: ChangeSet, unsavedChanges: ChangeSet): MergedChange | null {
-  const touched: boolean[] = [];
-  unsavedChanges.iterChangedRanges((start, end) => void touched.push(disk.touchesRange(start, end) !== false));
-  return touched.includes(true) ? null : { edit: disk.map(unsavedChanges), unsavedChanges: unsavedChanges.map(disk, true) };
+  const isTouched: boolean[] = [];
+  unsavedChanges.iterChangedRanges((start, end) => void isTouched.push(disk.touchesRange(start, end) !== false));
+  return isTouched.includes(true) ? null : { edit: disk.map(unsavedChanges), unsavedChanges: unsavedChanges.map(disk, true) };
 }

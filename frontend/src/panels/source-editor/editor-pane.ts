@@ -112,7 +112,7 @@ export class EditorPane {
   }
 
   inspect(): object | null {
-    return this.isShown ? (this.editor?.inspect() ?? null) : { whyNot: this.notice.hidden ? "" : this.notice.textContent };
+    return this.isShown ? (this.editor?.inspect() ?? null) : { unavailableReason: this.notice.hidden ? "" : this.notice.textContent };
   }
 
   private mark(): void {

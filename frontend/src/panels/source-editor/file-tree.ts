@@ -86,7 +86,7 @@ export class FileTree {
   }
 
   private request(path: string): void {
-    this.connection.send({ type: "ask_source_folder", path });
+    this.connection.send({ type: "request_source_folder", path });
   }
 
   private expandTo(path: string): void {

@@ -63,7 +63,7 @@ class DocumentFile implements WorkspaceFile {
   doc: Text;
   readonly languageId: string;
   /** The changes that the server does not know yet. */
-  unsynced: ChangeSet;
+  unsyncedChanges: ChangeSet;
 
   constructor(
     readonly document: SourceDocument,
@@ -71,7 +71,7 @@ class DocumentFile implements WorkspaceFile {
   ) {
     this.doc = document.state.doc;
     this.languageId = languageOf(document.path);
-    this.unsynced = ChangeSet.empty(this.doc.length);
+    this.unsyncedChanges = ChangeSet.empty(this.doc.length);
   }
 
   get uri(): string {
@@ -102,15 +102,15 @@ class DocumentWorkspace extends Workspace {
 
   record(document: SourceDocument, changes: ChangeSet): void {
     const file = this.files.find((candidate) => candidate.document === document);
-    if (file) file.unsynced = file.unsynced.compose(changes);
+    if (file) file.unsyncedChanges = file.unsyncedChanges.compose(changes);
   }
 
   override syncFiles(): { file: DocumentFile; prevDoc: Text; changes: ChangeSet }[] {
-    const changedFiles = this.files.filter(({ unsynced }) => !unsynced.empty);
+    const changedFiles = this.files.filter(({ unsyncedChanges }) => !unsyncedChanges.empty);
     return changedFiles.map((file) => {
-      const result = { file, prevDoc: file.doc, changes: file.unsynced };
+      const result = { file, prevDoc: file.doc, changes: file.unsyncedChanges };
       file.doc = file.document.state.doc;
-      file.unsynced = ChangeSet.empty(file.doc.length);
+      file.unsyncedChanges = ChangeSet.empty(file.doc.length);
       file.version += 1;
       const view = file.getView();
       if (view) LSPPlugin.get(view)?.clear();
@@ -183,7 +183,7 @@ export class LanguageService {
     this.client = new PatientClient(this.config);
     if (workspace === undefined) throw new Error("the client has made no workspace");
     this.workspace = workspace;
-    connection.on("language_server_answer", ({ content }) => this.receive(content));
+    connection.on("language_server_output", ({ content }) => this.receive(content));
   }
 
   /** Begins a session with a new language server. */
@@ -193,11 +193,11 @@ export class LanguageService {
     this.config.rootUri = rootUri;
     for (const file of this.workspace.files) {
       file.doc = file.document.state.doc;
-      file.unsynced = ChangeSet.empty(file.doc.length);
+      file.unsyncedChanges = ChangeSet.empty(file.doc.length);
     }
     client.connect({
       // Without the text of such a file, the server reads it from the disk.
-      send: (content) => isWithinMessageSize(content) && connection.send({ type: "ask_language_server", content }),
+      send: (content) => isWithinMessageSize(content) && connection.send({ type: "language_server_input", content }),
       subscribe: (handler) => (this.receive = handler),
       unsubscribe: () => (this.receive = () => undefined),
     });

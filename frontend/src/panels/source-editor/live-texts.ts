@@ -45,11 +45,11 @@ export class LiveTexts {
     this.timer = setTimeout(() => this.send(), PAUSE_MS);
   }
 
-  /** Sends all unsaved texts to a program that has none of them. */
+  /** Sends all unsaved texts to a server that has none of them, because it was restarted. */
   restart(): void {
     this.newestRequests.clear();
     this.outcomes.clear();
-    for (const document of this.documents.open) document.described = null;
+    for (const document of this.documents.open) document.describedText = null;
     this.send();
   }
 
@@ -86,7 +86,7 @@ export class LiveTexts {
     if (newestRequest.isRemoval) {
       this.outcomes.delete(path);
       this.newestRequests.delete(path);
-      document.described = null;
+      document.describedText = null;
     } else this.outcomes.set(path, outcome);
     this.onOutcome();
   }

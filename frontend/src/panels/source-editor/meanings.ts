@@ -142,9 +142,9 @@ class Meanings {
     const textDocument = { uri: this.uri };
     const request = { textDocument, range: { start: placeOf(doc, from), end: placeOf(doc, to) } };
     const [hints, tokens, colors] = await Promise.all([
-      this.ask<Hint[]>("textDocument/inlayHint", request),
-      this.ask<{ data: number[] }>("textDocument/semanticTokens/range", request),
-      this.ask<WrittenColor[]>("textDocument/documentColor", { textDocument }),
+      this.sendRequest<Hint[]>("textDocument/inlayHint", request),
+      this.sendRequest<{ data: number[] }>("textDocument/semanticTokens/range", request),
+      this.sendRequest<WrittenColor[]>("textDocument/documentColor", { textDocument }),
     ]);
     if (this.isClosed || view.state.doc !== doc) return;
     this.colors = colors ?? [];
@@ -165,7 +165,7 @@ class Meanings {
   }
 
   /** Returns the answer of the server; null if it has none because the text has changed. */
-  private ask<Result>(method: string, request: object): Promise<Result | null> {
+  private sendRequest<Result>(method: string, request: object): Promise<Result | null> {
     return this.client.request<object, Result | null>(method, request).catch(() => null);
   }
 }

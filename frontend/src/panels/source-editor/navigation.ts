@@ -31,23 +31,23 @@ export class Navigation {
   private listedPlaces: Bookmark[] = [];
   private isReturning = false;
 
-  /** @param tell - called with messages for the user. */
+  /** @param showMessage - called with messages for the user. */
   constructor(
     private readonly client: LSPClient,
     private readonly documents: Documents,
     private readonly list: PlaceList,
-    private readonly tell: (message: string) => void,
+    private readonly showMessage: (message: string) => void,
   ) {}
 
   /** Goes to the definition of the name at a position; lists the definitions if there are several. */
   goToDefinition(view: EditorView, position = view.state.selection.main.head): boolean {
     const texts = strings.sourceEditor;
-    void this.ask(view, "textDocument/definition", position, {}).then(async (locations) => {
+    void this.requestLocations(view, "textDocument/definition", position, {}).then(async (locations) => {
       const [firstLocation, ...otherLocations] = locations;
-      if (!firstLocation) this.tell(texts.noDefinition);
+      if (!firstLocation) this.showMessage(texts.noDefinition);
       else if (otherLocations.length === 0) await this.open(firstLocation);
       else await this.show(texts.definitions(locations.length), locations);
-    }).catch((error: unknown) => this.tell(messageOf(error)));
+    }).catch((error: unknown) => this.showMessage(messageOf(error)));
     return true;
   }
 
@@ -55,10 +55,10 @@ export class Navigation {
   listReferences(view: EditorView): boolean {
     const texts = strings.sourceEditor;
     const { head } = view.state.selection.main;
-    void this.ask(view, "textDocument/references", head, { context: { includeDeclaration: true } }).then(async (locations) => {
-      if (locations.length === 0) this.tell(texts.noReferences);
+    void this.requestLocations(view, "textDocument/references", head, { context: { includeDeclaration: true } }).then(async (locations) => {
+      if (locations.length === 0) this.showMessage(texts.noReferences);
       else await this.show(texts.references(locations.length), locations);
-    }).catch((error: unknown) => this.tell(messageOf(error)));
+    }).catch((error: unknown) => this.showMessage(messageOf(error)));
     return true;
   }
 
@@ -66,11 +66,11 @@ export class Navigation {
   async open({ uri, range }: ServerLocation): Promise<void> {
     const path = pathOf(uri);
     const document = path === null ? null : await this.documents.load(path);
-    if (document) await this.go(document, offsetOf(document.state.doc, range.start));
+    if (document) await this.jumpTo(document, offsetOf(document.state.doc, range.start));
   }
 
   /** Stores the place of the cursor, to which `goBack` returns. */
-  leave(): void {
+  recordPosition(): void {
     const bookmark = this.createBookmark();
     const lastBookmark = this.history.at(-1);
     if (!bookmark || this.isReturning || (lastBookmark?.document === bookmark.document && lastBookmark.position === bookmark.position)) return;
@@ -94,8 +94,8 @@ export class Navigation {
     }
   }
 
-  private async go(document: SourceDocument, position: number): Promise<void> {
-    this.leave();
+  private async jumpTo(document: SourceDocument, position: number): Promise<void> {
+    this.recordPosition();
     if (!(await this.documents.show(document.path))) return;
     const { view } = this.documents;
     const anchor = Math.min(position, view.state.doc.length);
@@ -109,7 +109,7 @@ export class Navigation {
     if (!target) return true;
     if (bookmark) destination.push(bookmark);
     this.isReturning = true;
-    void this.go(target.document, target.position).finally(() => (this.isReturning = false));
+    void this.jumpTo(target.document, target.position).finally(() => (this.isReturning = false));
     return true;
   }
 
@@ -118,7 +118,7 @@ export class Navigation {
     return shownDocument && { document: shownDocument, position: view.state.selection.main.head };
   }
 
-  private async ask(view: EditorView, method: string, position: number, parameters: object): Promise<ServerLocation[]> {
+  private async requestLocations(view: EditorView, method: string, position: number, parameters: object): Promise<ServerLocation[]> {
     const { shownDocument } = this.documents;
     if (!shownDocument) return [];
     this.client.sync();
@@ -144,7 +144,7 @@ export class Navigation {
     const { doc } = document.state;
     const bookmark = { document, position: offsetOf(doc, range.start) };
     this.listedPlaces.push(bookmark);
-    return { ...excerptOf(document, range), open: () => void this.go(document, bookmark.position) };
+    return { ...excerptOf(document, range), open: () => void this.jumpTo(document, bookmark.position) };
   }
 }
 

@@ -22,10 +22,10 @@ const MAX_LINES = 400;
 export function confirmRename(name: string, newName: string, files: readonly RenamedFile[], remarks: readonly string[]): Promise<boolean> {
   const texts = strings.sourceEditor;
   const count = files.reduce((sum, { edits }) => sum + edits.length, 0);
-  let left = MAX_LINES;
+  let remainingLines = MAX_LINES;
   const lists = files.flatMap(({ document, edits }) => {
-    const shownEdits = edits.slice(0, left);
-    left -= shownEdits.length;
+    const shownEdits = edits.slice(0, remainingLines);
+    remainingLines -= shownEdits.length;
     return shownEdits.length === 0 ? [] : [createFileList(document, shownEdits)];
   });
   const region = h("div", { class: "rename-lines", role: "group", tabIndex: 0, aria: { label: texts.changedLines } }, ...lists);

@@ -13,8 +13,8 @@ type RenamedPlace = ServerRange | { readonly range: ServerRange; readonly placeh
  * Asks for a new name for the symbol at the cursor, shows what changes, and renames the symbol in all files, which are
  * not saved yet.
  */
-export function renameAtCursor(view: EditorView, service: LanguageService, documents: Documents, tell: (message: string) => void): boolean {
-  void rename(view, service, documents).then(tell, (error: unknown) => tell(messageOf(error)));
+export function renameAtCursor(view: EditorView, service: LanguageService, documents: Documents, showMessage: (message: string) => void): boolean {
+  void rename(view, service, documents).then(showMessage, (error: unknown) => showMessage(messageOf(error)));
   return true;
 }
 

@@ -40,7 +40,7 @@ export class SourceDocument {
   /** The position of the first visible line when the document was last shown. */
   scrolledTo = 0;
   /** The text that the shown description was read from; null for the text on the disk. */
-  described: FormerText | null = null;
+  describedText: FormerText | null = null;
   private diskText: Text;
   private unsavedChanges: ChangeSet;
   /** The texts that were sent to be shown in the scene, by their numbers, until the scene shows a newer one. */
@@ -78,16 +78,16 @@ export class SourceDocument {
 
   /** Returns the position where a line of the shown description is now; 1-based. */
   currentLineOf(line: number): number {
-    const text = this.described?.text ?? this.diskText;
+    const text = this.describedText?.text ?? this.diskText;
     const position = text.line(Math.max(1, Math.min(line, text.lines))).from;
-    return this.described ? this.described.placeNow(position) : this.unsavedChanges.mapPos(position);
+    return this.describedText ? this.describedText.placeNow(position) : this.unsavedChanges.mapPos(position);
   }
 
   /** Returns the line of the shown description that a position was on; 1-based. */
   describedLineOf(position: number): number {
-    const text = this.described?.text ?? this.diskText;
-    const then = this.described ? this.described.placeThen(position) : this.unsavedChanges.invertedDesc.mapPos(position);
-    return text.lineAt(Math.min(then, text.length)).number;
+    const text = this.describedText?.text ?? this.diskText;
+    const formerPosition = this.describedText ? this.describedText.placeThen(position) : this.unsavedChanges.invertedDesc.mapPos(position);
+    return text.lineAt(Math.min(formerPosition, text.length)).number;
   }
 
   /** Records that the text is sent to be shown in the scene. */
@@ -98,7 +98,7 @@ export class SourceDocument {
   /** Records that the scene shows a text, or cannot show it. */
   endShowing(number: number, isShown: boolean): void {
     if (!isShown) return;
-    this.described = this.sentTexts.get(number) ?? this.described;
+    this.describedText = this.sentTexts.get(number) ?? this.describedText;
     for (const older of this.sentTexts.keys()) if (older < number) this.sentTexts.delete(older);
   }
 
@@ -122,7 +122,7 @@ export class SourceDocument {
     const { changes } = transaction;
     this.unsavedChanges = transaction.annotation(fromDisk) ?? this.unsavedChanges.compose(changes);
     if (this.writing) this.writing.changes = this.writing.changes.compose(changes);
-    for (const formerText of new Set([...this.sentTexts.values(), ...(this.described ? [this.described] : [])])) formerText.changes = formerText.changes.compose(changes);
+    for (const formerText of new Set([...this.sentTexts.values(), ...(this.describedText ? [this.describedText] : [])])) formerText.changes = formerText.changes.compose(changes);
   }
 
   /**

@@ -67,11 +67,11 @@ export class SourceEditor implements Documents {
   ) {
     const texts = strings.sourceEditor;
     const { connection } = session;
-    const tell = (message: string): void => this.tell(message);
+    const showMessage = (message: string): void => this.showMessage(message);
     this.service = new LanguageService(connection, this);
-    this.service.message.on(tell);
-    this.actions = new CodeActions(this.service.client, this, (uri) => this.findingsByUri.get(uri) ?? [], tell);
-    this.navigation = new Navigation(this.service.client, this, this.places, tell);
+    this.service.message.on(showMessage);
+    this.actions = new CodeActions(this.service.client, this, (uri) => this.findingsByUri.get(uri) ?? [], showMessage);
+    this.navigation = new Navigation(this.service.client, this, this.places, showMessage);
     this.liveTexts = new LiveTexts(connection, this, () => this.changed.emit());
     this.save = button(texts.saveHint, () => this.saveAll(), "tool framed editor-save", icon("save"), texts.save);
     this.list = button(texts.findingsHint, () => openLintPanel(this.view), "tool framed", texts.findings(0));
@@ -101,7 +101,7 @@ export class SourceEditor implements Documents {
       onAdded: (document) => this.service.add(document),
       onWritten: (document, isOwn) => this.onWritten(document, isOwn),
       onCreated: () => this.tree.reload(),
-      tell,
+      tell: showMessage,
     });
     this.files.changed.on(() => this.changed.emit());
     this.changed.on(coalesce(() => this.refresh()));
@@ -183,7 +183,7 @@ export class SourceEditor implements Documents {
     void this.load(path).then((document) => {
       const spec = document?.onRobotEdited(text, base);
       if (document && spec) this.change(document, spec);
-      else this.tell(strings.sourceEditor.robotNotEdited);
+      else this.showMessage(strings.sourceEditor.robotNotEdited);
     });
   }
 
@@ -194,7 +194,7 @@ export class SourceEditor implements Documents {
     this.view.dispatch({ effects: [marksOf(document, highlights)] });
     if (line === null || line < 1) return;
     const currentLine = document.currentLineOf(line);
-    this.navigation.leave();
+    this.navigation.recordPosition();
     this.view.dispatch({ selection: { anchor: currentLine }, effects: EditorView.scrollIntoView(currentLine, { y: "center" }) });
   }
 
@@ -217,7 +217,7 @@ export class SourceEditor implements Documents {
       findings: this.findingsByUri.get(shownDocument?.uri ?? "")?.map(({ code }) => code) ?? [],
       unsaved: this.files.unsavedDocuments.map(({ path }) => path),
       isConflict: shownDocument?.conflict !== null && shownDocument !== null,
-      whyNot: this.unavailableReason,
+      unavailableReason: this.unavailableReason,
       cursor: view.state.doc.lineAt(view.state.selection.main.head).number,
       scene: this.liveTexts.outcome,
     };
@@ -235,7 +235,7 @@ export class SourceEditor implements Documents {
 
   private searchSymbols(): boolean {
     const search = new SymbolSearch(this.service.client, this, (location) => void this.navigation.open(location));
-    void search.open().catch((error: unknown) => this.tell(messageOf(error)));
+    void search.open().catch((error: unknown) => this.showMessage(messageOf(error)));
     return true;
   }
 
@@ -244,14 +244,14 @@ export class SourceEditor implements Documents {
       await this.create(path);
       await this.show(path);
     } catch (error) {
-      this.tell(messageOf(error));
+      this.showMessage(messageOf(error));
     }
   }
 
   private stateOf(path: string, uri: string, doc: string, isReadOnly: boolean): EditorState {
     const { navigation, actions } = this;
     const keys = keymap.of([
-      { key: "F2", run: (view) => renameAtCursor(view, this.service, this, (message) => this.tell(message)), preventDefault: true },
+      { key: "F2", run: (view) => renameAtCursor(view, this.service, this, (message) => this.showMessage(message)), preventDefault: true },
       { key: "F12", run: (view) => navigation.goToDefinition(view), preventDefault: true },
       { key: "Shift-F12", run: (view) => navigation.listReferences(view), preventDefault: true },
       { key: "Alt-ArrowLeft", mac: "Ctrl--", run: () => navigation.goBack(), preventDefault: true },
@@ -284,7 +284,7 @@ export class SourceEditor implements Documents {
 
   private displayDocument(document: SourceDocument): void {
     this.service.client.sync();
-    this.navigation.leave();
+    this.navigation.recordPosition();
     if (this.shownDocument) this.shownDocument.scrolledTo = this.view.elementAtHeight(this.view.scrollDOM.scrollTop).from;
     this.shownDocument = document;
     this.view.setState(document.state);
@@ -321,7 +321,7 @@ export class SourceEditor implements Documents {
     this.changed.emit();
   }
 
-  private tell(message: string): void {
+  private showMessage(message: string): void {
     if (message !== "") this.status.textContent = message;
   }
 
@@ -363,7 +363,7 @@ export class SourceEditor implements Documents {
       settle(null);
     };
     const keepButton = button(texts.keepMineHint, keep, "tool framed", texts.keepMine);
-    const theirs = button(texts.takeDiskHint, () => settle(document.takeDisk()), "tool framed", texts.takeDisk);
-    this.notice.replaceChildren(h("span", {}, texts.conflict), keepButton, theirs);
+    const diskButton = button(texts.takeDiskHint, () => settle(document.takeDisk()), "tool framed", texts.takeDisk);
+    this.notice.replaceChildren(h("span", {}, texts.conflict), keepButton, diskButton);
   }
 }

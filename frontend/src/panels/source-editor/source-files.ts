@@ -73,7 +73,7 @@ export class SourceFiles {
       if (callbacks) callbacks.push(resolve);
       else {
         this.waitingCallbacks.set(path, [resolve]);
-        if (this.isOpen) this.session.connection.send({ type: "ask_source_file", path });
+        if (this.isOpen) this.session.connection.send({ type: "request_source_file", path });
         else this.requestWorkspace();
       }
     });
@@ -118,7 +118,7 @@ export class SourceFiles {
 
   private listen(): void {
     const { connection, description } = this.session;
-    connection.on("editor_opened", ({ folder, uri, why_not }) => this.onOpened(folder, uri, why_not));
+    connection.on("editor_opened", ({ folder, uri, refusal_reason }) => this.onOpened(folder, uri, refusal_reason));
     connection.on("source_file", (message) => this.onFile(message));
     connection.on("source_file_written", (message) => this.onWritten(message));
     connection.on("hello", () => this.onProgramStarted());
@@ -156,39 +156,39 @@ export class SourceFiles {
     this.unavailableReason = unavailableReason;
     this.isOpen = unavailableReason === "";
     if (this.isOpen) {
-      for (const path of [...this.documents.keys(), ...this.waitingCallbacks.keys()]) this.session.connection.send({ type: "ask_source_file", path });
+      for (const path of [...this.documents.keys(), ...this.waitingCallbacks.keys()]) this.session.connection.send({ type: "request_source_file", path });
       this.host.onWorkspaceOpened(folder, uri);
     } else for (const path of [...this.waitingCallbacks.keys()]) this.settle(path, null);
     this.changed.emit();
   }
 
-  private onFile({ path, uri, version, text, why_not, is_new: isNew }: SourceFile): void {
+  private onFile({ path, uri, version, text, refusal_reason, is_new: isNew }: SourceFile): void {
     let document = this.documents.get(path);
     if (document?.isNew === true && isNew) document.version = version;
     else if (document) {
-      document.readOnlyReason = why_not;
+      document.readOnlyReason = refusal_reason;
       const spec = text === null ? null : document.onDiskChanged(text, version);
       if (spec) this.host.change(document, spec);
       this.host.onWritten(document, false);
     } else if (text !== null || (isNew && this.mayBeNew.has(path))) {
-      const readOnlyReason = isNew ? "" : why_not;
+      const readOnlyReason = isNew ? "" : refusal_reason;
       document = new SourceDocument(path, uri, version, this.host.stateOf(path, uri, text ?? "", readOnlyReason !== ""));
       [document.readOnlyReason, document.isNew] = [readOnlyReason, isNew];
       this.documents.set(path, document);
       this.host.onAdded(document);
-    } else this.host.tell(why_not);
+    } else this.host.tell(refusal_reason);
     this.settle(path, document ?? null);
     this.changed.emit();
   }
 
   private onWritten({ number, path, version, refusal }: SourceFileWritten): void {
-    const [document, created] = [this.writing.get(number), this.creating.get(number)];
+    const [document, createdFile] = [this.writing.get(number), this.creating.get(number)];
     this.writing.delete(number);
     this.creating.delete(number);
     const wasNew = document?.isNew === true;
     document?.endWriting(refusal === null ? version : null);
     const reason = refusal ? [refusal.message, ...refusal.hints].join(" ") : "";
-    if (refusal && created) created.reject(new Error(reason));
+    if (refusal && createdFile) createdFile.reject(new Error(reason));
     else if (refusal) this.host.tell(reason);
     else if (document) {
       this.host.onWritten(document, true);
@@ -196,7 +196,7 @@ export class SourceFiles {
       this.host.tell(strings.sourceEditor.saved(nameOf(path)));
     } else {
       this.host.onCreated();
-      created?.resolve();
+      createdFile?.resolve();
     }
     this.changed.emit();
   }

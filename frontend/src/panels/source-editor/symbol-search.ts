@@ -64,19 +64,19 @@ export class SymbolSearch {
     this.field.placeholder = texts.symbolName;
     this.list.id = this.id;
     this.list.setAttribute("aria-label", texts.symbols);
-    const go = (): undefined => {
+    const openSelected = (): undefined => {
       const symbol = this.listedSymbols[this.chosenIndex];
       if (symbol) open(symbol.location);
     };
     const scopes = h("div", { class: "symbol-scopes", role: "group", aria: { label: texts.symbolsIn } }, ...this.scopes);
-    this.dialog = new Dialog(texts.symbols, [scopes, this.field, this.list, this.status], [{ label: strings.shell.cancel }, { label: texts.goTo, run: go, isMain: true }], "symbol-search");
+    this.dialog = new Dialog(texts.symbols, [scopes, this.field, this.list, this.status], [{ label: strings.shell.cancel }, { label: texts.goTo, run: openSelected, isMain: true }], "symbol-search");
     this.field.addEventListener("input", () => this.searchLater());
     this.dialog.element.addEventListener("keydown", (event) => this.onKeyDown(event), true);
     this.list.addEventListener("click", ({ target }) => {
       const option = target instanceof Element ? target.closest<HTMLElement>("[role=option]") : null;
       if (!option) return;
       this.choose([...this.list.children].indexOf(option));
-      go();
+      openSelected();
       this.dialog.close();
     });
   }

@@ -26,28 +26,28 @@ export interface WorkspaceEdit {
   readonly documentChanges?: readonly (DocumentEdit | CreatedFile)[] | null;
 }
 
-/** The edits of each file by its URI, the files to create, and the versions of the edited texts as far as they are given. */
+/** The edits of each file by its URI, the files to create, and the versions of the edited texts that the edit states. */
 interface FileEdits {
   readonly edits: ReadonlyMap<string, readonly TextEdit[]>;
-  readonly created: readonly string[];
+  readonly createdFiles: readonly string[];
   readonly versions: ReadonlyMap<string, number>;
 }
 
 /** Returns the changes of an edit, by file. */
 export function groupByFile(edit: WorkspaceEdit): FileEdits {
   const edits = new Map<string, readonly TextEdit[]>(Object.entries(edit.changes ?? {}));
-  const created: string[] = [];
+  const createdFiles: string[] = [];
   const versions = new Map<string, number>();
   for (const change of edit.documentChanges ?? []) {
     if (change.kind === "create") {
-      created.push(change.uri);
+      createdFiles.push(change.uri);
       continue;
     }
     const { uri, version = null } = change.textDocument;
     edits.set(uri, [...(edits.get(uri) ?? []), ...change.edits]);
     if (version !== null) versions.set(uri, version);
   }
-  return { edits, created, versions };
+  return { edits, createdFiles, versions };
 }
 
 /**
@@ -58,14 +58,14 @@ export function groupByFile(edit: WorkspaceEdit): FileEdits {
  */
 export async function applyWorkspaceEdit(client: LSPClient, edit: WorkspaceEdit, documents: Documents, userEvent: string): Promise<SourceDocument[]> {
   const texts = strings.sourceEditor;
-  const { edits, created, versions } = groupByFile(edit);
+  const { edits, createdFiles, versions } = groupByFile(edit);
   client.sync();
   const isOutdated = (uri: string): boolean => versions.has(uri) && client.workspace.getFile(uri)?.version !== versions.get(uri);
   const previousTexts = new Map(documents.open.map((document) => [document.uri, document.state.doc]));
   const changedDocuments: [SourceDocument, readonly TextEdit[]][] = [];
-  for (const uri of new Set([...created, ...edits.keys()])) {
+  for (const uri of new Set([...createdFiles, ...edits.keys()])) {
     const path = pathOf(uri);
-    if (path !== null && created.includes(uri)) await documents.create(path);
+    if (path !== null && createdFiles.includes(uri)) await documents.create(path);
     const document = path === null ? null : await documents.load(path);
     if (!document || document.readOnlyReason !== "") throw new Error(texts.notEditable(path ?? uri, document?.readOnlyReason ?? ""));
     if (isOutdated(uri) || previousTexts.get(uri)?.eq(document.state.doc) === false) throw new Error(texts.changedMeanwhile);

@@ -14,7 +14,7 @@ const ON = "1";
 /** The size of a terminal until its place on the page is known. */
 const INITIAL_SIZE: TerminalSize = { columns: 80, rows: 24 };
 /** Browsers slow down hidden pages: after this time, the server no longer waits for the page to read the output. */
-const LEAVE_MS = 60_000;
+const HIDE_DELAY_MS = 60_000;
 
 /** The terminals of the page: a tab for each, and the screen of the chosen one. */
 export class TerminalDeck {
@@ -33,7 +33,7 @@ export class TerminalDeck {
   /** The terminal that was requested, or 0 for a new one, until the server has answered. */
   private requestedId: number | null = null;
   private lostInputId: number | null = null;
-  private leaveTimer: ReturnType<typeof setTimeout> | undefined;
+  private hideTimer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
     private readonly state: TerminalsState,
@@ -259,12 +259,12 @@ export class TerminalDeck {
 
   /** Leaves the terminals some time after the page was hidden, and shows the chosen one again when the page is shown. */
   private followPage(): void {
-    clearTimeout(this.leaveTimer);
+    clearTimeout(this.hideTimer);
     if (!document.hidden) this.update();
-    else this.leaveTimer = setTimeout(() => this.leaveAll(), LEAVE_MS);
+    else this.hideTimer = setTimeout(() => this.hideAll(), HIDE_DELAY_MS);
   }
 
-  private leaveAll(): void {
-    for (const { id, shown } of this.state.items) if (shown === "here") this.state.leave(id);
+  private hideAll(): void {
+    for (const { id, shown } of this.state.items) if (shown === "here") this.state.hide(id);
   }
 }

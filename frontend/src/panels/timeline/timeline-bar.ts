@@ -14,8 +14,8 @@ const FULL_SHARE = 0.9;
 
 /** Returns the tooltip of the history, with the way to extend it if its memory is full. */
 function formatExtentTip(extent: HistoryExtent): string {
-  const text = strings.timeline.kept(formatExtent(extent), (extent.most / 1e6).toFixed(0));
-  return extent.size < FULL_SHARE * extent.most ? text : `${text}\n${strings.timeline.more}`;
+  const text = strings.timeline.kept(formatExtent(extent), (extent.max_size / 1e6).toFixed(0));
+  return extent.size < FULL_SHARE * extent.max_size ? text : `${text}\n${strings.timeline.more}`;
 }
 
 /** The share of the timeline by which Page Up and Page Down move. */

@@ -133,20 +133,20 @@ export class WordsBox {
     const texts = strings.voice.words;
     const { words } = this;
     const sayButton = button(texts.say(name), () => undefined, "tool framed word-say", icon("microphone"));
-    const begin = (): void => void words.startTake(name);
+    const startTake = (): void => void words.startTake(name);
     const end = (): void => {
       if (words.recording === name) words.endTake();
     };
     sayButton.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;
       sayButton.setPointerCapture(event.pointerId);
-      begin();
+      startTake();
     });
     for (const eventType of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) sayButton.addEventListener(eventType, end);
     sayButton.addEventListener("keydown", (event) => {
       if (event.key !== " " && event.key !== "Enter") return;
       event.preventDefault();
-      if (!event.repeat) begin();
+      if (!event.repeat) startTake();
     });
     sayButton.addEventListener("keyup", (event) => {
       if (event.key === " " || event.key === "Enter") end();

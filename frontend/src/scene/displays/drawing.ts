@@ -46,7 +46,7 @@ export interface Drawing {
   /** Called before every frame while the display is enabled, to update the poses of its objects. */
   update(): void;
   /**
-   * Called before a coarse frame of a moving scene, to omit what is not noticed; with null after the motion, to draw
+   * Called before a coarse frame of a moving scene, to omit invisible details; with null after the motion, to draw
    * everything again.
    */
   simplify?(view: MovingView | null): void;

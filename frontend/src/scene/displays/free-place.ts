@@ -7,11 +7,11 @@ const STEP = 1;
 const FLOOR_HEIGHT = 0.05;
 /** The maximum number of steps in each direction. */
 const MAX_STEPS = 20;
-const SIDES = [[1, 0], [0, 1], [-1, 0], [0, -1]] as const;
+const DIRECTIONS = [[1, 0], [0, 1], [-1, 0], [0, -1]] as const;
 
 /**
  * Returns a place on the ground of a world with room for an object of one meter: the given place or, along an axis, the
- * nearest free one at an integer number of meters from it; next to all existing objects if none is free.
+ * nearest free one at an integer number of meters from it; next to all existing objects if no such place is free.
  *
  * @param boxes - the boxes around the existing objects, in the fixed frame, m.
  * @param world - the pose of the world in the fixed frame.
@@ -22,11 +22,11 @@ export function findFreePlace(boxes: readonly Box3[], world: Matrix4, center: Ve
   const { x: startX, y: startY } = center === null ? new Vector3() : center.clone().applyMatrix4(toWorld).round();
   const isFree = (position: readonly number[]): boolean => {
     const [x, y, z] = new Vector3().fromArray(position).applyMatrix4(world).toArray();
-    const room = new Box3(new Vector3(x - HALF_SIDE, y - HALF_SIDE, z + FLOOR_HEIGHT), new Vector3(x + HALF_SIDE, y + HALF_SIDE, z + 2 * HALF_SIDE));
-    return !boxes.some((box) => box.intersectsBox(room));
+    const freeBox = new Box3(new Vector3(x - HALF_SIDE, y - HALF_SIDE, z + FLOOR_HEIGHT), new Vector3(x + HALF_SIDE, y + HALF_SIDE, z + 2 * HALF_SIDE));
+    return !boxes.some((box) => box.intersectsBox(freeBox));
   };
   const places = [[startX, startY, 0]];
-  for (let step = 1; step <= MAX_STEPS; step++) for (const [x, y] of SIDES) places.push([startX + x * step * STEP, startY + y * step * STEP, 0]);
+  for (let step = 1; step <= MAX_STEPS; step++) for (const [x, y] of DIRECTIONS) places.push([startX + x * step * STEP, startY + y * step * STEP, 0]);
   const bounds = boxes.reduce((union, box) => union.union(box), new Box3()).applyMatrix4(toWorld);
   return places.find(isFree) ?? [Math.ceil(bounds.max.x + HALF_SIDE), 0, 0];
 }

@@ -41,7 +41,7 @@ export class MarkersDrawing implements Drawing {
   onDataChanged({ content }: DisplayData): void {
     if (content.kind !== "markers_changed") return;
     if (content.everything) this.onDataForgotten();
-    for (const id of content.gone) this.remove(id);
+    for (const id of content.removed_ids) this.remove(id);
     for (const marker of content.markers) this.show(marker);
     this.areSolidsStale = true;
   }

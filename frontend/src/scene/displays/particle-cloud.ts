@@ -44,7 +44,7 @@ export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
     const poses = raiseByWeight(posedContent?.content.poses ?? new Float32Array(0), weights, rows.number(5, "Arrow Height Scale"));
     const [minLength, maxLength] = [rows.number(0.02, "Min Arrow Length"), rows.number(0.3, "Max Arrow Length")];
     const lengthOf = (i: number): number => minLength + (maxLength - minLength) * Math.min(Math.max(weights[i] ?? 0, 0), 1);
-    const look = { color: colorOf(rows, "#ff1900", "Color"), alpha: rows.number(1, "Alpha") };
+    const style = { color: colorOf(rows, "#ff1900", "Color"), alpha: rows.number(1, "Alpha") };
     const shape = rows.text("Arrow (Flat)", "Shape");
     const matrix = new Matrix4();
     this.arrows.begin(shape === "Arrow (3D)" ? weights.length : 0);
@@ -52,12 +52,12 @@ export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
     for (let i = 0; i < weights.length; i++) {
       poseAt(poses, i, matrix).premultiply(frame);
       const length = lengthOf(i);
-      if (shape === "Arrow (3D)") this.arrows.add(matrix, arrowOf(length), look);
+      if (shape === "Arrow (3D)") this.arrows.add(matrix, arrowOf(length), style);
       else if (shape === "Axes") this.axes.add(matrix.multiply(new Matrix4().makeScale(length, length, length)));
     }
     this.arrows.end();
     this.axes.end();
-    this.lines.setStyle(look.color, look.alpha);
+    this.lines.setStyle(style.color, style.alpha);
     this.lines.setSegments(shape === "Arrow (Flat)" ? createFlatArrows(poses, frame, lengthOf) : new Float32Array(0));
   }
 }

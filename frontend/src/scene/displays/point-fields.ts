@@ -20,7 +20,7 @@ export class PointFieldStore {
     const fields = this.fieldsByPoint.get(key);
     if (fields !== undefined) return fields;
     this.fieldsByPoint.set(key, null);
-    this.context.session.connection.send({ type: "ask_point", display: this.context.display.id, key: cloud, index });
+    this.context.session.connection.send({ type: "request_point", display: this.context.display.id, key: cloud, index });
     return null;
   }
 

@@ -76,7 +76,7 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
     const parentPath = rows.find("Shape")?.children.length ? ["Shape"] : [];
     const areArrows = rows.text("Arrow", "Shape") === "Arrow";
     const shape = readArrowShape(rows, parentPath);
-    const look = { color: colorOf(rows, "#ff1900", ...parentPath, "Color"), alpha: rows.number(1, ...parentPath, "Alpha") };
+    const arrowStyle = { color: colorOf(rows, "#ff1900", ...parentPath, "Color"), alpha: rows.number(1, ...parentPath, "Alpha") };
     const style = readCovarianceStyle(rows);
     const contents = this.listPosedContents();
     this.drawnContents = contents;
@@ -90,7 +90,7 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
       const { poses, covariances } = content;
       for (let i = 0; i < poses.length / 7; i++) {
         poseAt(poses, i, matrix).premultiply(pose);
-        if (areArrows) this.arrows.add(matrix, shape, look);
+        if (areArrows) this.arrows.add(matrix, shape, arrowStyle);
         else this.axes.add(matrix);
         const covariance = covariances.subarray(i * 36, i * 36 + 36);
         if (style && covariance.length > 0) {

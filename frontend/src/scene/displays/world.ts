@@ -133,7 +133,7 @@ export class WorldDrawing implements Drawing {
    * frame, m.
    */
   computeBoundsByKind(): { robots: Box3; world: Box3 } {
-    const [robots, world, all] = [new Box3(), new Box3(), new Box3()];
+    const [robots, world, allBounds] = [new Box3(), new Box3(), new Box3()];
     const names = new Set(this.scene?.robots);
     const boxes = [...(this.drawing?.boundsOfLinks() ?? [])].filter(([, box]) => !box.isEmpty());
     const lowest = Math.min(0, ...boxes.map(([link, box]) => (names.has(modelOf(link)) ? 0 : box.min.z)));
@@ -142,9 +142,9 @@ export class WorldDrawing implements Drawing {
       if (names.has(modelOf(link)) && box.max.z >= lowest + FALLEN_Z) robots.union(box);
       if (box.max.z < FALLEN_Z) continue;
       if (!isLikeGround(box)) world.union(box);
-      all.union(box);
+      allBounds.union(box);
     }
-    return { robots, world: world.isEmpty() ? all : world };
+    return { robots, world: world.isEmpty() ? allBounds : world };
   }
 
   /** Returns a free position for a model, near the robots, in the frame of the world, m. */

@@ -6,7 +6,7 @@ import { snap } from "../../state/modeling/snapping";
 import type { Session } from "../../state/session";
 import { RobotModelDrawing } from "../displays/robot-model";
 import { Gizmo } from "../modeling/gizmo";
-import { spanOf } from "../initial-view";
+import { boundsOf } from "../initial-view";
 import { framePose, setPoseMatrix } from "../pose";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
@@ -119,10 +119,10 @@ export class PartHandles {
     const margin = Math.min(MIN_MARGIN, width / 4, height / 4);
     if (x >= margin && y >= margin && x <= width - margin && y <= height - margin) return;
     const box = this.stage.boundsOf(this.editing.current?.display ?? "");
-    const around = box.getSize(new Vector3()).length() / 10;
-    box.expandByPoint(new Vector3().setFromMatrixPosition(this.gizmo.pose)).expandByScalar(around);
-    const span = spanOf(box);
-    if (span) this.session.view.fit(span, this.stage.freeRoom.center());
+    const padding = box.getSize(new Vector3()).length() / 10;
+    box.expandByPoint(new Vector3().setFromMatrixPosition(this.gizmo.pose)).expandByScalar(padding);
+    const bounds = boundsOf(box);
+    if (bounds) this.session.view.fit(bounds, this.stage.uncoveredArea.center());
   }
 
   /** Returns the frame of a part's values, in the fixed frame; null without a transform. */

@@ -22,22 +22,22 @@ export class ImageCanvas {
   private readonly context: CanvasRenderingContext2D;
   private lastTurn = 0;
   private newestShown = 0;
-  private painted = 0;
+  private paintedCount = 0;
   private queuedImage: QueuedImage | null = null;
-  private undecoded: EncodedImage | null = null;
+  private pendingImage: EncodedImage | null = null;
   private isDecoding = false;
 
   /** `schedule` delays painting; only the newest image at that time is painted. */
   constructor(private readonly schedule: (paint: () => void) => void = (paint) => paint()) {
     this.canvas.width = this.canvas.height = 0;
     const context = this.canvas.getContext("2d", { willReadFrequently: true });
-    if (!context) throw new Error("This browser gives no 2D canvas");
+    if (!context) throw new Error("This browser does not support the 2D canvas");
     this.context = context;
   }
 
   /** The number of images shown so far. */
   get count(): number {
-    return this.painted;
+    return this.paintedCount;
   }
 
   get isEmpty(): boolean {
@@ -51,13 +51,13 @@ export class ImageCanvas {
       this.queue(imageNumber, { image: frame, onDone });
       return;
     }
-    this.undecoded = { imageNumber, frame, onDone };
+    this.pendingImage = { imageNumber, frame, onDone };
     if (!this.isDecoding) void this.decode();
   }
 
   clear(): void {
     this.newestShown = ++this.lastTurn;
-    this.undecoded = null;
+    this.pendingImage = null;
     this.discard();
     this.canvas.width = this.canvas.height = 0;
   }
@@ -70,8 +70,8 @@ export class ImageCanvas {
   /** Decodes one file at a time, because each needs memory for all its pixels. */
   private async decode(): Promise<void> {
     this.isDecoding = true;
-    for (let next = this.undecoded; next !== null; next = this.undecoded) {
-      this.undecoded = null;
+    for (let next = this.pendingImage; next !== null; next = this.pendingImage) {
+      this.pendingImage = null;
       const { imageNumber, frame, onDone } = next;
       try {
         const image = await createImageBitmap(new Blob([frame.data as Uint8Array<ArrayBuffer>]));
@@ -112,7 +112,7 @@ export class ImageCanvas {
     if (isBitmap(image)) context.drawImage(image, 0, 0);
     else context.putImageData(new ImageData(rgbaOf(image), width, height), 0, 0);
     this.discard();
-    this.painted += 1;
+    this.paintedCount += 1;
     onDone(true);
   };
 }

@@ -11,7 +11,7 @@ export class SceneImage {
 
   constructor() {
     const context = this.canvas.getContext("2d");
-    if (!context) throw new Error("This browser gives no 2D canvas");
+    if (!context) throw new Error("This browser does not support the 2D canvas");
     this.context = context;
   }
 

@@ -156,11 +156,11 @@ function copyOf(pose: MarkerPose): MarkerPose {
 
 /** Returns the distance along the axis through `origin` to the point nearest to the ray; null if they are parallel. */
 export function computeDistanceAlongAxis(ray: Ray, origin: Vector3, axis: Vector3): number | null {
-  const between = origin.clone().sub(ray.origin);
+  const offset = origin.clone().sub(ray.origin);
   const slant = axis.dot(ray.direction);
   const sine2 = 1 - slant * slant;
   if (sine2 < 1e-6) return null;
-  return (slant * between.dot(ray.direction) - between.dot(axis)) / sine2;
+  return (slant * offset.dot(ray.direction) - offset.dot(axis)) / sine2;
 }
 
 function pointOnPlane(ray: Ray, point: Vector3, normal: Vector3): Vector3 | null {

@@ -179,10 +179,10 @@ class MeshMarker implements MarkerObject {
       problem = template.problem;
       if (!this.isDisposed) {
         for (const { geometry, materials } of template.parts) {
-          const painted = materials.map((material) => this.paint(mesh.embedded ? material : null));
-          this.materials.push(...painted);
-          const [material] = painted;
-          this.root.add(new Mesh(geometry, painted.length === 1 && material ? material : painted));
+          const paintedMaterials = materials.map((material) => this.paint(mesh.embedded ? material : null));
+          this.materials.push(...paintedMaterials);
+          const [material] = paintedMaterials;
+          this.root.add(new Mesh(geometry, paintedMaterials.length === 1 && material ? material : paintedMaterials));
         }
       }
     } catch (error) {
@@ -197,17 +197,17 @@ class MeshMarker implements MarkerObject {
    * Returns a material by RViz's rule: the marker's color tints the mesh's own materials, and is ignored for them if
    * it is all zero.
    */
-  private paint(embedded: OwnMaterial | null): Material {
+  private paint(embeddedMaterial: OwnMaterial | null): Material {
     let [r = 0, g = 0, b = 0, a = 0] = this.marker.color;
     if (this.marker.mesh?.embedded === true && r === 0 && g === 0 && b === 0 && a === 0) r = g = b = a = 1;
-    const [ownR, ownG, ownB] = embedded?.color ?? [1, 1, 1];
-    const alpha = a * (embedded?.opacity ?? 1);
+    const [ownR, ownG, ownB] = embeddedMaterial?.color ?? [1, 1, 1];
+    const alpha = a * (embeddedMaterial?.opacity ?? 1);
     const material = new MeshLambertMaterial({
       opacity: alpha,
       transparent: alpha < OPAQUE_FROM,
       depthWrite: alpha >= OPAQUE_FROM,
-      map: embedded?.map ?? null,
-      vertexColors: embedded?.vertexColors ?? false,
+      map: embeddedMaterial?.map ?? null,
+      vertexColors: embeddedMaterial?.vertexColors ?? false,
       side: DoubleSide,
     });
     material.color.setRGB(r * ownR, g * ownG, b * ownB);

@@ -38,8 +38,8 @@ class Solids {
   private readonly copies: { matrix: Matrix4; alpha: number; color: number }[] = [];
 
   constructor(parent: Object3D, geometry: BufferGeometry) {
-    const make = (): CopyBatch => new CopyBatch(parent, paint(geometry.clone(), 1, 1, 1));
-    this.batches = { opaqueBatch: make(), clearBatch: make() };
+    const createBatch = (): CopyBatch => new CopyBatch(parent, paint(geometry.clone(), 1, 1, 1));
+    this.batches = { opaqueBatch: createBatch(), clearBatch: createBatch() };
   }
 
   begin(): void {

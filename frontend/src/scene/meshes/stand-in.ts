@@ -64,7 +64,7 @@ export function createStandIn(mesh: Triangles, simplifier: Simplifier): StandIn 
 function weld({ positions, normals, index }: Triangles, simplifier: Simplifier): { positions: Float32Array; normals: Float32Array; index: Uint32Array } {
   const weldedVertices = simplifier.generatePositionRemap(positions, COMPONENTS);
   const corners = index?.length ?? positions.length / COMPONENTS;
-  const joined = new Uint32Array(corners);
+  const joinedIndices = new Uint32Array(corners);
   /**
    * The newest vertex at each position, and for each vertex the previous one at the same position; numbers plus one, 0 for none.
    */
@@ -75,8 +75,8 @@ function weld({ positions, normals, index }: Triangles, simplifier: Simplifier):
   for (let corner = 0; corner < corners; corner++) {
     const vertex = index?.[corner] ?? corner;
     const [x, y, z] = [normals[3 * vertex] ?? 0, normals[3 * vertex + 1] ?? 0, normals[3 * vertex + 2] ?? 0];
-    const welded = weldedVertices[vertex] ?? vertex;
-    let candidate = newestVertices[welded] ?? 0;
+    const weldedVertex = weldedVertices[vertex] ?? vertex;
+    let candidate = newestVertices[weldedVertex] ?? 0;
     const isUnlit = x === 0 && y === 0 && z === 0;
     while (candidate > 0 && !isUnlit) {
       const i = 3 * (candidate - 1);
@@ -84,23 +84,23 @@ function weld({ positions, normals, index }: Triangles, simplifier: Simplifier):
       candidate = previousVertices[candidate - 1] ?? 0;
     }
     if (candidate === 0) {
-      previousVertices[count] = newestVertices[welded] ?? 0;
+      previousVertices[count] = newestVertices[weldedVertex] ?? 0;
       positionSums.set(positions.subarray(3 * vertex, 3 * vertex + 3), 3 * count);
       first.set([x, y, z], 3 * count);
       count += 1;
-      candidate = newestVertices[welded] = count;
+      candidate = newestVertices[weldedVertex] = count;
     }
     const i = 3 * (candidate - 1);
     normalSums[i] = (normalSums[i] ?? 0) + x;
     normalSums[i + 1] = (normalSums[i + 1] ?? 0) + y;
     normalSums[i + 2] = (normalSums[i + 2] ?? 0) + z;
-    joined[corner] = candidate - 1;
+    joinedIndices[corner] = candidate - 1;
   }
   for (let i = 0; i < 3 * count; i += 3) {
     const length = Math.hypot(normalSums[i] ?? 0, normalSums[i + 1] ?? 0, normalSums[i + 2] ?? 0) || 1;
     for (let j = i; j < i + 3; j++) normalSums[j] = (normalSums[j] ?? 0) / length;
   }
-  return { positions: positionSums.slice(0, 3 * count), normals: normalSums.slice(0, 3 * count), index: removeDegenerate(joined) };
+  return { positions: positionSums.slice(0, 3 * count), normals: normalSums.slice(0, 3 * count), index: removeDegenerate(joinedIndices) };
 }
 
 /** Returns the triangles without those that have two equal corners. */

@@ -28,7 +28,7 @@ export class LightMarks {
       this.marks.delete(name);
     }
     for (const { name, pose } of lights) {
-      const mark = this.marks.get(name) ?? this.make(name);
+      const mark = this.marks.get(name) ?? this.createMark(name);
       mark.matrix.copy(createEntityMatrix(pose));
       mark.matrix.premultiply(displacements.get(name) ?? new Matrix4());
       mark.material.color.setHex(selectedNames.includes(name) ? SELECTED : COLOR);
@@ -43,7 +43,7 @@ export class LightMarks {
     return hit ? { name: hit.object.name, distance: hit.distance } : null;
   }
 
-  private make(name: string): Mesh<OctahedronGeometry, MeshBasicMaterial> {
+  private createMark(name: string): Mesh<OctahedronGeometry, MeshBasicMaterial> {
     const mark = new Mesh(this.shape, new MeshBasicMaterial({ color: COLOR }));
     mark.name = name;
     mark.matrixAutoUpdate = false;

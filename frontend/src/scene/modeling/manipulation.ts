@@ -71,7 +71,7 @@ export class Manipulation {
     else this.moveAll(entities, main);
   }
 
-  /** Ends the drag; returns false for a mere click, which is meant for what is behind the handle. */
+  /** Ends the drag; returns false for a mere click, which is meant for the object behind the handle. */
   private release(event: ToolEvent): boolean {
     const { changes } = this;
     this.gizmo.release(event);
@@ -95,9 +95,9 @@ export class Manipulation {
     if (shape === null) return;
     const next = scaleSize(shape, size, this.gizmo.scale, step);
     const change = resizeChange(entity, next);
-    const stretched = new Matrix4().scale(new Vector3(...computeStretchFactors(shape, size, next)));
+    const stretch = new Matrix4().scale(new Vector3(...computeStretchFactors(shape, size, next)));
     this.changes = areSame(size, next) ? [] : [change];
-    this.displace(new Map([[name, createEntityMatrix(change.pose ?? pose).multiply(stretched).multiply(createEntityMatrix(pose).invert())]]));
+    this.displace(new Map([[name, createEntityMatrix(change.pose ?? pose).multiply(stretch).multiply(createEntityMatrix(pose).invert())]]));
   }
 }
 

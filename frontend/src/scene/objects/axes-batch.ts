@@ -13,7 +13,7 @@ export class AxesBatch {
     radius = 0.1,
     segments = 12,
   ) {
-    this.copies = this.make(length, radius, segments);
+    this.copies = this.createBatch(length, radius, segments);
   }
 
   /** The number of axes drawn now. */
@@ -25,7 +25,7 @@ export class AxesBatch {
   setShape(length: number, radius: number, segments = 12): void {
     if (this.shapeKey === [length, radius, segments].join()) return;
     this.copies.dispose();
-    this.copies = this.make(length, radius, segments);
+    this.copies = this.createBatch(length, radius, segments);
   }
 
   /** Removes all axes; at most `capacity` will be added. */
@@ -54,7 +54,7 @@ export class AxesBatch {
     this.copies.dispose();
   }
 
-  private make(length: number, radius: number, segments: number): CopyBatch {
+  private createBatch(length: number, radius: number, segments: number): CopyBatch {
     this.shapeKey = [length, radius, segments].join();
     return new CopyBatch(this.parent, createAxes(length, radius, segments));
   }

@@ -231,9 +231,9 @@ function createCopies(shape: BufferGeometry, count: number): BufferGeometry {
   for (const name of ["position", "normal", "color"]) {
     if (!shape.hasAttribute(name)) continue;
     const { array, itemSize } = shape.getAttribute(name);
-    const repeated = new Float32Array(array.length * count);
-    for (let copy = 0; copy < count; copy++) repeated.set(array, copy * array.length);
-    result.setAttribute(name, new BufferAttribute(repeated, itemSize));
+    const repeatedArray = new Float32Array(array.length * count);
+    for (let copy = 0; copy < count; copy++) repeatedArray.set(array, copy * array.length);
+    result.setAttribute(name, new BufferAttribute(repeatedArray, itemSize));
   }
   const slots = new Float32Array(vertices * count);
   for (let copy = 0; copy < count; copy++) slots.fill(copy, copy * vertices, (copy + 1) * vertices);

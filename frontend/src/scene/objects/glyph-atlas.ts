@@ -26,7 +26,7 @@ export class GlyphAtlas {
     const canvas = document.createElement("canvas");
     canvas.width = canvas.height = SIZE;
     const context = canvas.getContext("2d");
-    if (!context) throw new Error("This browser gives no 2D canvas");
+    if (!context) throw new Error("This browser does not support the 2D canvas");
     this.context = context;
     this.texture = new CanvasTexture(canvas);
     this.texture.minFilter = LinearMipmapLinearFilter;

@@ -9,14 +9,14 @@ export function extrudePolygons(outlines: readonly (readonly number[])[], height
   const polygons = outlines.map((numbers) => {
     return Array.from({ length: Math.floor(numbers.length / 2) }, (_, i) => new Vector2(numbers[2 * i], numbers[2 * i + 1]));
   }).filter((points) => points.length > 2);
-  const around = polygons.map((points) => polygons.filter((candidate) => candidate !== points && contains(candidate, points[0])));
+  const enclosingPolygons = polygons.map((points) => polygons.filter((candidate) => candidate !== points && contains(candidate, points[0])));
   const shapes: Outline[] = [];
   polygons.forEach((points, i) => {
-    if ((around[i] ?? []).length % 2 === 1) return;
+    if ((enclosingPolygons[i] ?? []).length % 2 === 1) return;
     const shape = new Outline(points);
     polygons.forEach((hole, j) => {
-      const enclosing = around[j] ?? [];
-      if (enclosing.includes(points) && enclosing.length === (around[i] ?? []).length + 1) shape.holes.push(new Path(hole));
+      const enclosing = enclosingPolygons[j] ?? [];
+      if (enclosing.includes(points) && enclosing.length === (enclosingPolygons[i] ?? []).length + 1) shape.holes.push(new Path(hole));
     });
     shapes.push(shape);
   });

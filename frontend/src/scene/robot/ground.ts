@@ -33,9 +33,9 @@ function unionOf(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box
 /** Returns the links that are fixed to the root. */
 function listFixedLinks({ links, joints }: Pick<RobotScene, "links" | "joints">): Set<string> {
   const base = new Set(links.filter((link) => link.parent_joint === null).map((link) => link.name));
-  const fixed = joints.filter((joint) => joint.kind === "fixed");
+  const fixedJoints = joints.filter((joint) => joint.kind === "fixed");
   for (let hasGrown = true; hasGrown; ) {
-    const newJoints = fixed.filter((joint) => base.has(joint.parent) && !base.has(joint.child));
+    const newJoints = fixedJoints.filter((joint) => base.has(joint.parent) && !base.has(joint.child));
     for (const joint of newJoints) base.add(joint.child);
     hasGrown = newJoints.length > 0;
   }

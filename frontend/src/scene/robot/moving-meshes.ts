@@ -42,7 +42,7 @@ export class MovingMeshes {
   /**
    * The contents of the buffers: the pieces' stand-ins, the index of the first vertex of each, and the levels drawn.
    */
-  private buffered: readonly StandIn[] = [];
+  private bufferedStandIns: readonly StandIn[] = [];
   private firsts: number[] = [];
   private levels: readonly (number | null)[] = [];
   private hiddenMeshes: Mesh[] = [];
@@ -94,24 +94,24 @@ export class MovingMeshes {
 
   /** Fills one buffer with the vertices of all pieces; each vertex has the index of its piece. */
   private fillBuffers(pieces: readonly MovingPiece[]): NonNullable<MovingMeshes["mesh"]> {
-    const { buffered } = this;
-    if (this.mesh && buffered.length === pieces.length && pieces.every(({ standIn }, i) => standIn === buffered[i])) return this.mesh;
-    this.buffered = pieces.map(({ standIn }) => standIn);
+    const { bufferedStandIns } = this;
+    if (this.mesh && bufferedStandIns.length === pieces.length && pieces.every(({ standIn }, i) => standIn === bufferedStandIns[i])) return this.mesh;
+    this.bufferedStandIns = pieces.map(({ standIn }) => standIn);
     this.firsts = [];
     this.levels = [];
     let vertices = 0;
-    for (const { positions } of this.buffered) {
+    for (const { positions } of this.bufferedStandIns) {
       this.firsts.push(vertices);
       vertices += positions.length / 3;
     }
     const [places, normals, slot] = [new Float32Array(3 * vertices), new Float32Array(3 * vertices), new Float32Array(vertices)];
-    this.buffered.forEach((piece, i) => {
+    this.bufferedStandIns.forEach((piece, i) => {
       const first = this.firsts[i] ?? 0;
       places.set(piece.positions, 3 * first);
       normals.set(piece.normals, 3 * first);
       slot.fill(i, first, first + piece.positions.length / 3);
     });
-    const indexCount = this.buffered.reduce((sum, { levels }) => sum + (levels[0]?.index.length ?? 0), 0);
+    const indexCount = this.bufferedStandIns.reduce((sum, { levels }) => sum + (levels[0]?.index.length ?? 0), 0);
     const geometry = new BufferGeometry()
       .setAttribute("position", new BufferAttribute(places, 3))
       .setAttribute("normal", new BufferAttribute(normals, 3))
@@ -161,7 +161,7 @@ export function levelsFor(pieces: readonly MovingPiece[], { camera, height }: Mo
     if (!frustum.intersectsSphere(ball)) return null;
     const depth = isPerspective ? -center.z - ball.radius : 1;
     // m of the piece in a pixel, where it is nearest
-    const unseen = depth <= 0 ? 0 : (MAX_ERROR_PX * depth) / (elements[5] * 0.5 * height * scale);
-    return levels.findLastIndex(({ error }) => error <= unseen);
+    const invisibleError = depth <= 0 ? 0 : (MAX_ERROR_PX * depth) / (elements[5] * 0.5 * height * scale);
+    return levels.findLastIndex(({ error }) => error <= invisibleError);
   });
 }

@@ -156,7 +156,7 @@ export class RobotDrawing {
     this.solids.chooseDetail(camera);
   }
 
-  /** Draws the meshes of a moving robot with fewer triangles, as far as that is not noticed; null restores them. */
+  /** Draws the meshes of a moving robot with fewer triangles where the difference is not visible; null restores them. */
   simplify(view: MovingView | null): void {
     this.moving.end();
     const { standIns } = this.meshes;

@@ -52,7 +52,7 @@ export class RobotExtras {
     };
   }
 
-  /** Reads from the properties what is to be drawn. */
+  /** Reads the properties that determine what is drawn. */
   style(rows: PropertyRows): void {
     const links = new Map(rows.find("Links")?.children.map((row) => [row.name, row]));
     const shownLinks = this.scene.links.filter((link) => links.get(link.name)?.value !== false);

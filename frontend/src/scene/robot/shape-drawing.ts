@@ -60,7 +60,7 @@ export class ShapeDrawing {
   /** A geometry of its own, which it must dispose of. */
   private ownGeometry: BufferGeometry | null = null;
   private problem: string | null = null;
-  private batched: Solid | null = null;
+  private solidInBatch: Solid | null = null;
 
   constructor(readonly shape: Shape) {
     const [x = 0, y = 0, z = 0] = shape.position;
@@ -79,7 +79,7 @@ export class ShapeDrawing {
 
   /** Its entry in a batch, if any; its mesh then serves rays and outlines only. */
   get solid(): Solid | null {
-    return this.batched;
+    return this.solidInBatch;
   }
 
   get meshes(): readonly Mesh[] {
@@ -131,9 +131,9 @@ export class ShapeDrawing {
       const [material = errorMaterial] = materials;
       mesh.material = materials.length === 1 ? material : materials;
     }
-    this.batched = isLost || pool.isLit ? null : this.createSolid(override, alpha);
+    this.solidInBatch = isLost || pool.isLit ? null : this.createSolid(override, alpha);
     for (const { mesh } of this.parts) {
-      if (this.batched) {
+      if (this.solidInBatch) {
         mesh.layers.disable(0);
         mesh.layers.enable(PICKABLE);
       } else mesh.layers.enable(0);
@@ -178,8 +178,8 @@ export class ShapeDrawing {
     else this.root.updateMatrix();
     this.root.matrixWorldNeedsUpdate = true;
     const [part] = this.parts;
-    if (!this.batched || !part) return;
-    this.batched = { ...this.batched, matrix: new Matrix4().multiplyMatrices(this.root.matrix, part.mesh.matrix) };
+    if (!this.solidInBatch || !part) return;
+    this.solidInBatch = { ...this.solidInBatch, matrix: new Matrix4().multiplyMatrices(this.root.matrix, part.mesh.matrix) };
   }
 
   /** Returns what is drawn, for tests: bounds in the fixed frame, and color, opacity and texture of each material. */

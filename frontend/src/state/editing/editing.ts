@@ -123,7 +123,7 @@ export class EditingState {
 
   /** Why nothing can be edited; empty if editing is possible. */
   get unavailableReason(): string {
-    return this.editable?.why_not ?? "";
+    return this.editable?.refusal_reason ?? "";
   }
 
   get current(): { display: string; link: string } | null {
@@ -254,7 +254,7 @@ export class EditingState {
   }
 
   private requestParts(): void {
-    if (this.isActive && this.link) this.connection.send({ type: "ask_editable_parts", ...this.link });
+    if (this.isActive && this.link) this.connection.send({ type: "request_editable_parts", ...this.link });
   }
 
   private requestPreview(): void {

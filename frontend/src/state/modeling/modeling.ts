@@ -222,7 +222,7 @@ export class Modeling {
   }
 
   requestModels(): void {
-    this.connection.send({ type: "ask_models" });
+    this.connection.send({ type: "request_models" });
   }
 
   private sendCopies(names: readonly string[]): void {
@@ -236,13 +236,13 @@ export class Modeling {
     const previousNames = new Set(this.world.entities.map(({ name }) => name));
     this.world = state;
     const news = state.entities.map(({ name }) => name).filter((name) => !previousNames.has(name));
-    const left = state.active ? this.names.filter((name) => this.find(name)) : [];
+    const remainingNames = state.active ? this.names.filter((name) => this.find(name)) : [];
     if (!state.active && this.chosenPlacing) this.startPlacing(null);
     this.changed.emit();
     if (this.selectsNew && news.length > 0) {
       this.selectsNew = false;
       this.setSelection(news);
-    } else if (left.length < this.names.length) this.setSelection(left);
+    } else if (remainingNames.length < this.names.length) this.setSelection(remainingNames);
   }
 
   private setSelection(names: readonly string[]): void {

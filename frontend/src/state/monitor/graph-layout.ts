@@ -60,10 +60,10 @@ interface Vertex {
 export function layOutLayers(boxes: readonly Box[], links: readonly Link[]): Layout {
   const boxIds = new Map(boxes.map((box) => [box.id, box]));
   const proper = links.filter(({ source, target }) => source !== target && boxIds.has(source) && boxIds.has(target));
-  const linked = new Set(proper.flatMap(({ source, target }) => [source, target]));
-  const reversed = findCycleClosingLinks(boxes, proper);
-  const forward = proper.map((link) => (reversed.has(link) ? { source: link.target, target: link.source } : link));
-  const layerOf = layersOf(boxes.filter(({ id }) => linked.has(id)), forward);
+  const linkedBoxes = new Set(proper.flatMap(({ source, target }) => [source, target]));
+  const reversedLinks = findCycleClosingLinks(boxes, proper);
+  const forward = proper.map((link) => (reversedLinks.has(link) ? { source: link.target, target: link.source } : link));
+  const layerOf = layersOf(boxes.filter(({ id }) => linkedBoxes.has(id)), forward);
   const vertices = new Map<string, Vertex>();
   const layers: Vertex[][] = [];
   const add = (box: Box | null, layer: number): Vertex => {
@@ -72,7 +72,7 @@ export function layOutLayers(boxes: readonly Box[], links: readonly Link[]): Lay
     if (box) vertices.set(box.id, vertex);
     return vertex;
   };
-  for (const box of boxes) if (linked.has(box.id)) add(box, layerOf.get(box.id) ?? 0);
+  for (const box of boxes) if (linkedBoxes.has(box.id)) add(box, layerOf.get(box.id) ?? 0);
   const chains = forward.map(({ source, target }) => connectLayers(vertices, source, target, add));
   orderLayers(layers);
   placeVertically(layers);
@@ -81,12 +81,12 @@ export function layOutLayers(boxes: readonly Box[], links: readonly Link[]): Lay
   for (const [id, { box, x, y }] of vertices) if (box) result.boxes.set(id, { ...box, id, x, y });
   const pairs = new Set(proper.map(({ source, target }) => `${source}\n${target}`));
   proper.forEach((link, index) => {
-    const offset = pairs.has(`${link.target}\n${link.source}`) ? (reversed.has(link) ? PAIR_OFFSET : -PAIR_OFFSET) : 0;
+    const offset = pairs.has(`${link.target}\n${link.source}`) ? (reversedLinks.has(link) ? PAIR_OFFSET : -PAIR_OFFSET) : 0;
     const points = route(chains[index] ?? [], offset);
-    result.routes.push({ source: link.source, target: link.target, points: reversed.has(link) ? points.reverse() : points });
+    result.routes.push({ source: link.source, target: link.target, points: reversedLinks.has(link) ? points.reverse() : points });
   });
   shiftToOrigin(result);
-  placeUnlinked(boxes.filter(({ id }) => !linked.has(id)), result);
+  placeUnlinked(boxes.filter(({ id }) => !linkedBoxes.has(id)), result);
   return result;
 }
 

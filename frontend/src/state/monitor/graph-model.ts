@@ -87,19 +87,19 @@ interface JoinedTopic extends Pick<GraphTopic, "name" | "publishers" | "subscrib
 
 /** Returns the topics that pass the filters; the topics of an action are merged into one. */
 function topicsOf(graph: NodeGraph, options: GraphOptions): JoinedTopic[] {
-  const joined = new Map<string, JoinedTopic>();
+  const joinedTopics = new Map<string, JoinedTopic>();
   for (const { name, publishers, subscribers } of graph.topics) {
     if (!options.showsDebug && DEBUG_TOPICS.has(name)) continue;
     if (!options.showsTf && TF_TOPICS.has(name)) continue;
     const index = name.indexOf(ACTION);
     const shownName = index < 0 ? name : name.slice(0, index);
-    const topic = joined.get(shownName);
+    const topic = joinedTopics.get(shownName);
     if (topic) {
       topic.publishers = [...new Set([...topic.publishers, ...publishers])];
       topic.subscribers = [...new Set([...topic.subscribers, ...subscribers])];
-    } else joined.set(shownName, { name: shownName, publishers, subscribers, isAction: index >= 0 });
+    } else joinedTopics.set(shownName, { name: shownName, publishers, subscribers, isAction: index >= 0 });
   }
-  return [...joined.values()];
+  return [...joinedTopics.values()];
 }
 
 function ownerOf(node: string, { groupsNamespaces, openGroups }: GraphOptions): GraphVertex {

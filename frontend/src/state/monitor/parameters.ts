@@ -56,6 +56,6 @@ export class ParametersState {
 
   private sendWatch(): void {
     const node = this.isListed ? this.node : null;
-    this.connection.send({ type: "watch_parameters", listed: this.isListed, node });
+    this.connection.send({ type: "watch_parameters", wants_list: this.isListed, node });
   }
 }

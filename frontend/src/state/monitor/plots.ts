@@ -155,7 +155,7 @@ export class PlotsState {
 
   /** Requests the fields of a topic that can be plotted; null cancels the request. */
   requestFields(topic: string | null): void {
-    this.connection.send({ type: "ask_fields", topic });
+    this.connection.send({ type: "request_fields", topic });
   }
 
   private addSamples(samples: readonly SeriesSamples[]): void {

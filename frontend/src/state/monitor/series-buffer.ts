@@ -72,9 +72,9 @@ export class SeriesBuffer {
   }
 
   private reserve(count: number): void {
-    const needed = this.count + count;
-    if (needed <= this.numbers.length) return;
-    if (needed > this.maxSamples) {
+    const neededCount = this.count + count;
+    if (neededCount <= this.numbers.length) return;
+    if (neededCount > this.maxSamples) {
       // Drop half of them, so that this happens rarely.
       const remaining = Math.min(this.count, Math.max(0, (this.maxSamples >> 1) - count));
       for (const array of [this.receiveTimes, this.stamps, this.numbers]) array.copyWithin(0, this.count - remaining, this.count);

@@ -88,9 +88,9 @@ export class TeleopState {
     const previousMotion = this.motion;
     if (isStill(motion)) this.motions.delete(source);
     else this.motions.set(source, motion);
-    const now = this.motion;
-    if (now.x === previousMotion.x && now.y === previousMotion.y && now.z === previousMotion.z && now.turn === previousMotion.turn) return;
-    if (isStill(now)) this.stop();
+    const currentMotion = this.motion;
+    if (currentMotion.x === previousMotion.x && currentMotion.y === previousMotion.y && currentMotion.z === previousMotion.z && currentMotion.turn === previousMotion.turn) return;
+    if (isStill(currentMotion)) this.stop();
     else if (this.timer === 0) this.drive();
     this.changed.emit();
   }

@@ -58,6 +58,6 @@ export class TopicsState {
 
   private sendWatch(): void {
     const { measuredTopics, openTopics } = this;
-    this.connection.send({ type: "watch_topics", listed: this.readers.size > 0, measured: [...measuredTopics], opened: [...openTopics] });
+    this.connection.send({ type: "watch_topics", wants_list: this.readers.size > 0, measured_topics: [...measuredTopics], opened_topics: [...openTopics] });
   }
 }

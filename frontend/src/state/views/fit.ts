@@ -1,5 +1,5 @@
 import { FIELD_OF_VIEW, toTarget, type Camera, type Target, type ViewSize } from "./camera";
-import { add, dot, scale, subtract, type Span, type Vector } from "./vector";
+import { add, dot, scale, subtract, type Bounds, type Vector } from "./vector";
 import { number, type ViewValues } from "./view-controller";
 
 /** The margin around the box, as a factor of its size. */
@@ -25,32 +25,32 @@ export interface Framing {
  * Returns the framing that shows a whole box as large as a canvas of this size permits. `values` are those of the
  * camera's view.
  */
-export function computeFraming(camera: Camera, values: ViewValues, span: Span, { width, height }: ViewSize): Framing {
+export function computeFraming(camera: Camera, values: ViewValues, bounds: Bounds, { width, height }: ViewSize): Framing {
   const { right, up, back } = camera;
-  const center = scale(add(span.min, span.max), 0.5);
+  const center = scale(add(bounds.min, bounds.max), 0.5);
   const tangent = Math.tan(FIELD_OF_VIEW / 2) / MARGIN;
   let [distance, meters, front] = [0, 0, 0];
-  for (const point of span.points ?? cornersOf(span)) {
+  for (const point of bounds.points ?? cornersOf(bounds)) {
     const corner = subtract(point, center);
     const [horizontal, vertical] = [Math.abs(dot(corner, right)), Math.abs(dot(corner, up))];
     distance = Math.max(distance, dot(corner, back) + Math.max(vertical, (horizontal * height) / width) / tangent);
     meters = Math.max(meters, (2 * horizontal) / width, (2 * vertical) / height);
     front = Math.max(front, dot(corner, back));
   }
-  const room = CLIP_SHARE * (distance - front);
-  const isClipped = room > 0 && number(values, NEAR_CLIP, 0) > room;
+  const clipDistance = CLIP_SHARE * (distance - front);
+  const isClipped = clipDistance > 0 && number(values, NEAR_CLIP, 0) > clipDistance;
   return {
     center,
     distance,
     scale: meters > 0 ? 1 / (meters * MARGIN) : 0,
-    clip: isClipped ? { [NEAR_CLIP]: Math.max(MIN_CLIP, room) } : {},
+    clip: isClipped ? { [NEAR_CLIP]: Math.max(MIN_CLIP, clipDistance) } : {},
   };
 }
 
 /** Returns the bounding box in a target's frame of a box in the fixed frame. */
-export function transformSpan(span: Span, target: Target): Span {
-  const cornersInTarget = cornersOf(span).map((corner) => toTarget(corner, target));
-  const points = span.points?.map((point) => toTarget(point, target));
+export function transformBounds(bounds: Bounds, target: Target): Bounds {
+  const cornersInTarget = cornersOf(bounds).map((corner) => toTarget(corner, target));
+  const points = bounds.points?.map((point) => toTarget(point, target));
   const extremeOf = (choose: (...coordinates: number[]) => number): Vector => {
     const chooseCoordinate = (i: 0 | 1 | 2): number => choose(...cornersInTarget.map((corner) => corner[i]));
     return [chooseCoordinate(0), chooseCoordinate(1), chooseCoordinate(2)];
@@ -59,11 +59,11 @@ export function transformSpan(span: Span, target: Target): Span {
 }
 
 /** Whether a box contains another. */
-export function contains(outerSpan: Span, innerSpan: Span): boolean {
-  return ([0, 1, 2] as const).every((i) => outerSpan.min[i] <= innerSpan.min[i] && innerSpan.max[i] <= outerSpan.max[i]);
+export function contains(outer: Bounds, inner: Bounds): boolean {
+  return ([0, 1, 2] as const).every((i) => outer.min[i] <= inner.min[i] && inner.max[i] <= outer.max[i]);
 }
 
-function cornersOf({ min, max }: Span): Vector[] {
+function cornersOf({ min, max }: Bounds): Vector[] {
   const ends = [min, max];
   return ends.flatMap(([x]) => ends.flatMap(([, y]) => ends.map(([, , z]): Vector => [x, y, z])));
 }

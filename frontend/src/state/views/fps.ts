@@ -1,6 +1,6 @@
 import { toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
 import { computeFraming } from "./fit";
-import { add, cross, length, subtract, type Span, type Vector } from "./vector";
+import { add, cross, length, subtract, type Bounds, type Vector } from "./vector";
 import {
   clampPitch,
   number,
@@ -67,7 +67,7 @@ export class FpsController implements ViewController {
     return anglesOf(subtract(point, position), up);
   }
 
-  fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
+  fit(values: ViewValues, box: Bounds, size: ViewSize): ViewValues {
     const camera = this.computeCamera(values);
     const { center, distance, clip } = computeFraming(camera, values, box, size);
     return distance > 0 ? { ...createVectorValues("Position", add(center, camera.back, distance)), ...clip } : this.lookAt(values, center);

@@ -1,6 +1,6 @@
 import { FIELD_OF_VIEW, toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
 import { computeFraming } from "./fit";
-import { add, cross, distanceBetween, length, ORIGIN, scale, type Span, type Vector } from "./vector";
+import { add, cross, distanceBetween, length, ORIGIN, scale, type Bounds, type Vector } from "./vector";
 import {
   clampPitch,
   number,
@@ -76,7 +76,7 @@ export class OrbitController implements ViewController {
     return orbitFrom(point, this.computeCamera(values).position);
   }
 
-  fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
+  fit(values: ViewValues, box: Bounds, size: ViewSize): ViewValues {
     const { center, distance, clip } = computeFraming(this.computeCamera(values), values, box, size);
     return { ...createVectorValues("Focal Point", center), ...(distance > 0 ? { Distance: distance } : {}), ...clip };
   }

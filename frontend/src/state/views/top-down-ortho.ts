@@ -1,6 +1,6 @@
 import { toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
 import { computeFraming } from "./fit";
-import { rotateZ, type Span, type Vector } from "./vector";
+import { rotateZ, type Bounds, type Vector } from "./vector";
 import {
   number,
   RADIANS_PER_PIXEL,
@@ -67,7 +67,7 @@ export class TopDownOrthoController implements ViewController {
     return { X: x, Y: y };
   }
 
-  fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
+  fit(values: ViewValues, box: Bounds, size: ViewSize): ViewValues {
     const { center, scale } = computeFraming(this.computeCamera(values), values, box, size);
     return { X: center[0], Y: center[1], ...(scale > 0 ? { Scale: Math.sign(scaleOf(values)) * scale } : {}) };
   }

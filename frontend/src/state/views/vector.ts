@@ -2,7 +2,7 @@
 export type Vector = readonly [number, number, number];
 
 /** An axis-aligned box in a frame: its minimum and maximum corner, m. */
-export interface Span {
+export interface Bounds {
   readonly min: Vector;
   readonly max: Vector;
   /** Points of the content; if given, they are framed instead of the corners. */

@@ -1,6 +1,6 @@
 import type { PropertyValue } from "../../protocol";
 import type { Camera, Target, ViewSize } from "./camera";
-import type { Span, Vector } from "./vector";
+import type { Bounds, Vector } from "./vector";
 
 /** The values of a view by the paths of their properties: `Distance`, `Focal Point/X`. */
 export type ViewValues = Readonly<Record<string, PropertyValue>>;
@@ -48,7 +48,7 @@ export interface ViewController {
   applyWheel(values: ViewValues, delta: number, isShiftDown: boolean): ViewValues;
   lookAt(values: ViewValues, point: Vector): ViewValues;
   /** Fits a box into view from the current direction, in a canvas of this size. */
-  fit(values: ViewValues, box: Span, size: ViewSize): ViewValues;
+  fit(values: ViewValues, box: Bounds, size: ViewSize): ViewValues;
   /** Imitates another view, as far as RViz does. */
   mimic(previous: Look): ViewValues;
   /** Converts the values to another target frame without moving the camera. */

@@ -1,6 +1,6 @@
 import { onGround, castRay, type Camera, type ViewSize } from "./camera";
 import { computeFraming } from "./fit";
-import { add, distanceBetween, length, scale, subtract, type Span, type Vector } from "./vector";
+import { add, distanceBetween, length, scale, subtract, type Bounds, type Vector } from "./vector";
 import { lookFromAbove, orbitFrom, OrbitController, orbitOf, type OrbitMotion } from "./orbit";
 import { createVectorValues, type Drag, type Look, type MouseHint, type ViewValues } from "./view-controller";
 
@@ -31,7 +31,7 @@ export class XYOrbitController extends OrbitController {
   /**
    * Keeps the focal point on the ground, where the line of sight of a camera that shows the whole box intersects it.
    */
-  override fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
+  override fit(values: ViewValues, box: Bounds, size: ViewSize): ViewValues {
     const camera = this.computeCamera(values);
     const { center, distance, clip } = computeFraming(camera, values, box, size);
     const position = add(center, camera.back, distance > 0 ? distance : orbitOf(values).distance);
@@ -69,8 +69,8 @@ export class XYOrbitController extends OrbitController {
     if (!start || !end) return {};
     const step = subtract(start, end);
     const stepLength = length(step);
-    const allowed = stepLength > MAX_STEP ? scale(step, MAX_STEP / stepLength) : step;
-    return createVectorValues("Focal Point", add(orbitOf(values).focal, allowed));
+    const limitedStep = stepLength > MAX_STEP ? scale(step, MAX_STEP / stepLength) : step;
+    return createVectorValues("Focal Point", add(orbitOf(values).focal, limitedStep));
   }
 }
 

@@ -1,5 +1,5 @@
 /// <reference lib="webworker" />
-import { MOST_SAMPLES, SOUND_RATE } from "../../protocol";
+import { MAX_SAMPLES, SOUND_RATE } from "../../protocol";
 import { GapFinder } from "./gaps";
 import { toPcm, Resampler } from "./resampler";
 
@@ -26,7 +26,7 @@ export interface CaptureMessage {
 class Capture extends AudioWorkletProcessor {
   private readonly resampler = new Resampler(sampleRate, SOUND_RATE);
   private readonly gaps = new GapFinder(sampleRate);
-  private readonly block = new Int16Array(MOST_SAMPLES);
+  private readonly block = new Int16Array(MAX_SAMPLES);
   private filled = 0;
   private hasBegun = false;
 
@@ -46,7 +46,7 @@ class Capture extends AudioWorkletProcessor {
     this.gaps.add(mono, Date.now());
     for (const sample of toPcm(this.resampler.add(mono))) {
       this.block[this.filled++] = sample;
-      if (this.filled === MOST_SAMPLES) this.send();
+      if (this.filled === MAX_SAMPLES) this.send();
     }
     return true;
   }

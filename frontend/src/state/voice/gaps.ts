@@ -40,8 +40,8 @@ export class GapFinder {
     this.sampleCount += samples.length;
     this.minimumDelay = Math.min(this.minimumDelay, now - (1000 * this.sampleCount) / this.rate);
     if (this.sampleCount < this.windowEnd) return;
-    const later = this.minimumDelay - this.previousDelay;
-    if (this.windows >= SETTLING && later > LATE_MS) this.lostSamples += later / 1000;
+    const extraDelay = this.minimumDelay - this.previousDelay;
+    if (this.windows >= SETTLING && extraDelay > LATE_MS) this.lostSamples += extraDelay / 1000;
     this.windows += 1;
     this.windowEnd += WINDOW * this.rate;
     this.previousDelay = this.minimumDelay;

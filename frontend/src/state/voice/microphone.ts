@@ -138,8 +138,8 @@ async function openBrowserCapture(onBlock: (samples: Int16Array, lostSeconds: nu
   try {
     // Load the module first: sound between opening the microphone and loading would be lost.
     await context.audioWorklet.addModule(workletUrl);
-    const resumed = context.resume();
-    resumed.catch(() => undefined); // it is awaited below, unless there is no microphone
+    const resumption = context.resume();
+    resumption.catch(() => undefined); // it is awaited below, unless there is no microphone
     const stream = await devices.getUserMedia({
       audio: { channelCount: 1, echoCancellation: true, noiseSuppression: true, autoGainControl: true },
     });
@@ -158,7 +158,7 @@ async function openBrowserCapture(onBlock: (samples: Int16Array, lostSeconds: nu
     });
     context.createMediaStreamSource(stream).connect(node);
     for (const track of tracks) track.addEventListener("ended", onLost);
-    await resumed;
+    await resumption;
     await firstBlock;
     const flush = (): Promise<void> =>
       new Promise((resolve) => {

@@ -11,7 +11,7 @@ export class Resampler {
   private readonly step: number;
   private readonly half: number;
   private readonly cutoff: number;
-  private buffered: Float32Array;
+  private bufferedSamples: Float32Array;
   /** The time of the next output sample, in samples of `buffered`. */
   private position: number;
 
@@ -19,21 +19,21 @@ export class Resampler {
     this.step = inputRate / outputRate;
     this.cutoff = BAND * Math.min(1, outputRate / inputRate);
     this.half = Math.ceil(REACH / this.cutoff);
-    this.buffered = new Float32Array(this.half);
+    this.bufferedSamples = new Float32Array(this.half);
     this.position = this.half;
   }
 
   /** Adds samples of the stream, and returns the output samples that this completes. */
   add(samples: Float32Array): Float32Array {
-    const buffer = new Float32Array(this.buffered.length + samples.length);
-    buffer.set(this.buffered);
-    buffer.set(samples, this.buffered.length);
+    const buffer = new Float32Array(this.bufferedSamples.length + samples.length);
+    buffer.set(this.bufferedSamples);
+    buffer.set(samples, this.bufferedSamples.length);
     const count = Math.max(0, Math.ceil((buffer.length - this.half - this.position) / this.step));
     const output = new Float32Array(count);
     for (let i = 0; i < count; i++) output[i] = this.sampleAt(buffer, this.position + i * this.step);
     const next = this.position + count * this.step;
     const drop = Math.min(buffer.length, Math.max(0, Math.floor(next) - this.half));
-    this.buffered = buffer.slice(drop);
+    this.bufferedSamples = buffer.slice(drop);
     this.position = next - drop;
     return output;
   }

@@ -1,5 +1,5 @@
 import type { Connection } from "../../connection/connection";
-import { MOST_LOST_SAMPLES, SOUND_KIND, SOUND_RATE, type ConversationPart, type TalkMode, type VoiceState as ServerState } from "../../protocol";
+import { MAX_LOST_SAMPLES, SOUND_KIND, SOUND_RATE, type ConversationPart, type TalkMode, type VoiceState as ServerState } from "../../protocol";
 import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
 import { Microphone } from "./microphone";
@@ -30,7 +30,7 @@ export function encodeSound(samples: Int16Array, lostSeconds = 0): ArrayBuffer {
   const view = new DataView(frame);
   view.setUint32(0, SOUND_KIND, true);
   view.setUint32(4, samples.length, true);
-  view.setUint32(8, Math.min(MOST_LOST_SAMPLES, Math.round(lostSeconds * SOUND_RATE)), true);
+  view.setUint32(8, Math.min(MAX_LOST_SAMPLES, Math.round(lostSeconds * SOUND_RATE)), true);
   samples.forEach((sample, i) => view.setInt16(HEADER_BYTES + 2 * i, sample, true));
   return frame;
 }

@@ -123,7 +123,7 @@ export class WordsState {
   }
 
   requestFile(): void {
-    this.connection.send({ type: "ask_words_file" });
+    this.connection.send({ type: "request_words_file" });
   }
 
   /** Whether the word can be spoken now: its button is held and the microphone is open. */

@@ -1,8 +1,8 @@
 /** Modeling the world: its bar over the scene, its panel, its keys. */
 export const modeling = {
   panel: "World",
-  begin: "Model the world: the simulation is paused at its start",
-  end: "End modeling and resume the simulation",
+  startEditing: "Model the world: the simulation is paused at its start",
+  stopEditing: "End modeling and resume the simulation",
   label: "Model the world",
   kinds: {
     box: "Box",
@@ -31,7 +31,7 @@ export const modeling = {
   path: "File",
   untitled: "not saved yet",
   unsaved: "unsaved changes",
-  off: "Turn on modeling to add, move and change models of the world.",
+  inactiveHint: "Turn on modeling to add, move and change models of the world.",
   start: "Model the world",
   entities: "In the world",
   empty: "The world is empty: add a shape or model from the bar above the scene.",
@@ -41,7 +41,7 @@ export const modeling = {
   ungroup: "Ungroup",
   copyPaste: "Copy, paste",
   deselect: "Stop placing the shape, or clear the selection",
-  several: (count: number): string => `${count} selected`,
+  selectedCount: (count: number): string => `${count} selected`,
   properties: "Properties",
   name: "Name",
   position: "Position, m",

@@ -2,8 +2,8 @@ import type { modeling as english } from "../en/modeling";
 
 export const modeling: typeof english = {
   panel: "世界",
-  begin: "编辑世界：时间停在起点",
-  end: "结束编辑，继续仿真",
+  startEditing: "编辑世界：时间停在起点",
+  stopEditing: "结束编辑，继续仿真",
   label: "编辑世界",
   kinds: {
     box: "长方体",
@@ -32,7 +32,7 @@ export const modeling: typeof english = {
   path: "文件",
   untitled: "尚未保存",
   unsaved: "有未保存的修改",
-  off: "打开编辑模式后，可以添加、移动和修改世界中的物体。",
+  inactiveHint: "打开编辑模式后，可以添加、移动和修改世界中的物体。",
   start: "编辑世界",
   entities: "世界中的物体",
   empty: "这个世界里还没有物体：请从场景上方的工具条中选取。",
@@ -42,7 +42,7 @@ export const modeling: typeof english = {
   ungroup: "取消组合",
   copyPaste: "复制、粘贴",
   deselect: "放下手中的物体，否则取消选择",
-  several: (count: number): string => `已选择 ${count} 个`,
+  selectedCount: (count: number): string => `已选择 ${count} 个`,
   properties: "属性",
   name: "名称",
   position: "位置（米）",

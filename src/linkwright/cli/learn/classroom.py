@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.learning.page.classroom_view import run_classroom
 
     workspace = (arguments.workspace or workspace_at(Path.cwd(), arguments.course)).absolute()
-    room = open_classroom(workspace, arguments.course)
+    classroom = open_classroom(workspace, arguments.course)
     try:
         workspace.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -42,4 +42,4 @@ def run(arguments: argparse.Namespace) -> int:
     options = HostOptions(
         arguments.host, arguments.port, not arguments.no_open, network=False, history=arguments.history
     )
-    return run_classroom(room, options, foxglove=arguments.foxglove)
+    return run_classroom(classroom, options, foxglove=arguments.foxglove)

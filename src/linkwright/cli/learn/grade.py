@@ -161,8 +161,8 @@ def _select_steps(course: Course, arguments: argparse.Namespace) -> list[Step]:
         LinkwrightError: LEARN106, the course has no such lesson, or the lessons have no such step.
     """
     lessons = course.find_lessons(arguments.lesson)
-    given = lessons if arguments.lesson else ()
-    named = {course.find_step(name, given).address for name in arguments.step}
+    given_lessons = lessons if arguments.lesson else ()
+    named = {course.find_step(name, given_lessons).address for name in arguments.step}
     ids = {lesson.id for lesson in lessons}
     return [step for step in course.steps if step.lesson.id in ids and (not named or step.address in named)]
 

@@ -19,7 +19,7 @@ from linkwright.cli.entry import main as run_command
 def main(words: Sequence[str]) -> int:
     """Wait for a message on a topic, and run a program."""
     topic, program, *arguments = words
-    with Path(os.devnull).open("w", encoding="utf-8") as nothing, redirect_stdout(nothing):
+    with Path(os.devnull).open("w", encoding="utf-8") as null_output, redirect_stdout(null_output):
         status = run_command(["topic", "echo", "--once", topic])
     if status:
         return status

@@ -64,7 +64,7 @@ class JointTrajectoryController(Controller[Parameters]):
     # --- lifecycle ----------------------------------------------------------------------------------------------------
 
     def on_configure(self) -> None:
-        """Create the topics, the service and the action server."""
+        """Create the publishers, the subscription, the service and the action server."""
         parameters = self.parameters
         self._check(parameters)
         self._active = False

@@ -12,7 +12,7 @@ from typing import Any
 
 from linkwright.control.controllers.joint_trajectory_parameters import Parameters
 from linkwright.control.motion.splines import MotionState
-from linkwright.control.motion.tolerances import Tolerances, resolved
+from linkwright.control.motion.tolerances import Tolerances, effective_tolerance
 from linkwright.control.motion.trajectory import Trajectory, TrajectoryPoint
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
@@ -95,7 +95,7 @@ def trajectory_of(message: Any, parameters: Parameters, held_positions: Sequence
         message.joint_names.index(name) if name in message.joint_names else -1 for name in parameters.joints
     ]
 
-    def ordered(values: Sequence[float], defaults: Sequence[float]) -> list[float]:
+    def reorder(values: Sequence[float], defaults: Sequence[float]) -> list[float]:
         if not len(values):
             return []
         return [
@@ -108,9 +108,9 @@ def trajectory_of(message: Any, parameters: Parameters, held_positions: Sequence
         TrajectoryPoint(
             nanoseconds(point.time_from_start),
             MotionState(
-                ordered(point.positions, held_positions),
-                ordered(point.velocities, zeros),
-                ordered(point.accelerations, zeros),
+                reorder(point.positions, held_positions),
+                reorder(point.velocities, zeros),
+                reorder(point.accelerations, zeros),
             ),
         )
         for point in message.points
@@ -145,7 +145,9 @@ def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, log: Ca
             change = tolerances.with_path if field == "path_tolerance" else tolerances.with_goal
             tolerances = change(index, new_tolerance)
     try:
-        goal_time_s = resolved(tolerances.goal_time_s, nanoseconds(goal.goal_time_tolerance) / NANOSECONDS_PER_SECOND)
+        goal_time_s = effective_tolerance(
+            tolerances.goal_time_s, nanoseconds(goal.goal_time_tolerance) / NANOSECONDS_PER_SECOND
+        )
     except ValueError:
         log("goal.goal_time_tolerance is negative and not -1. Using default tolerances.")
         return default

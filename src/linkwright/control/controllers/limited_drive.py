@@ -63,7 +63,7 @@ class LimitedDrive(Controller[P], Generic[P]):
         """Return the limits of each velocity component by name, such as ``linear.x``."""
 
     def on_configure(self) -> None:
-        """Create the limiters and the topics.
+        """Create the limiters, the subscription and the publishers.
 
         Raises:
             ControllerError: a limit is invalid, or a list of variances has the wrong length.

@@ -90,7 +90,7 @@ class PidController(Controller[Parameters]):
         return [f"{name}/{kind}" for kind in parameters.reference_and_state_interfaces for name in parameters.measured]
 
     def on_configure(self) -> None:
-        """Create the topics and the service.
+        """Create the publisher, the subscriptions and the service.
 
         Raises:
             ControllerError: the two lists of degrees of freedom differ in length.

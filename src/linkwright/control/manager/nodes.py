@@ -44,11 +44,11 @@ def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node
     if manager.has_parameter("use_sim_time"):
         values["use_sim_time"] = manager.get_parameter("use_sim_time").value
     values |= process.parameters.for_node(full_name)
-    ignored_findings = process.parameters.left_out_for(full_name)
+    ignored_findings = process.parameters.skipped_findings_for(full_name)
     for path in string_list(manager, f"{name}.params_file"):
         rules = read_parameter_file(path)
         values |= rules.for_node(full_name)
-        ignored_findings += rules.left_out_for(full_name)
+        ignored_findings += rules.skipped_findings_for(full_name)
     for message in dict.fromkeys(str(finding.message) for finding in ignored_findings):
         manager.get_logger().warning(f"{name}: {message}; the parameter is left out")
     ros_arguments = parse(

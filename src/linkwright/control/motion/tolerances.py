@@ -52,9 +52,9 @@ class StateTolerance:
             ValueError: a value is negative and not -1.
         """
         return StateTolerance(
-            resolved(self.position, position),
-            resolved(self.velocity, velocity),
-            resolved(self.acceleration, acceleration),
+            effective_tolerance(self.position, position),
+            effective_tolerance(self.velocity, velocity),
+            effective_tolerance(self.acceleration, acceleration),
         )
 
 
@@ -82,7 +82,7 @@ class Tolerances:
         return replace(self, goal=(*self.goal[:joint], tolerance, *self.goal[joint + 1 :]))
 
 
-def resolved(default: float, goal_value: float) -> float:
+def effective_tolerance(default: float, goal_value: float) -> float:
     """Return the tolerance for a goal, or the default if the goal does not specify one.
 
     Raises:

@@ -268,7 +268,7 @@ class _CalledDescription:
         """
         inclusions: dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]] = {}
         for package, file in self.files:
-            for package_in_path, name, inclusion in file.included:
+            for package_in_path, name, inclusion in file.included_names:
                 inclusions.setdefault(name, []).append((package_in_path, package, file, inclusion))
         return inclusions
 

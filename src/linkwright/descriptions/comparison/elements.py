@@ -175,13 +175,13 @@ def _without_common(elements: Mapping[str, Element], contents: Sequence[Hashable
         common: the number of counterparts of each content.
     """
     remaining = Counter(common)
-    rest: _Rest = {}
+    unmatched: _Rest = {}
     for (key, element), content in zip(elements.items(), contents, strict=True):
         if remaining[content]:
             remaining[content] -= 1
         else:
-            rest.setdefault(f"{element.tag} {_name_of(element) or ''}", []).append((key, element))
-    return rest
+            unmatched.setdefault(f"{element.tag} {_name_of(element) or ''}", []).append((key, element))
+    return unmatched
 
 
 def _name_of(element: Element) -> str | None:

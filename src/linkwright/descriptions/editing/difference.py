@@ -48,19 +48,19 @@ def path_to(root: Element, element: Element) -> tuple[int, ...] | None:
     return None
 
 
-def other_differences(before: Element, after: Element, target: Target) -> Iterator[tuple[Element, ...]]:
+def other_differences(old_root: Element, new_root: Element, target: Target) -> Iterator[tuple[Element, ...]]:
     """Yield the differences, except a difference in the edited attribute.
 
     Args:
-        before: the root of the first document.
-        after: the root of the second document.
+        old_root: the root of the first document.
+        new_root: the root of the second document.
         target: the attribute that may differ; the attribute and its element may be new.
 
     Yields:
         The elements of the first document on the path from its root (exclusive) to an element that differs; empty if
         the root differs.
     """
-    pending: list[tuple[Element, Element, tuple[Element, ...], tuple[int, ...]]] = [(before, after, (), ())]
+    pending: list[tuple[Element, Element, tuple[Element, ...], tuple[int, ...]]] = [(old_root, new_root, (), ())]
     while pending:
         old, new, trail, path = pending.pop()
         old_children, new_children = list(old.elements()), list(new.elements())

@@ -153,8 +153,8 @@ class _Planner:
         """Return the plan of all edits."""
         unsaved = self._first.texts
         texts = {str(path): text for path, text in self._current.texts.items() if unsaved.get(path) != text}
-        before = {path: Overlay(unsaved).read(path).text for path in texts}
-        return EditPlan(texts, before, tuple(self._also_changed))
+        old_texts = {path: Overlay(unsaved).read(path).text for path in texts}
+        return EditPlan(texts, old_texts, tuple(self._also_changed))
 
     # one number
 

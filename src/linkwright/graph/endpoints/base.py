@@ -15,7 +15,7 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from linkwright.graph.loop.node_handle import CallbackGroup, NodeHandle, Part
 from linkwright.graph.names.rules import NodeIdentity
-from linkwright.graph.qos.compatibility import resolved
+from linkwright.graph.qos.compatibility import resolve_defaults
 from linkwright.graph.qos.profile import QoSProfile
 
 
@@ -212,7 +212,13 @@ class Endpoint(Part):
     def info(self) -> EndpointInfo:
         """Return the endpoint's description for graph queries."""
         return EndpointInfo(
-            self.kind, self.node.identity, self.name, self.type_name, resolved(self.qos_profile), self.gid, local=True
+            self.kind,
+            self.node.identity,
+            self.name,
+            self.type_name,
+            resolve_defaults(self.qos_profile),
+            self.gid,
+            local=True,
         )
 
     def begin(self) -> None:

@@ -77,7 +77,7 @@ class Transport(Protocol):
     def close_presence(self, presence: Presence) -> None:
         """Withdraw an endpoint that was announced with `open_presence`."""
 
-    def look_around(self) -> None:
+    def start_discovery(self) -> None:
         """Discover the nodes and endpoints of other processes.
 
         The graph calls this method before each query for remote nodes or endpoints. A transport need not start

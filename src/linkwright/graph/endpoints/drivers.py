@@ -23,7 +23,7 @@ _QUIET_S = 10.0
 
 
 class DisputeDetector:
-    """A detector of publishers whose commands repeatedly replace each other.
+    """Detects publishers whose commands repeatedly replace each other.
 
     A publisher takes over when its command differs from the previous command, which another publisher sent. In a
     dispute, several publishers take over repeatedly for a while. A handover is not a dispute. Neither is a final stop
@@ -105,7 +105,7 @@ class CommandedNode(Protocol):
 
 
 class DriverWatch:
-    """A monitor that warns when several nodes command the same robot at the same time.
+    """Warns when several nodes command the same robot at the same time.
 
     It logs one warning, with the names of the nodes, whenever the set of these nodes changes. As in ROS and Gazebo,
     each message takes effect when it arrives. A dispute is reported, not prevented.

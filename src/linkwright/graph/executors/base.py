@@ -384,11 +384,11 @@ class Executor:
             call = callback_of.take()
             return None if call is None else call()
 
-        def ended() -> None:
+        def on_end() -> None:
             if begun:
                 self._end_execution(entity)
 
-        return Task(run, executor=self, on_end=ended)
+        return Task(run, executor=self, on_end=on_end)
 
     def _end_execution(self, entity: Entity) -> None:
         if not entity.unblockable:

@@ -24,7 +24,7 @@ It may be called from any thread, but never by two threads at the same time.
 
 
 class SharedNameMonitor:
-    """A monitor of the node names of this process that other processes also use.
+    """Watches for node names of this process that other processes also use.
 
     Args:
         notify: receives the shared names when they change. None logs a warning for each name when it becomes shared.
@@ -190,7 +190,7 @@ class GraphQueries:
         """Return the nodes of this process, and the nodes discovered so far in other processes."""
         remote_nodes: Sequence[NodeIdentity] = ()
         if self._transport is not None:
-            self._transport.look_around()
+            self._transport.start_discovery()
             remote_nodes = self._transport.remote_nodes()
         return [*(node.identity for node in tuple(self._nodes)), *remote_nodes]
 
@@ -206,7 +206,7 @@ class GraphQueries:
         """Return the endpoints of other processes that have been discovered so far."""
         if self._transport is None:
             return ()
-        self._transport.look_around()
+        self._transport.start_discovery()
         return self._transport.remote_endpoints()
 
     def node_names(self) -> list[str]:

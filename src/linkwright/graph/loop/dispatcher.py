@@ -39,7 +39,7 @@ class Entity(Part, ABC):
     """Whether the entity's calls run no callback of the user, so that they need not wait for a callback group."""
 
     postponed = 0
-    """How many times an executor has let other work run first; see ``Executor._postpone``."""
+    """The number of times that an executor has let other work run first; see ``Executor._postpone``."""
 
     def __init__(self, node: NodeHandle, callback_group: CallbackGroup | None = None) -> None:
         self.node = node
@@ -344,12 +344,12 @@ class LoopDispatcher:
         task = self._loop.create_task(self._run(entity, coroutine))
         self._tasks[task] = entity.node
 
-        def ended(task: asyncio.Task[None]) -> None:
+        def on_end(task: asyncio.Task[None]) -> None:
             self._tasks.pop(task, None)
             coroutine.close()
             self._release(group, entity)
 
-        task.add_done_callback(ended)
+        task.add_done_callback(on_end)
 
     async def _run(self, entity: Entity, coroutine: Coroutine[Any, Any, object]) -> None:
         try:

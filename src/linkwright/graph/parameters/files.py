@@ -72,7 +72,7 @@ def read_parameter_file(path: str | Path) -> ParameterRules:
 def parse_parameters(source: SourceText) -> ParameterRules:
     """Parse the text of a parameter file.
 
-    A parameter whose list contains lists or mappings is left out, with a finding in `ParameterRules.left_out`.
+    A parameter whose list contains lists or mappings is left out, with a finding in `ParameterRules.skipped_findings`.
 
     Raises:
         LinkwrightError: GRAPH212, a mistake with its position.
@@ -221,7 +221,7 @@ class _Reader:
             (finding,) = error.diagnostics
             note = Note(phrase("the parameter is ignored"))
             warning = finding.with_changes(severity=Severity.WARNING, notes=(note,))
-            self._rules.left_out.append((pattern, warning))
+            self._rules.skipped_findings.append((pattern, warning))
             self._skip_rest_of_list()
 
     def _skip_rest_of_list(self) -> None:
@@ -326,7 +326,7 @@ def _type_hint(first: Any, value: Any, text: str) -> Phrase:
     if type(first) is float and type(value) is int:
         return phrase("write {text}.0", text=text)
     if type(first) is int and type(value) is float:
-        return phrase("write {value}.0 as the first value, or integers only", value=first)
+        return phrase("write the first value as {value}.0, or make all values integers", value=first)
     if type(first) is str:
         return phrase('write "{text}"', text=text)
     return phrase("all values of a list must be of one type")

@@ -14,7 +14,7 @@ from linkwright.graph.parameters.parameter import (
     ParameterException,
     ParameterNotDeclaredException,
     ParameterUninitializedException,
-    interface,
+    message_class,
     parameter_value_to_python,
     service_type,
 )
@@ -234,11 +234,11 @@ class NodeParameters:
             raise TypeError("The depth must be instance of type int")
         if depth < 0:
             raise ValueError("The depth must be greater than or equal to zero")
-        from linkwright.graph.parameters.parameter import interface
+        from linkwright.graph.parameters.parameter import message_class
 
         names = [name for name in self.__parameters.names() if _is_listed(name, prefixes, depth)]
         name_prefixes = [name.rpartition(PARAMETER_SEPARATOR_STRING)[0] for name in names]
-        result = interface("ListParametersResult")()
+        result = message_class("ListParametersResult")()
         result.names = names
         result.prefixes = [prefix for prefix in dict.fromkeys(name_prefixes) if prefix]
         return result
@@ -430,7 +430,7 @@ class ParameterServices:
         try:
             return self._node.set_parameters_atomically([Parameter.from_parameter_msg(message) for message in messages])
         except (ParameterException, ValueError) as error:
-            return interface("SetParametersResult")(successful=False, reason=str(error))
+            return message_class("SetParametersResult")(successful=False, reason=str(error))
 
 
 class ParameterEvents:

@@ -24,13 +24,14 @@ class ParameterRules:
 
     Attributes:
         files: the paths of the parameter files from which the values were read.
-        left_out: patterns, each with a finding about a parameter that was left out because its value is not allowed.
+        skipped_findings: patterns, each with a finding about a parameter that is not set because its value is not
+            allowed.
     """
 
     def __init__(self) -> None:
         self._values: dict[str, dict[str, Any]] = {}
         self.files: list[str] = []
-        self.left_out: list[tuple[str, Diagnostic]] = []
+        self.skipped_findings: list[tuple[str, Diagnostic]] = []
 
     def __bool__(self) -> bool:
         return bool(self._values)
@@ -55,7 +56,7 @@ class ParameterRules:
         for pattern, values in other:
             self.section(pattern).update(values)
         self.files += other.files
-        self.left_out += other.left_out
+        self.skipped_findings += other.skipped_findings
 
     @property
     def patterns(self) -> list[str]:
@@ -83,9 +84,9 @@ class ParameterRules:
                 node_values.update(values)
         return node_values
 
-    def left_out_for(self, full_name: str) -> list[Diagnostic]:
-        """Return the findings about parameters that were left out for a node."""
-        return [finding for pattern, finding in self.left_out if _expression(pattern).fullmatch(full_name)]
+    def skipped_findings_for(self, full_name: str) -> list[Diagnostic]:
+        """Return the findings about parameters of a node whose values are not allowed, so that they are not set."""
+        return [finding for pattern, finding in self.skipped_findings if _expression(pattern).fullmatch(full_name)]
 
 
 @lru_cache(maxsize=256)
@@ -100,7 +101,7 @@ class ParameterException(LinkwrightError):  # noqa: N818  # rclpy's name, which 
     """The base of rclpy's parameter exceptions.
 
     Args:
-        error_msg: the mistake.
+        error_msg: what is wrong.
         parameters: the name or names of the parameters concerned.
         code: the code of the finding.
         hint: how to fix the mistake.
@@ -300,7 +301,7 @@ _ARRAYS = (
     (ParameterType.DOUBLE_ARRAY, float),
     (ParameterType.STRING_ARRAY, str),
 )
-FIELDS = {
+VALUE_FIELDS = {
     ParameterType.BOOL: "bool_value",
     ParameterType.INTEGER: "integer_value",
     ParameterType.DOUBLE: "double_value",
@@ -372,7 +373,7 @@ class Parameter:
         message = get_message("rcl_interfaces/msg/ParameterValue")()
         message.type = self._type_.value
         if self._type_ is not ParameterType.NOT_SET:
-            setattr(message, FIELDS[self._type_], self._message_value())
+            setattr(message, VALUE_FIELDS[self._type_], self._message_value())
         return message
 
     def to_parameter_msg(self) -> Any:
@@ -411,7 +412,7 @@ def parameter_value_to_python(parameter_value: Any) -> Any:
         raise RuntimeError(f"unexpected parameter type {parameter_value.type}") from None
     if type_ is ParameterType.NOT_SET:
         return None
-    value = getattr(parameter_value, FIELDS[type_])
+    value = getattr(parameter_value, VALUE_FIELDS[type_])
     return list(value) if type_.is_array else value
 
 
@@ -482,7 +483,7 @@ def service_type(service: str) -> str:
     return "rcl_interfaces/srv/" + "".join(word.capitalize() for word in service.split("_"))
 
 
-def interface(name: str) -> Any:
+def message_class(name: str) -> Any:
     """Return a message class of rcl_interfaces."""
     from linkwright.messages import get_message
 
@@ -494,10 +495,10 @@ def to_descriptor_message(descriptor: Any) -> Any:
 
     A descriptor that is already such a message is returned unchanged.
     """
-    message_class = interface("ParameterDescriptor")
-    if isinstance(descriptor, message_class):
+    descriptor_class = message_class("ParameterDescriptor")
+    if isinstance(descriptor, descriptor_class):
         return descriptor
-    message = message_class(
+    message = descriptor_class(
         name=descriptor.name,
         type=descriptor.type,
         description=descriptor.description,
@@ -517,11 +518,13 @@ def to_result_message(result: Any) -> Any:
 
     A result that is already such a message is returned unchanged.
     """
-    message_class = interface("SetParametersResult")
-    if isinstance(result, message_class):
+    result_class = message_class("SetParametersResult")
+    if isinstance(result, result_class):
         return result
-    return message_class(successful=result.successful, reason=result.reason)
+    return result_class(successful=result.successful, reason=result.reason)
 
 
 def _range(name: str, limits: Range, kind: type) -> Any:
-    return interface(name)(from_value=kind(limits.from_value), to_value=kind(limits.to_value), step=kind(limits.step))
+    return message_class(name)(
+        from_value=kind(limits.from_value), to_value=kind(limits.to_value), step=kind(limits.step)
+    )

@@ -41,7 +41,7 @@ def limit_ns(duration: Duration) -> int | None:
     return None if nanoseconds <= 0 or nanoseconds >= BEST_AVAILABLE_DURATION.nanoseconds else nanoseconds
 
 
-def resolved(qos: QoSProfile) -> QoSProfile:
+def resolve_defaults(qos: QoSProfile) -> QoSProfile:
     """Return a profile in which policies left to the middleware have Cyclone DDS's values.
 
     Unspecified durations become infinite.

@@ -31,23 +31,23 @@ class _Outlet:
 
     Args:
         output: the topic.
-        make: creates a message from the values that are sent; None if messages themselves are sent.
+        create_message: creates a message from the values that are sent; None if messages themselves are sent.
     """
 
-    __slots__ = ("_make", "_output")
+    __slots__ = ("_create_message", "_output")
 
-    def __init__(self, output: Output, make: Callable[..., Any] | None = None) -> None:
+    def __init__(self, output: Output, create_message: Callable[..., Any] | None = None) -> None:
         self._output = output
-        self._make = make
+        self._create_message = create_message
 
     def publish(self, message: Any) -> None:
         """Publish a message.
 
-        With `make`, `message` contains the values from which `make` creates the message.
+        With `create_message`, `message` contains the values from which `create_message` creates the message.
         """
-        output, make = self._output, self._make
+        output, create_message = self._output, self._create_message
         try:
-            outgoing_message = message if make is None else make(*message)
+            outgoing_message = message if create_message is None else create_message(*message)
             for publisher in output.publishers:
                 publisher.publish(outgoing_message)
         except InvalidHandleError:
@@ -99,15 +99,15 @@ class Output:
         """
         self.exchange.send(self._outlet, message)
 
-    def deferred_publisher(self, make: Callable[..., Any]) -> Callable[..., None]:
-        """Return a function that publishes the message created by `make` from its arguments.
+    def deferred_publisher(self, create_message: Callable[..., Any]) -> Callable[..., None]:
+        """Return a function that publishes the message created by `create_message` from its arguments.
 
         The message is created where it is published, so a simulation with its own thread need not wait for it.
 
         Args:
-            make: creates a message from values that do not change afterwards.
+            create_message: creates a message from values that do not change afterwards.
         """
-        outlet = _Outlet(self, make)
+        outlet = _Outlet(self, create_message)
 
         def send(*values: Any) -> None:
             self.exchange.send(outlet, values)

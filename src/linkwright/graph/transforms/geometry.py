@@ -136,7 +136,7 @@ def _rotate_vector(transform: Any, vector: Any) -> Vector3:
 
 
 def _transform(position: Any, rotation: Any) -> Transform:
-    unit_rotation = normalized(rotation.x, rotation.y, rotation.z, rotation.w, least=_NO_ROTATION)
+    unit_rotation = normalized(rotation.x, rotation.y, rotation.z, rotation.w, min_squared_norm=_NO_ROTATION)
     return (position.x, position.y, position.z, *unit_rotation)
 
 

@@ -19,7 +19,7 @@ class FillableBuffer(Protocol):
 
 
 class TransformListener:
-    """A listener that stores the transforms from ``/tf`` and ``/tf_static`` in a buffer.
+    """Stores the transforms from ``/tf`` and ``/tf_static`` in a buffer.
 
     The topic names are absolute, as in tf2_ros: namespaces do not separate the transforms, but remappings can.
 

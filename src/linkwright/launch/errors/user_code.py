@@ -43,7 +43,7 @@ _JOINED_SUBSTITUTION = re.compile(r'(concatenate str \(not "|operand type\(s\).*
 _ACTION_FOR_LIST = re.compile(r"^'(Node|ExecuteProcess|IncludeLaunchDescription|\w+Action)' object is not iterable")
 _MODULES = {"Path": ("pathlib",), "glob": ("glob",)}
 _CONSTANTS = {"true": "True", "false": "False", "null": "None", "none": "None"}
-_MOST_MODULES = 3
+_MAX_MODULES = 3
 _CALL_LINES = 5
 """The number of lines of a call that are searched for an argument."""
 _ROS_1_MODULES = ("rospy", "roslib")
@@ -212,7 +212,7 @@ def import_hint(name: str) -> Phrase | None:
         return phrase("write 'import {name}' at the top of the file", name=name)
     interfaces = [full for kind in ("msg", "srv", "action") for full in interface_names(kind)]
     locations = [".".join(full.split("/")[:-1]) for full in interfaces if full.endswith(f"/{name}")]
-    modules = [*_MODULES.get(name, ()), *locations, *modules_providing(name)][:_MOST_MODULES]
+    modules = [*_MODULES.get(name, ()), *locations, *modules_providing(name)][:_MAX_MODULES]
     if not modules:
         return None
     return phrase("import it from {modules}", modules=quoted_names(modules, " or "))

@@ -202,7 +202,7 @@ class Node(ExecuteProcess):
         self.hosted = is_hosted(package, executable) and self._may_be_hosted(context, package, executable)
         self.__forget()
         self._perform_substitutions(context)
-        extension_arguments = self.__extended(context)
+        extension_arguments = self.__run_extensions(context)
         if self.hosted:
             assert package is not None
             process_name = self._host(context, package, executable, extension_arguments)
@@ -215,7 +215,7 @@ class Node(ExecuteProcess):
                 context.session.log.write_warning(process_name, warning)
         return None
 
-    def __extended(self, context: LaunchContext) -> list[Any]:
+    def __run_extensions(self, context: LaunchContext) -> list[Any]:
         """Run the extensions, which may change the name and namespace of the node.
 
         Returns:
@@ -378,7 +378,7 @@ class Node(ExecuteProcess):
             arguments,
             self.viewer_config(context),
             destinations=self._destinations(context),
-            respawns=self._respawn_max_retries if self._typed(context, "respawn", self._respawn) else 0,
+            respawns=self._respawn_max_retries if self._convert_value(context, "respawn", self._respawn) else 0,
             respawn_delay=self._respawn_delay or 0.0,
             parameters_of_others=self.__node_parameters.rules(context),
         )

@@ -88,7 +88,8 @@ class NodeParameters:
             if not isinstance(source, FileSource):
                 continue
             rules = source.file.rules(context)
-            for finding in rules.left_out_for(node) if node else [omission for _, omission in rules.left_out]:
+            all_findings = [finding for _, finding in rules.skipped_findings]
+            for finding in rules.skipped_findings_for(node) if node else all_findings:
                 context.warn(finding)
             if node is None or not rules or rules.matches_node(node):
                 continue

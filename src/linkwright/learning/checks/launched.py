@@ -203,21 +203,21 @@ class LaunchCheck:
         self.expect_node(node)
         client = self._call(lambda: AsyncParameterClient(self._checker, node))
         pending: list[Any] = []
-        found: list[Any] = []
+        messages: list[Any] = []
 
         def has_value() -> bool:
             """Ask again after each response, because a node starts before it declares its parameters."""
             if pending and pending[0].ended():
-                found[:] = [value for value in pending.pop().result().values if value.type]
-            if not pending and not found and self._call(client.services_are_ready):
+                messages[:] = [value for value in pending.pop().result().values if value.type]
+            if not pending and not messages and self._call(client.services_are_ready):
                 pending.append(self._call(lambda: client.get_parameters([name])))
-            return bool(found)
+            return bool(messages)
 
         try:
             self._wait_until(has_value, phrase("the node '{node}' has no parameter '{name}'", node=node, name=name))
         finally:
             self._call(client.destroy)
-        return parameter_value_to_python(found[0])
+        return parameter_value_to_python(messages[0])
 
     def wait_for_message(self, topic: str, accept: Callable[[Any], bool] | None = None) -> Any:
         """Return the next message of a topic.

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Phrase, nearest, phrase, quoted_names
 
-_MOST_FILES = 3
+_MAX_FILES = 3
 _SKIPPED_FOLDERS = {"build", "install", "log", "__pycache__"}
 
 
@@ -20,29 +20,29 @@ def describe_missing_file(folder: Path, name: str, workspace: Path) -> Phrase:
         name: the path in the folder.
         workspace: the workspace, which may have the file in another folder.
     """
-    inside = _same_named_files(folder, name)
-    if not inside and (elsewhere := _same_named_files(workspace, name)):
+    matches = _same_named_files(folder, name)
+    if not matches and (matches_in_workspace := _same_named_files(workspace, name)):
         return phrase(
             "'{folder}' has no file '{name}'; the workspace has {others}",
             folder=folder.name,
             name=name,
-            others=quoted_names(elsewhere),
+            others=quoted_names(matches_in_workspace),
         )
-    inside = inside or _similar_files(folder, name)
-    if inside:
+    matches = matches or _similar_files(folder, name)
+    if matches:
         return phrase(
             "'{folder}' has no file '{name}'; it has {others}",
             folder=folder.name,
             name=name,
-            others=quoted_names(inside),
+            others=quoted_names(matches),
         )
-    elsewhere = _similar_files(workspace, Path(name).name)
-    if elsewhere:
+    matches_in_workspace = _similar_files(workspace, Path(name).name)
+    if matches_in_workspace:
         return phrase(
             "'{folder}' has no file '{name}'; the workspace has {others}",
             folder=folder.name,
             name=name,
-            others=quoted_names(elsewhere),
+            others=quoted_names(matches_in_workspace),
         )
     return phrase("'{folder}' has no file '{name}'", folder=folder.name, name=name)
 
@@ -50,7 +50,7 @@ def describe_missing_file(folder: Path, name: str, workspace: Path) -> Phrase:
 def _same_named_files(folder: Path, name: str) -> list[str]:
     """Return the files of a folder whose names differ only in case and punctuation from a name."""
     names = [file.relative_to(folder).as_posix() for file in _files(folder)]
-    return [other for other in names if _key(Path(other).name) == _key(Path(name).name)][:_MOST_FILES]
+    return [other for other in names if _key(Path(other).name) == _key(Path(name).name)][:_MAX_FILES]
 
 
 def _similar_files(folder: Path, name: str) -> list[str]:
@@ -59,9 +59,9 @@ def _similar_files(folder: Path, name: str) -> list[str]:
     stem = _stem(name)
     related = [other for other in names if _stem(other) == stem]
     suffix = Path(name).suffix
-    typos = nearest(name, [other for other in names if Path(other).suffix == suffix], _MOST_FILES)
-    beside = [other for other in names if Path(other).parent == Path(name).parent and Path(other).suffix == suffix]
-    return list(dict.fromkeys([*related, *typos, *beside]))[:_MOST_FILES]
+    typos = nearest(name, [other for other in names if Path(other).suffix == suffix], _MAX_FILES)
+    neighbors = [other for other in names if Path(other).parent == Path(name).parent and Path(other).suffix == suffix]
+    return list(dict.fromkeys([*related, *typos, *neighbors]))[:_MAX_FILES]
 
 
 def _key(name: str) -> str:

@@ -175,15 +175,15 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
     if isinstance(error, ImportError):
         text = text.removesuffix(f" ({error.path})")  # of the module, which is none of the learner's files
     frames = traceback.extract_tb(error.__traceback__)
-    own = [frame for frame in frames if Path(frame.filename).is_relative_to(workspace)]
-    if isinstance(error, LinkwrightError) and (error.diagnostics[0].span is not None or not own):
+    own_frames = [frame for frame in frames if Path(frame.filename).is_relative_to(workspace)]
+    if isinstance(error, LinkwrightError) and (error.diagnostics[0].span is not None or not own_frames):
         return describe_error(error)
     if isinstance(error, SyntaxError) and error.filename and Path(error.filename).is_relative_to(workspace):
         text = f"{type(error).__name__}: {error.msg}"
         hint = lookalike_hint(error.text or "") if "invalid character" in error.msg else None
         path, line = error.filename, error.lineno or 1
-    elif own:
-        path, line = own[-1].filename, own[-1].lineno or 1
+    elif own_frames:
+        path, line = own_frames[-1].filename, own_frames[-1].lineno or 1
         hint = (
             _own_module_hint(error, Path(path))
             or hint_about(error)

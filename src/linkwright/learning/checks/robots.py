@@ -32,7 +32,7 @@ _ANGLE_TOLERANCE = 0.02
 _COLOR_TOLERANCE = 0.15
 
 _DEFAULT_AXIS = (1.0, 0.0, 0.0)
-_MOST_NAMES = 8
+_MAX_NAMES = 8
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ class RobotCheck(_CheckedPart):
             return phrase("{message}; {reason}", message=message, reason=reason)
         if not names:
             return message
-        return phrase("{message}; the robot has {names}", message=message, names=quoted_names(names[:_MOST_NAMES]))
+        return phrase("{message}; the robot has {names}", message=message, names=quoted_names(names[:_MAX_NAMES]))
 
     def pose(self, link: str, frame: str | None = None) -> NDArray[np.float64]:
         """Return the pose of a link's frame with all joints at zero.
@@ -464,10 +464,13 @@ def _shape_difference(part: Visual | Collision, expected: ShapeSpec, rotation: N
         return phrase(
             "it is a {actual}, but should be a {expected}", actual=_kind(shape), expected=_kind(expected.shape)
         )
-    for name, actual, wanted in _sizes(shape, expected.shape):
-        if abs(actual - wanted) > _LENGTH_TOLERANCE:
+    for name, actual, expected_size in _sizes(shape, expected.shape):
+        if abs(actual - expected_size) > _LENGTH_TOLERANCE:
             return phrase(
-                "its {size} is {actual:g} m, but should be {expected:g} m", size=name, actual=actual, expected=wanted
+                "its {size} is {actual:g} m, but should be {expected:g} m",
+                size=name,
+                actual=actual,
+                expected=expected_size,
             )
     matrix = matrix_from_pose(row_from_pose(part.origin))
     direction, center = rotation @ matrix[:3, 2], rotation @ matrix[:3, 3]
@@ -495,7 +498,7 @@ def _sizes(shape: object, expected: object) -> list[tuple[str, float, float]]:
     """Return the name, the actual value and the expected value of each size of a shape, in m."""
     if isinstance(shape, Box) and isinstance(expected, Box):
         sizes = zip("xyz", shape.size, expected.size, strict=True)
-        return [(f"size {axis}", actual, wanted) for axis, actual, wanted in sizes]
+        return [(f"size {axis}", actual, expected_size) for axis, actual, expected_size in sizes]
     names = [name for name in ("radius", "length") if hasattr(expected, name)]
     return [(name, getattr(shape, name), getattr(expected, name)) for name in names]
 

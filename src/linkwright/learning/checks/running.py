@@ -240,8 +240,8 @@ class CheckProcess:
 
     def _run_program(self, arguments: Sequence[str]) -> Phrase | None:
         """Run the program of the checks, and return the reason why it ended early, or None."""
-        with Path(os.devnull).open("r+b") as nothing, _last_bytes() as (errors, descriptor):
-            streams = nothing.fileno(), nothing.fileno(), descriptor
+        with Path(os.devnull).open("r+b") as null_device, _last_bytes() as (errors, descriptor):
+            streams = null_device.fileno(), null_device.fileno(), descriptor
             environment = {**os.environ, _NICENESS_VARIABLE: str(self._niceness)}
             process = self._start(MODULE, arguments, cwd=self._workspace, env=environment, streams=streams)
             self._process = process

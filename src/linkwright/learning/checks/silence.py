@@ -114,12 +114,12 @@ def _endpoints(test: Any, *, published: bool) -> dict[str, set[str]]:
     """Return the types, by topic, of the publishers or of the subscriptions of the learner's programs."""
     graph = test.graph
     find = graph.get_publisher_names_and_types_by_node if published else graph.get_subscriber_names_and_types_by_node
-    found: dict[str, set[str]] = {}
+    endpoints: dict[str, set[str]] = {}
     for name, namespace in test.program_nodes:
         for topic, types in find(name, namespace):
             if topic not in _GENERAL_TOPICS:
-                found.setdefault(topic, set()).update(types)
-    return found
+                endpoints.setdefault(topic, set()).update(types)
+    return endpoints
 
 
 def _similar_files(topic: str, topics: dict[str, set[str]]) -> str | None:

@@ -127,14 +127,14 @@ def _student(index: int, student: StudentMarks, titles: Mapping[str, LocalText])
 
 def _step(student: StudentMarks, step: str, mark: Mark, titles: Mapping[str, LocalText]) -> list[str]:
     claims = student.submission.progress.step(step)
-    taken = [_translated(counted("{count} hint", "{count} hints", claims.hints))] if claims.hints else []
-    taken += [_translated(phrase("solution used"))] if claims.solution else []
+    help_texts = [_translated(counted("{count} hint", "{count} hints", claims.hints))] if claims.hints else []
+    help_texts += [_translated(phrase("solution used"))] if claims.solution else []
     messages = "".join(f"<div class='message'>{_texts(message)}</div>" for message in mark.messages)
     sign = "<span class='good'>✓</span>" if mark.passed else "<span class='bad'>✗</span>"
     points = f"{student.points[step] if mark.passed else 0:g} / {student.points[step]:g}"
     if not mark.is_graded:
         sign, points = "?", f"– / {student.points[step]:g}"
-    return [_step_name(step, titles), sign, points, messages, ", ".join(taken), _seconds([mark])]
+    return [_step_name(step, titles), sign, points, messages, ", ".join(help_texts), _seconds([mark])]
 
 
 def _protections(students: Sequence[StudentMarks]) -> str:

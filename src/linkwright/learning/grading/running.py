@@ -22,7 +22,7 @@ from linkwright.learning.sandbox import Exceeded, Limits, Outcome, describe_exce
 _SLOW_SECONDS = 2.0
 """A failed run of more seconds may have waited in vain, and is repeated without other runs."""
 
-_MOST_BYTES = 4 << 20
+_MAX_BYTES = 4 << 20
 """The size up to which a result is read. The student's program can have written it."""
 
 
@@ -123,8 +123,8 @@ def _read_result(output: Path, step: Step) -> StepResult | None:
     except OSError:
         return None
     with os.fdopen(descriptor, "rb") as file:
-        content = file.read(_MOST_BYTES + 1)
-    if len(content) > _MOST_BYTES:
+        content = file.read(_MAX_BYTES + 1)
+    if len(content) > _MAX_BYTES:
         return None
     try:
         result = StepResult.from_data(json.loads(content))

@@ -19,8 +19,8 @@ from linkwright.learning.progress import PROGRESS_FILE, Progress, read_progress
 _ARCHIVES = {".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar"}
 _SKIPPED = {".git", "__pycache__", "__MACOSX"}
 _LONGEST_PROGRESS = 1 << 20
-_MOST_FILES = 20_000
-_MOST_BYTES = 256 << 20
+_MAX_FILES = 20_000
+_MAX_BYTES = 256 << 20
 _NESTING = 64
 """The limits of a copied folder: the bytes of `learn.yaml`, files, bytes of all files, levels."""
 
@@ -150,10 +150,10 @@ def copy_workspace(submission: Submission, target: Path) -> bool:
             folder.mkdir(exist_ok=True)
             continue
         count, size = count + 1, size + status.st_size
-        if count > _MOST_FILES or size > _MOST_BYTES:
-            size_limit = _MOST_BYTES >> 20
+        if count > _MAX_FILES or size > _MAX_BYTES:
+            size_limit = _MAX_BYTES >> 20
             submission.note(
-                phrase("the folder has more than {count} files or {size} MiB", count=_MOST_FILES, size=size_limit)
+                phrase("the folder has more than {count} files or {size} MiB", count=_MAX_FILES, size=size_limit)
             )
             submission.is_readable = False
             return False

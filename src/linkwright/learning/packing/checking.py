@@ -142,7 +142,11 @@ def _target_problems(
             )
         elif wheel_rank(wheel.file, target) is None or not wheel.pythons.contains(f"{target.python}.99"):
             yield _unsuitable_wheel(
-                phrase("{target}: the wheel '{file}' does not fit", target=target.label, file=wheel.file)
+                phrase(
+                    "{target}: the wheel '{file}' is not compatible with this Python or platform",
+                    target=target.label,
+                    file=wheel.file,
+                )
             )
         else:
             pinned[wheel.name] = wheel

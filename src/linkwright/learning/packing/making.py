@@ -251,16 +251,16 @@ def _copy_tree(source: Path, target: Path) -> None:
         copy = target / path.relative_to(source)
         if not path.is_file():
             continue
-        before, after = path.stat(), _stat(copy)
-        if after is None or (after.st_size, after.st_mtime) != (before.st_size, before.st_mtime):
+        source_stat, copy_stat = path.stat(), _stat(copy)
+        if copy_stat is None or (copy_stat.st_size, copy_stat.st_mtime) != (source_stat.st_size, source_stat.st_mtime):
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(path, copy)
-            os.utime(copy, (before.st_mtime, before.st_mtime))
+            os.utime(copy, (source_stat.st_mtime, source_stat.st_mtime))
 
 
 def _stat(path: Path) -> os.stat_result | None:
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return found if stat.S_ISREG(found.st_mode) else None
+    return status if stat.S_ISREG(status.st_mode) else None

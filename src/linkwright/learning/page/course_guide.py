@@ -69,7 +69,7 @@ class CourseGuide(Guide):
             messages.AnswerStep: self._answer,
             messages.TakeHint: self._take_hint,
             messages.TakeSolution: self._take_solution,
-            messages.AskCatchUp: lambda _: self._publish(self._catch_up_files()),
+            messages.RequestCatchUp: lambda _: self._publish(self._catch_up_files()),
             messages.CatchUp: self._catch_up,
         }
         self._open(self._step)

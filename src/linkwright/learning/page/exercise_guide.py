@@ -172,5 +172,5 @@ def _reasons(state: Mapping[str, Any]) -> dict[str, str] | None:
 
 def _without_title(text: str) -> str:
     """Return a Markdown text without its first heading, because the page shows the title."""
-    first, _, rest = text.lstrip().partition("\n")
-    return rest if first.startswith("# ") else text
+    title, _, body = text.lstrip().partition("\n")
+    return body if title.startswith("# ") else text

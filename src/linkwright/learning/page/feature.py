@@ -17,7 +17,7 @@ class CourseFeature(PageFeature):
 
     RECEIVES = (
         messages.AnswerStep,
-        messages.AskCatchUp,
+        messages.RequestCatchUp,
         messages.CatchUp,
         messages.CheckStep,
         messages.OpenStep,
@@ -36,7 +36,7 @@ class CourseFeature(PageFeature):
             self.context.pages.publish(message)
 
     def opening_messages(self) -> list[ServerMessage]:
-        """Return the messages of the guide."""
+        """Return the guide's messages for a page that has just opened."""
         return [] if self._guide is None else self._guide.opening_messages()
 
     def receive(self, page: Page, message: Any) -> None:

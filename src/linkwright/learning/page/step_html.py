@@ -48,9 +48,9 @@ def _renderer() -> MarkdownIt:
 
 
 def _render_line_end(_renderer: Any, tokens: Sequence[Token], index: int, _options: Any, _env: Any) -> str:
-    before = next((token.content[-1] for token in reversed(tokens[:index]) if token.content), "")
-    after = next((token.content[0] for token in tokens[index + 1 :] if token.content), "")
-    return "" if _CHINESE_PAIR.match(before + after) else "\n"
+    last_character = next((token.content[-1] for token in reversed(tokens[:index]) if token.content), "")
+    next_character = next((token.content[0] for token in tokens[index + 1 :] if token.content), "")
+    return "" if _CHINESE_PAIR.match(last_character + next_character) else "\n"
 
 
 def _render_image(renderer: Any, tokens: Sequence[Token], index: int, options: Any, env: Any) -> str:

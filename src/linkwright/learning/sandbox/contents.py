@@ -11,7 +11,7 @@ import tempfile
 from collections import Counter
 
 _SHARED_FOLDERS = ("/tmp", "/var/tmp", "/dev/shm", "/dev/mqueue", "/run/lock")
-"""Where all users may write."""
+"""The folders in which all users may write."""
 _LONGEST_PATH = 2048
 """Folders with longer paths are deleted: most programs cannot read much longer ones."""
 
@@ -126,9 +126,9 @@ def _paths_of(folder: str) -> list[str]:
 
 
 def _leads_out(path: str, folder: str) -> bool:
-    inside = os.path.realpath(folder)
+    real_folder = os.path.realpath(folder)
     target = os.path.realpath(path)
-    return target != inside and not target.startswith(inside + os.sep)
+    return target != real_folder and not target.startswith(real_folder + os.sep)
 
 
 def _permit_owner(path: str, status: os.stat_result) -> None:

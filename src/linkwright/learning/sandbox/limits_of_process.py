@@ -17,7 +17,7 @@ _NICENESS = 10
 _SPARE_PROCESSES = 16
 """The kernel allows this many more processes than the limit, so that the watchdog sees that it is exceeded."""
 _GROWTH_OF_OTHERS = 100
-"""How many more threads the user's other programs may start meanwhile, so that the run does not suffer from them."""
+"""The number of threads that the user's other programs may start meanwhile without affecting the run."""
 _OOM_SCORE = 1000
 
 

@@ -147,8 +147,8 @@ def drop_capabilities() -> None:
         for capability in range(64):
             _prctl(_PR_CAPBSET_DROP, capability)
     header = _CapabilityHeader(_CAPABILITY_VERSION_3, 0)
-    nothing = (ctypes.c_uint32 * 6)()
-    call("capset", ctypes.byref(header), ctypes.byref(nothing))
+    no_rights = (ctypes.c_uint32 * 6)()
+    call("capset", ctypes.byref(header), ctypes.byref(no_rights))
 
 
 def has_capability(number: int) -> bool:

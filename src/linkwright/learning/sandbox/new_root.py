@@ -79,8 +79,8 @@ class _Root:
                 return path if Path(path).exists() else None
             target = os.readlink(link)
             self._links[str(link)] = target
-            rest = Path(path).relative_to(link)
-            path = os.path.normpath(link.parent.resolve() / target / rest)
+            subpath = Path(path).relative_to(link)
+            path = os.path.normpath(link.parent.resolve() / target / subpath)
         return None
 
     def _at(self, path: str) -> str:
@@ -131,7 +131,7 @@ class _Root:
         """Mount the files and folders that the run may read."""
         done: list[str] = []
         for real in sorted(self._sources, key=lambda path: path.count("/")):
-            if not any(real == above or real.startswith(above.rstrip("/") + "/") for above in done):
+            if not any(real == ancestor or real.startswith(ancestor.rstrip("/") + "/") for ancestor in done):
                 make_read_only(self._bind(self._sources[real], real))
                 done.append(real)
         for link, target in self._links.items():

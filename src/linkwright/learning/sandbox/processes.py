@@ -34,13 +34,13 @@ def descendants(root: int) -> list[ProcessUsage]:
     children: dict[int, list[ProcessUsage]] = {}
     for process in _all_processes():
         children.setdefault(process.parent, []).append(process)
-    found: list[ProcessUsage] = []
+    processes: list[ProcessUsage] = []
     waiting = [root]
     while waiting:
-        below = children.pop(waiting.pop(), [])
-        found += below
-        waiting += [process.pid for process in below]
-    return found
+        children_of_process = children.pop(waiting.pop(), [])
+        processes += children_of_process
+        waiting += [process.pid for process in children_of_process]
+    return processes
 
 
 def _all_processes() -> Iterator[ProcessUsage]:

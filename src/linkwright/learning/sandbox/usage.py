@@ -72,7 +72,7 @@ def _list_folder(folder: str) -> Iterator[tuple[str, os.stat_result | None]]:
 
 
 class Watchdog:
-    """A monitor that compares the resource usage of a run with its limits.
+    """Compares the resource usage of a run with its limits.
 
     Attributes:
         user: the user of the run, if it differs from this process's user.

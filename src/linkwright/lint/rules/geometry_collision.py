@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, Span, phrase
-from linkwright.lint.extents import MARKER
+from linkwright.lint.extents import MAX_MARKER_SIZE
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.geometry import is_scenery
@@ -261,7 +261,11 @@ def _comparable_links(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]
     largest = math.inf if is_scenery(subject) else MeshInMillimeters().option(subject, "largest", float)
     for link in _links_with_both_shapes(subject):
         visual_box, collision_box = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
-        if visual_box is None or collision_box is None or min(visual_box.diagonal, collision_box.diagonal) < MARKER:
+        if (
+            visual_box is None
+            or collision_box is None
+            or min(visual_box.diagonal, collision_box.diagonal) < MAX_MARKER_SIZE
+        ):
             continue
         shapes: tuple[Visual | Collision, ...] = (*link.visuals, *link.collisions)
         meshes = [shape for shape in shapes if isinstance(shape.geometry, Mesh)]

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.lint.explanations import is_explained
-from linkwright.lint.extents import WEIGHTLESS
+from linkwright.lint.extents import MAX_PLACEHOLDER_MASS
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import child_or_inertial, links_with_inertial
@@ -79,7 +79,7 @@ def _shared_tensors(subject: Subject, min_links: int) -> Iterator[list[tuple[Lin
     groups: dict[tuple[float, ...], list[tuple[Link, Inertial]]] = {}
     for link, inertial in links_with_inertial(subject):
         values = tuple(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
-        if any(values) and inertial.mass >= WEIGHTLESS and subject.bodies.turns(link.name):
+        if any(values) and inertial.mass >= MAX_PLACEHOLDER_MASS and subject.bodies.turns(link.name):
             groups.setdefault(values, []).append((link, inertial))
     count = sum(map(len, groups.values()))
     for (ixx, iyy, izz, *_), group in groups.items():

@@ -12,7 +12,7 @@ from math import prod
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
 from linkwright.geometry.shapes import shape_volume
 from linkwright.lint.explanations import is_explained
-from linkwright.lint.extents import MARKER, WEIGHTLESS
+from linkwright.lint.extents import MAX_MARKER_SIZE, MAX_PLACEHOLDER_MASS
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import child_or_inertial, links_with_inertial
@@ -80,7 +80,12 @@ class DensityTooHigh(Rule):
 
         for link, inertial in subject.extents.links_with_relevant_mass:
             bounds, volume = subject.extents.link_bounds(link), subject.extents.volume(link)
-            if bounds is None or volume is None or bounds.diagonal <= MARKER or inertial.mass < _MIN_SUSPECT_MASS:
+            if (
+                bounds is None
+                or volume is None
+                or bounds.diagonal <= MAX_MARKER_SIZE
+                or inertial.mass < _MIN_SUSPECT_MASS
+            ):
                 continue
             if min(bounds.size) < _LENGTH_TOLERANCE / 10:
                 continue  # a sheet: its thickness is not meaningful
@@ -165,7 +170,7 @@ class DensityTooLow(Rule):
                 continue  # a frame of rods, for example as a mesh, fills little of its bounding box
             mass = bodies.mass(body)
             volume = sum(shape_volume(geometry) for geometry in shapes if not isinstance(geometry, Mesh))
-            if WEIGHTLESS <= mass < MIN_DENSITY * volume:
+            if MAX_PLACEHOLDER_MASS <= mass < MIN_DENSITY * volume:
                 link, inertial = max(links_with_mass, key=lambda item: item[1].mass)
                 yield self.report(
                     phrase(
@@ -318,7 +323,7 @@ class InertiaTooLarge(Rule):
     options = (Option("factor", 2.0, "the smallest factor above the largest possible moment that is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        if not subject.extents.measured:
+        if not subject.extents.measurable_links:
             return
         from linkwright.geometry.validity import largest_moment_within
 
@@ -421,8 +426,8 @@ class InertiaTooSmall(Rule):
 
 def _without_placeholders(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
     """Yield the measured links except those whose tensor `PlaceholderInertia` reports."""
-    placeholder_names = subject.once(placeholder_links) if subject.extents.measured else set()
-    return (item for item in subject.extents.measured if item[0].name not in placeholder_names)
+    placeholder_names = subject.once(placeholder_links) if subject.extents.measurable_links else set()
+    return (item for item in subject.extents.measurable_links if item[0].name not in placeholder_names)
 
 
 def _is_at_the_joint(subject: Subject, link: Link, inertial: Inertial) -> bool:

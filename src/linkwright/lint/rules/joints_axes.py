@@ -12,7 +12,7 @@ from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import format_number, joint_children, joints, values
 from linkwright.urdf import Joint
-from linkwright.urdf.values import plain
+from linkwright.urdf.values import shortest_text
 
 _TILT_TOLERANCE = 1e-6
 """The tilt in rad below which an axis is not reported, because it is only rounded: a micrometer per meter."""
@@ -251,7 +251,9 @@ class AxisTilted(Rule):
             tilt = perpendicular / abs(direction[main_index])
             if not _TILT_TOLERANCE < tilt <= max_tilt:
                 continue
-            exact_axis = " ".join(plain(float(round(part)) + 0.0) for part in _snap_to_axis(direction, main_index))
+            exact_axis = " ".join(
+                shortest_text(float(round(part)) + 0.0) for part in _snap_to_axis(direction, main_index)
+            )
             yield self.report(
                 phrase(
                     "the axis of joint '{name}' is almost {axis}: '{xyz}'",
@@ -316,7 +318,7 @@ class JointNotPublished(Rule):
 
 
 def _format_component(component: float) -> str:
-    return plain(float(f"{component:.6g}") + 0.0)
+    return shortest_text(float(f"{component:.6g}") + 0.0)
 
 
 def _snap_to_axis(direction: tuple[float, ...], main_index: int) -> list[float]:

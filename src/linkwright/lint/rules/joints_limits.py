@@ -317,8 +317,8 @@ class ZeroOutsideLimits(Rule):
 
     ## Why
 
-    RViz and joint_state_publisher start with such a joint in the middle of its range. Simulators start it at 0 and push
-    it into its range with a jolt. A range without 0 is not a mistake, so the rule is off by default.
+    joint_state_publisher starts such a joint in the middle of its range. Simulators start it at 0 and push it into its
+    range with a jolt. A range without 0 is not a mistake, so the rule is off by default.
 
     ## Example
 
@@ -328,7 +328,7 @@ class ZeroOutsideLimits(Rule):
 
     ## Use instead
 
-    Rotate the joint's `<origin>` so that 0 is a rest position, or give simulators an initial position.
+    Move or rotate the joint's `<origin>` so that 0 is a rest position, or give simulators an initial position.
     """
 
     code = "LW215"

@@ -282,7 +282,7 @@ class InstalledFileMissing(PackageRule):
                 hint = checkout_hint(package, item.text) or nearest_file_hint(package, item.text)
                 yield self.report(message, span=item.span, source=setup.source, hint=hint)
         if cmake is not None:
-            for argument in cmake.required:
+            for argument in cmake.required_paths:
                 text = argument.text.rstrip("/")
                 if text and not text.startswith("/") and "<" not in text and not _exists_or_is_generated(package, text):
                     message = phrase("CMakeLists.txt installs '{text}', which does not exist", text=argument.text)

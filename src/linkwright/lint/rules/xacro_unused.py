@@ -171,12 +171,12 @@ class UnusedMacro(XacroRule):
         if facts.is_library or facts.calls_open:
             return
         for definition in facts.main.macros:
-            if definition.name and definition.name not in facts.called:
+            if definition.name and definition.name not in facts.called_macros:
                 yield self.report(
                     phrase("nothing calls the macro '{name}'", name=definition.name),
                     definition.element,
                     "name",
-                    hint=_hint(definition.name, facts.called, f"<xacro:{definition.name} .../>"),
+                    hint=_hint(definition.name, facts.called_macros, f"<xacro:{definition.name} .../>"),
                     fix=remove_element(definition.element, safe=False),
                 )
 

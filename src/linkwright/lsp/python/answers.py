@@ -96,7 +96,7 @@ def _completions(answers: Sequence[Any], text: OpenText, parameters: Mapping[str
     lists = [answer if isinstance(answer, dict) else {"isIncomplete": False, "items": answer} for answer in answers]
     first, *others = lists
     edited_range = _edited_range(first)
-    if edited_range is not None and text.written(edited_range) != text.word_before(parameters["position"]):
+    if edited_range is not None and text.text_in(edited_range) != text.word_before(parameters["position"]):
         return first
     names = {_plain(item["label"]) for item in first["items"]}
     items = list(map(_with_defaults(first), first["items"]))

@@ -52,14 +52,14 @@ class OpenText:
         findings = [finding for own in self._findings.values() for finding in own]
         places = [offsets(self._positions, finding["range"]) for finding in findings]
         for change in changes:
-            before, changed_range = self.text, change.get("range")
+            old_text, changed_range = self.text, change.get("range")
             if changed_range is None:
                 text = change["text"]
             else:
                 start, end = offsets(self._positions, changed_range)
-                text = before[:start] + change["text"] + before[end:]
+                text = old_text[:start] + change["text"] + old_text[end:]
             self._positions = TextPositions(text, self._encoding)
-            moved = _Replacement(before, text).moved
+            moved = _Replacement(old_text, text).moved
             places = [moved(*offset_pair) for offset_pair in places]
         self.version = version
         for finding, (start, end) in zip(findings, places, strict=True):
@@ -85,7 +85,7 @@ class OpenText:
             start -= 1
         return self.text[start:offset]
 
-    def written(self, range_: Mapping[str, Any]) -> str:
+    def text_in(self, range_: Mapping[str, Any]) -> str:
         """Return the text of a range."""
         start, end = offsets(self._positions, range_)
         return self.text[start:end]
@@ -94,13 +94,16 @@ class OpenText:
 class _Replacement:
     """The smallest range of a text that was replaced, and the length of the replacement."""
 
-    def __init__(self, before: str, after: str) -> None:
-        shortest = min(len(before), len(after))
-        start = next((index for index in range(shortest) if before[index] != after[index]), shortest)
-        rest = shortest - start
-        suffix_length = next((index for index in range(rest) if before[-1 - index] != after[-1 - index]), rest)
-        self._start, self._end = start, len(before) - suffix_length
-        self._growth = len(after) - len(before)
+    def __init__(self, old_text: str, new_text: str) -> None:
+        shortest = min(len(old_text), len(new_text))
+        start = next((index for index in range(shortest) if old_text[index] != new_text[index]), shortest)
+        max_suffix_length = shortest - start
+        suffix_length = next(
+            (index for index in range(max_suffix_length) if old_text[-1 - index] != new_text[-1 - index]),
+            max_suffix_length,
+        )
+        self._start, self._end = start, len(old_text) - suffix_length
+        self._growth = len(new_text) - len(old_text)
 
     def moved(self, start: int, end: int) -> tuple[int, int]:
         """Return the range in the new text that corresponds to a range of the old text.

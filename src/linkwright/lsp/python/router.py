@@ -81,13 +81,13 @@ class Router:
 
     Args:
         editor: the editor.
-        own: Linkwright's own server.
+        own_server: Linkwright's own server.
         programs: the other servers.
     """
 
-    def __init__(self, editor: Peer, own: Peer, programs: Sequence[Program]) -> None:
+    def __init__(self, editor: Peer, own_server: Peer, programs: Sequence[Program]) -> None:
         self._editor = editor
-        self._own = own
+        self._own_server = own_server
         self._programs = {program.name: program for program in programs}
         self._servers: dict[str, PythonServer] = {}
         self._starts: dict[str, int] = {}
@@ -107,7 +107,7 @@ class Router:
 
     def from_editor(self, message: Message | None) -> None:
         """Handle a message of the editor. None means that the editor has closed the connection."""
-        self._events.put(self._own.close if message is None else partial(self._on_editor, message))
+        self._events.put(self._own_server.close if message is None else partial(self._on_editor, message))
 
     def from_own(self, message: Message | None) -> None:
         """Handle a message of Linkwright's own server. None means that the server has ended."""
@@ -156,11 +156,11 @@ class Router:
             return
         if method == "initialize":
             self._initialize, self._initialize_id = parameters, message["id"]
-        self._own.send(message)
+        self._own_server.send(message)
         if method == "exit":
-            self._own.close()
+            self._own_server.close()
         elif method == "textDocument/didOpen":
-            self._opened(parameters["textDocument"])
+            self._open_text(parameters["textDocument"])
         elif method in _TEXT_NOTIFICATIONS and text is not None:
             self._on_text_changed(message, text)
         elif method == "$/cancelRequest":
@@ -173,7 +173,7 @@ class Router:
         if method == "textDocument/didSave" and _uri(parameters).endswith(_INTERFACE_FILES):
             self._renew_stubs()
 
-    def _opened(self, item: Message) -> None:
+    def _open_text(self, item: Message) -> None:
         if item.get("languageId") != "python":
             return
         text = OpenText(item["uri"], item["text"], item["version"], self._encoding)
@@ -203,7 +203,7 @@ class Router:
         """Send a code action to the server that offered it."""
         server_and_action = server_of_action(message["params"])
         if server_and_action is None or server_and_action[0] not in self._servers:
-            self._own.send(message)
+            self._own_server.send(message)
             return
         name, action = server_and_action
         self._resolving[message["id"]] = name
@@ -231,9 +231,9 @@ class Router:
             self._on_server_ended(server)
         elif "method" not in message:
             if message.get("id") == INITIALIZE_ID:
-                server.initialized(message.get("result", {}).get("capabilities", {}))
+                server.complete_initialization(message.get("result", {}).get("capabilities", {}))
             elif self._resolving.pop(message.get("id"), None) is not None:
-                self._editor.send(_resolved(server.name, message))
+                self._editor.send(_with_marked_action(server.name, message))
             else:
                 self._on_answered(server.name, message)
         elif "id" in message:
@@ -280,9 +280,9 @@ class Router:
             (name, question.answers[name].get("result")) for name in names if "error" not in question.answers[name]
         ]
         result = combine_responses(question.method, answers, question.text, question.parameters)
-        own = question.answers.get(OWN, {})
-        if result is None and "error" in own:
-            self._editor.send(own)
+        own_answer = question.answers.get(OWN, {})
+        if result is None and "error" in own_answer:
+            self._editor.send(own_answer)
         else:
             self._editor.send({"jsonrpc": "2.0", "id": identifier, "result": result})
 
@@ -377,7 +377,7 @@ class Router:
     def _send(self, name: str, message: Message) -> None:
         """Send a message to a server. An unsupported request counts as answered."""
         if name == OWN:
-            self._own.send(message)
+            self._own_server.send(message)
             return
         if self._held is not None:
             self._held.append((name, message))
@@ -417,7 +417,7 @@ def _for_server(message: Message, name: str) -> Message:
     return {**message, "params": {**message["params"], "context": {**context, "diagnostics": findings}}}
 
 
-def _resolved(name: str, message: Message) -> Message:
+def _with_marked_action(name: str, message: Message) -> Message:
     return {**message, "result": marked_action(name, message["result"])} if message.get("result") else message
 
 

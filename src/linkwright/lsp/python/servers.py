@@ -12,7 +12,7 @@ from queue import SimpleQueue
 from typing import IO, Any, Protocol
 
 from linkwright.lsp.python.programs import Program
-from linkwright.process.framing import framed, read_content
+from linkwright.process.framing import add_header, read_content
 
 Message = dict[str, Any]
 """A message of the protocol: a request, a response or a notification."""
@@ -67,7 +67,7 @@ class Stream:
     def _write(self, output: IO[bytes]) -> None:
         with suppress(OSError, ValueError), output:  # The peer has ended.
             while (message := self._waiting.get()) is not None:
-                output.write(framed(json.dumps(message, ensure_ascii=False, separators=(",", ":")).encode()))
+                output.write(add_header(json.dumps(message, ensure_ascii=False, separators=(",", ":")).encode()))
                 output.flush()
 
 
@@ -142,7 +142,7 @@ class PythonServer:
         else:
             self._stream.send(message)
 
-    def initialized(self, capabilities: Message) -> None:
+    def complete_initialization(self, capabilities: Message) -> None:
         """Complete the initialization, and send the queued messages."""
         self.capabilities = capabilities
         self._stream.send({"jsonrpc": "2.0", "method": "initialized", "params": {}})

@@ -16,7 +16,7 @@ from linkwright.language.occurrences import occurrences_in
 from linkwright.language.outline import Outline
 from linkwright.language.parameters import block_parameters
 from linkwright.language.renaming import references
-from linkwright.language.values import ValuedText, outermost_texts, short_values
+from linkwright.language.values import EvaluatedText, outermost_texts, short_values
 from linkwright.lsp.positions import TextPositions
 from linkwright.lsp.requests.robot_pages import SHOW_ROBOT
 from linkwright.lsp.server import LinkwrightServer
@@ -29,7 +29,7 @@ _COUNTED_KINDS = (NameKind.MACRO, NameKind.PROPERTY, NameKind.ARGUMENT)
 
 
 def value_hints(
-    positions: TextPositions, values: Sequence[ValuedText], start: int, end: int
+    positions: TextPositions, values: Sequence[EvaluatedText], start: int, end: int
 ) -> Iterator[types.InlayHint]:
     """Yield a hint with the values after each text with expressions in a range.
 

@@ -20,7 +20,7 @@ from linkwright.language.includes import real_path
 from linkwright.language.links import file_references
 from linkwright.language.renaming import occurrence_at, references
 from linkwright.language.suppressing import code_at
-from linkwright.language.values import ValuedText, describe_values, value_at
+from linkwright.language.values import EvaluatedText, describe_values, value_at
 from linkwright.language.xml_completion import complete
 from linkwright.language.xml_hover import explain_at
 from linkwright.lint.explain import find_page
@@ -90,7 +90,7 @@ def _completion_item(
 def hover(
     document: Document,
     names: Sequence[NameDefinition],
-    values: Sequence[ValuedText],
+    values: Sequence[EvaluatedText],
     facts: Iterable[str],
     positions: TextPositions,
     position: types.Position,
@@ -106,12 +106,12 @@ def hover(
         position: the position.
     """
     offset = positions.offset(position)
-    explanation, valued = explain_at(document, offset, names), value_at(values, offset)
+    explanation, evaluated_text = explain_at(document, offset, names), value_at(values, offset)
     parts = [] if explanation is None else [localized(explanation.text)]
     span = None if explanation is None else (explanation.start, explanation.end)
-    if valued is not None:
-        parts.append(describe_values(valued, positions.text[valued.start : valued.end]))
-        span = valued.start, valued.end
+    if evaluated_text is not None:
+        parts.append(describe_values(evaluated_text, positions.text[evaluated_text.start : evaluated_text.end]))
+        span = evaluated_text.start, evaluated_text.end
     parts += facts
     if not parts:
         return None

@@ -145,7 +145,7 @@ class _MacroCalls:
 
     def _definition(self, macro: str, file: Path) -> types.CallHierarchyItem | None:
         project = self._server.project
-        for other in () if project is None else project.index.related(file, self._texts):
+        for other in () if project is None else project.index.related_files(file, self._texts):
             positions = self._server.positions(other)
             for name in occurrences_in("" if positions is None else positions.text, other):
                 if name.kind is NameKind.MACRO and name.is_definition and name.name == macro:

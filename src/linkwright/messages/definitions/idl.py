@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple, NoReturn
 
-from linkwright.diagnostics import Diagnostic, Phrase, SourceText, did_you_mean, phrase, quoted, term
+from linkwright.diagnostics import Diagnostic, Phrase, SourceText, did_you_mean, phrase, quoted
 from linkwright.messages.definitions.interfaces import (
     EMPTY_MEMBER,
     Constant,
@@ -116,9 +116,9 @@ class _Reader:
         """Parse the content of a module, or of the file."""
         while self._now.kind != "end" and self._now.text != "}":
             self._read_annotations()
-            keyword = self._expect_kind("name")
+            keyword = self._expect_name()
             if keyword.text == "module":
-                name = self._expect_kind("name").text
+                name = self._expect_name().text
                 self._expect("{")
                 self.definitions((*scope, name))
                 self._expect("}")
@@ -142,7 +142,7 @@ class _Reader:
                 )
 
     def _read_structure(self, scope: tuple[str, ...]) -> None:
-        name = "/".join((*scope, self._expect_kind("name").text))
+        name = "/".join((*scope, self._expect_name().text))
         fields: list[Field] = []
         self._expect("{")
         while self._now.text != "}":
@@ -161,7 +161,7 @@ class _Reader:
 
     def _constant(self, scope: tuple[str, ...]) -> None:
         kind = self._type()
-        name = self._expect_kind("name").text
+        name = self._expect_name().text
         self._expect("=")
         value = self._value()
         self._expect(";")
@@ -189,7 +189,7 @@ class _Reader:
         default = None
         while self._now.text == "@":
             self._expect("@")
-            name = self._expect_kind("name").text
+            name = self._expect_name().text
             if self._now.text != "(":
                 continue
             self._expect("(")
@@ -221,10 +221,10 @@ class _Reader:
     # --- types ----------------------------------------------------------------------------------------------
 
     def _type(self) -> FieldType:
-        token = self._expect_kind("name")
+        token = self._expect_name()
         keywords = [token.text]
         while keywords[-1] in _PRIMITIVE_KEYWORDS and self._now.text in _PRIMITIVE_KEYWORDS:
-            keywords.append(self._expect_kind("name").text)
+            keywords.append(self._expect_name().text)
         text = " ".join(keywords)
         if text in _PRIMITIVES:
             return FieldType(_PRIMITIVES[text])
@@ -267,7 +267,7 @@ class _Reader:
 
         The type includes an array size that follows the name.
         """
-        token = self._expect_kind("name")
+        token = self._expect_name()
         if self._now.text != "[":
             return token.text, kind
         self._expect("[")
@@ -307,10 +307,10 @@ class _Reader:
             self._at += 1
         return token
 
-    def _expect_kind(self, kind: str) -> _Token:
+    def _expect_name(self) -> _Token:
         token = self._next()
-        if token.kind != kind:
-            self._unexpected_token_error(token, phrase("a {kind}", kind=term(kind)))
+        if token.kind != "name":
+            self._unexpected_token_error(token, phrase("a name"))
         return token
 
     def _value(self) -> _Token:

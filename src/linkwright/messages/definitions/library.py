@@ -384,13 +384,15 @@ def _span_of(source: SourceText, reference: str, owner: str) -> Span:
 
 def _recursion_diagnostic(source: SourceText, type_chain: tuple[str, ...]) -> Diagnostic:
     span = _span_of(source, type_chain[-1], type_chain[-2])
-    inside = type_chain[0] if len(type_chain) == 2 else f"{type_chain[0]} by way of " + ", ".join(type_chain[1:-1])
+    enclosing_types = (
+        type_chain[0] if len(type_chain) == 2 else f"{type_chain[0]} by way of " + ", ".join(type_chain[1:-1])
+    )
     return Diagnostic(
         "MSG116",
         phrase(
             "'{type_name}' would contain itself: it is part of {enclosing_types}",
             type_name=type_chain[-1],
-            enclosing_types=inside,
+            enclosing_types=enclosing_types,
         ),
         span,
         source=source,

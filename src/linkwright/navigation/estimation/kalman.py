@@ -168,7 +168,7 @@ class KalmanFilter(ABC):
         self.time_ns, self.is_initialized, self.command = snapshot.time_ns, snapshot.is_initialized, snapshot.command
 
     def process(self, measurement: Measurement) -> bool:
-        """Predict the state up to the time of a measurement, and correct it by the measurement.
+        """Predict the state up to the time of a measurement, and correct it with the measurement.
 
         A measurement from before the state's time corrects the state without a prediction. The first measurement
         initializes the state. Returns whether the measurement was used.

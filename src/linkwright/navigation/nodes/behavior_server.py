@@ -111,7 +111,7 @@ class BehaviorNode(ManagedNode):
         self._requested_velocity = ZERO_VELOCITY
 
     def configure(self) -> None:
-        """Create the topics and the action servers.
+        """Create the subscriptions, the publisher and the action servers.
 
         Raises:
             LinkwrightError: a parameter is missing or has an invalid value.

@@ -62,7 +62,7 @@ class NavigatorNode(StepNode):
         self._speed = 0.0
 
     def configure(self) -> None:
-        """Create the topics, the clients and the action servers."""
+        """Create the subscriptions, the clients and the action servers."""
         pose, odometry = get_message("geometry_msgs/msg/PoseStamped"), get_message("nav_msgs/msg/Odometry")
         self.register(self.create_subscription(pose, "goal_pose", self._on_goal_pose, _DEPTH))
         self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))

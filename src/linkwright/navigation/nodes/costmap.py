@@ -186,7 +186,7 @@ class CostmapNode(ManagedNode):
     # --- lifecycle ----------------------------------------------------------------------------------------------------
 
     def configure(self) -> None:
-        """Create the layers, the topics and the services.
+        """Create the layers, the publishers, the subscriptions and the services.
 
         Raises:
             LinkwrightError: NODE431, a parameter is missing; NODE433, a parameter has an invalid value; NAV101, SciPy

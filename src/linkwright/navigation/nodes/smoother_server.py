@@ -41,7 +41,7 @@ class SmootherNode(ManagedNode):
         self.declare_parameter("action_server_result_timeout", 10.0)
 
     def configure(self) -> None:
-        """Create the smoothers, the topics and the action server.
+        """Create the smoothers, the publisher, the subscriptions and the action server.
 
         Raises:
             LinkwrightError: NODE431, a smoother has no type; NAV101, SciPy is not installed.

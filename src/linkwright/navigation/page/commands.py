@@ -92,7 +92,7 @@ class NavigationFeature(PageFeature):
 
 
 class _Watch:
-    """A monitor of nav2's state, from its topics and services.
+    """Follows nav2's state through its topics and services.
 
     Attributes:
         state: the state that was last sent to pages.
@@ -180,7 +180,7 @@ class _Watch:
         fields: dict[str, Any] = {"goal": _GOAL_STATES.get(latest.status, "none")}
         if goal_id != self._goal_id:
             self._goal_id = goal_id
-            fields.update(eta=None, distance=None, taken=None, recoveries=None)
+            fields.update(eta=None, distance=None, elapsed=None, recoveries=None)
         self._update_state(**fields)
 
     def _on_feedback(self, message: Any) -> None:
@@ -188,7 +188,7 @@ class _Watch:
         distance = float(feedback.distance_remaining)
         self._update_state(
             eta=_seconds(feedback.estimated_time_remaining),
-            taken=_seconds(feedback.navigation_time),
+            elapsed=_seconds(feedback.navigation_time),
             distance=round(distance, 2) if math.isfinite(distance) else None,
             recoveries=int(feedback.number_of_recoveries),
         )

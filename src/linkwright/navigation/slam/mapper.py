@@ -355,13 +355,13 @@ def _outcome(
     return Outcome(pose.copy(), covariance, best_match is not None, response, links, loops)
 
 
-def _odometric_information(moved: FloatArray) -> FloatArray:
+def _odometric_information(motion: FloatArray) -> FloatArray:
     """Return the information matrix, of shape (3, 3), of an odometry motion of shape (3,).
 
     The standard deviations are 3 cm and 0.02 rad at rest, and grow by about 10 % of the motion.
     """
-    rotation = abs(float(wrap_angles(moved)[2]))
-    position_deviation = 0.03 + 0.1 * float(np.hypot(moved[0], moved[1])) + 0.03 * rotation
-    yaw_deviation = 0.02 + 0.1 * rotation + 0.05 * float(np.hypot(moved[0], moved[1]))
+    rotation = abs(float(wrap_angles(motion)[2]))
+    position_deviation = 0.03 + 0.1 * float(np.hypot(motion[0], motion[1])) + 0.03 * rotation
+    yaw_deviation = 0.02 + 0.1 * rotation + 0.05 * float(np.hypot(motion[0], motion[1]))
     result: FloatArray = np.diag((position_deviation**-2, position_deviation**-2, yaw_deviation**-2))
     return result

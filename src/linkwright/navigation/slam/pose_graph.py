@@ -80,7 +80,7 @@ class PoseGraph:
         return float(np.hypot(*(self.poses - old_poses)[:, :2].T).max(initial=0.0))
 
     def _step(self, *, robust: bool) -> float:
-        residuals, first_jacobians, second_jacobians = self._linearized()
+        residuals, first_jacobians, second_jacobians = self._linearize()
         information = np.array(self.information)
         if robust:
             errors = np.einsum("ni,nij,nj->n", residuals, information, residuals)
@@ -107,7 +107,7 @@ class PoseGraph:
         self.poses[:, 2] = wrap_angles(self.poses[:, 2])
         return float(np.abs(step).max())
 
-    def _linearized(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _linearize(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the residuals of the edges, (m, 3), and their Jacobians, (m, 3, 3) each.
 
         The Jacobians are with respect to the first and the second pose of each edge.

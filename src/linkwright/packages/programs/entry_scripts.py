@@ -69,7 +69,7 @@ def _write_script(package: str, name: str, origin: str, text: str) -> Path:
 
 
 def _entry_point_code(entry: EntryPoint, roots: Sequence[Path]) -> str:
-    function, _, rest = entry.function.partition(".")
+    function, _, attributes = entry.function.partition(".")
     return "\n".join(
         [
             *_interpreter_lines(),
@@ -79,7 +79,7 @@ def _entry_point_code(entry: EntryPoint, roots: Sequence[Path]) -> str:
             f"from {entry.module} import {function}  # noqa: E402",
             "",
             'if __name__ == "__main__":',
-            f"    sys.exit({function}{'.' if rest else ''}{rest}())",
+            f"    sys.exit({function}{'.' if attributes else ''}{attributes}())",
             "",
         ]
     )

@@ -27,11 +27,11 @@ def find_module(finder: PackageFinder, name: str, near: Path) -> ModuleSpec | No
     """
     if name in NON_PROGRAM_MODULES:
         return None
-    own = finder.find(name)
-    if own is not None:
-        spec = _find_module(name, _folders(own, name))
-        if spec is None and any((own / name).glob("*.py")):
-            spec = PathFinder.find_spec(name, [str(own)])  # the package's module folder has no __init__.py
+    package_folder = finder.find(name)
+    if package_folder is not None:
+        spec = _find_module(name, _folders(package_folder, name))
+        if spec is None and any((package_folder / name).glob("*.py")):
+            spec = PathFinder.find_spec(name, [str(package_folder)])  # the package's module folder has no __init__.py
         if spec is not None:
             return spec
     asking = enclosing_package(near)

@@ -55,8 +55,8 @@ def python_folders(prefix: Path, package: str) -> Iterator[Path]:
         except OSError:
             continue
         for line in lines:
-            _, _, rest = line.partition(";")
-            variable, _, value = rest.partition(";")
+            _, _, assignment = line.partition(";")
+            variable, _, value = assignment.partition(";")
             if variable == _PYTHON_VARIABLE and value:
                 yield prefix / value
 

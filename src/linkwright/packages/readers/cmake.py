@@ -13,7 +13,7 @@ from pathlib import Path, PurePosixPath
 from linkwright.diagnostics import SourceText, Span
 from linkwright.loading.lean_dataclasses import dataclass, field, replace
 from linkwright.packages.readers.cmake_commands import has_known_effect
-from linkwright.packages.readers.cmake_conditions import matched
+from linkwright.packages.readers.cmake_conditions import find_matches
 from linkwright.packages.readers.cmake_language import (
     BUILD,
     PREFIX,
@@ -76,7 +76,7 @@ class PathPattern:
             path: the path relative to the package, with a leading slash.
         """
         if self.is_regex:
-            return bool(matched(self.text, path))
+            return bool(find_matches(self.text, path))
         components = path.split("/")
         depth = self.text.count("/") + 1
         return fnmatchcase("/".join(components[-depth:]), self.text)
@@ -183,7 +183,7 @@ class CMakeFile:
         return [item for rule in self.copies if rule.kind != "DIRECTORY" for item in rule.items]
 
     @property
-    def required(self) -> list[Argument]:
+    def required_paths(self) -> list[Argument]:
         """The files and folders that must exist for the build to succeed."""
         return [item for rule in self.copies for item in rule.items if not rule.may_be_missing(item.text)]
 
@@ -206,7 +206,7 @@ class CMakeFile:
         """Return the location of an argument."""
         return argument.source.span(argument.start, argument.end)
 
-    def installed(self, package: Path) -> Iterator[InstalledFile]:
+    def installed_files(self, package: Path) -> Iterator[InstalledFile]:
         """Yield each installed file, except compiled targets.
 
         Args:
@@ -217,7 +217,7 @@ class CMakeFile:
         """
         return self._files(package, None)
 
-    def moved(self, package: Path, share: str) -> Iterator[InstalledFile]:
+    def moved_files(self, package: Path, share: str) -> Iterator[InstalledFile]:
         """Yield the installed files whose paths in the share folder and in the package differ.
 
         A folder is not read if all of its files keep their paths. Missing files, and some files that are installed

@@ -140,7 +140,7 @@ class Condition:
         return None if sign is None else _ORDER_TESTS[operator.removeprefix(kind)](sign)
 
     def _matches(self, text: str, pattern: str) -> bool | None:
-        matches = matched(pattern, text)
+        matches = find_matches(pattern, text)
         if matches is None:
             return None
         if matches:
@@ -163,7 +163,7 @@ class Condition:
         return _constant(value) is not False
 
 
-def matched(pattern: str, text: str) -> list[tuple[str, list[str]]] | None:
+def find_matches(pattern: str, text: str) -> list[tuple[str, list[str]]] | None:
     """Return all matches of a CMake regular expression, each with its groups.
 
     The result is None if the expression is not valid or takes too long to match.

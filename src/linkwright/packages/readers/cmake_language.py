@@ -59,6 +59,18 @@ _PLATFORM_VARIABLES = {
     "APPLE": "1" if sys.platform == "darwin" else "0",
 }
 _FOUND_VARIABLES = {"catkin_FOUND": "0", **dict.fromkeys(("ament_cmake_FOUND", "ament_cmake_auto_FOUND"), "1")}
+_CATKIN_FOLDERS = {
+    "PACKAGE_SHARE": "share/{}",
+    "PACKAGE_BIN": "lib/{}",
+    "PACKAGE_LIB": "lib",
+    "PACKAGE_INCLUDE": "include/{}",
+    "PACKAGE_ETC": "etc/{}",
+    "GLOBAL_SHARE": "share",
+    "GLOBAL_BIN": "bin",
+    "GLOBAL_LIB": "lib",
+    "GLOBAL_INCLUDE": "include",
+}
+"""The folders of catkin's variables, such as ``CATKIN_PACKAGE_BIN_DESTINATION``, with a place for the project."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +159,7 @@ class CMakeProgram:
     _routines: dict[str, _Routine] = field(default_factory=dict)
     _folder: str = ""
     _unknown_conditions: int = 0
-    _around: dict[str, int] = field(default_factory=dict)  # e.g. `break` -> unknown conditions around it
+    _enclosing_depths: dict[str, int] = field(default_factory=dict)  # e.g. `break` -> unknown conditions around it
     _exit_command: str = ""
     _parent_values: dict[str, str] = field(default_factory=dict)
     _depth: int = 0
@@ -169,12 +181,12 @@ class CMakeProgram:
     @contextmanager
     def _leavable_block(self, *commands: str) -> Iterator[None]:
         """Return a context manager for a block that the given commands, such as ``break``, leave."""
-        outer_depths = self._around
-        self._around = {**outer_depths, **dict.fromkeys(commands, self._unknown_conditions)}
+        outer_depths = self._enclosing_depths
+        self._enclosing_depths = {**outer_depths, **dict.fromkeys(commands, self._unknown_conditions)}
         try:
             yield
         finally:
-            self._around = outer_depths
+            self._enclosing_depths = outer_depths
             if self._exit_command in commands:
                 self._exit_command = ""
 
@@ -304,11 +316,11 @@ class CMakeProgram:
         command = Command(name, tuple(self._arguments(statement)), self._folder, self._unknown_conditions > 0)
         words = command.words
         if name in ("return", "break", "continue"):
-            self._exit_command = name if self._unknown_conditions == self._around.get(name) else ""
+            self._exit_command = name if self._unknown_conditions == self._enclosing_depths.get(name) else ""
         elif name in self._routines:
             yield from self._call(self._routines[name], words)
-        elif name in ("add_subdirectory", "include") and words:
-            yield from self._run_other_file(name, words[0])
+        elif name in ("add_subdirectory", "rosbuild_add_subdirectory", "include") and words:
+            yield from self._run_other_file(name.removeprefix("rosbuild_"), words[0])
         else:
             self._apply_assignment(name, words)
             yield command
@@ -384,8 +396,9 @@ class CMakeProgram:
             self.variables["PROJECT_NAME"] = self.variables["CMAKE_PROJECT_NAME"] = words[0]
             self.variables |= {f"{words[0]}_SOURCE_DIR": SOURCE, f"{words[0]}_BINARY_DIR": BUILD}
             self.variables |= version_variables(words)
-            for variable in ("CATKIN_PACKAGE_SHARE_DESTINATION", "CATKIN_PACKAGE_BIN_DESTINATION"):
-                self.variables[variable] = f"{'share' if 'SHARE' in variable else 'lib'}/{words[0]}"
+            self.variables |= {
+                f"CATKIN_{name}_DESTINATION": folder.format(words[0]) for name, folder in _CATKIN_FOLDERS.items()
+            }
         elif name == "set" and words:
             self._set_values(words)
         elif name == "option" and words:
@@ -491,13 +504,13 @@ class CMakeProgram:
 
     def _substitute(self, token: Token) -> str:
         """Substitute the values of known variables in an argument, and return the text."""
-        text, room = token.text, _MAX_TEXT_LENGTH
+        text, remaining_length = token.text, _MAX_TEXT_LENGTH
 
         def value(match: re.Match[str]) -> str:
-            nonlocal room
+            nonlocal remaining_length
             value = self.variables.get(match[1], match[0])
-            room -= len(value)
-            if room < 0:
+            remaining_length -= len(value)
+            if remaining_length < 0:
                 raise _LimitExceededError(token.text)
             return value
 

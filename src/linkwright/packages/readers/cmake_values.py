@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 
 import regex
 
-from linkwright.packages.readers.cmake_conditions import matched
+from linkwright.packages.readers.cmake_conditions import find_matches
 from linkwright.packages.readers.cmake_syntax import is_open
 
 UNKNOWN = "${}"
@@ -154,7 +154,7 @@ def _convert_case(conversion: str, text: str) -> str:
 
 
 def _find_matches(pattern: str, text: str) -> list[tuple[str, list[str]]]:
-    matches = matched(pattern, text)
+    matches = find_matches(pattern, text)
     if matches is None:
         raise _NotKnownError
     return matches

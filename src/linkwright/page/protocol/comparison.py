@@ -21,11 +21,8 @@ class ComparedRobot(Record):
     marks: dict[str, Mark]
 
 
-class ComparedPlace(Record):
-    """A 1-based position in a source text.
-
-    `text` is for users, `file` and `line` are for the Source panel.
-    """
+class ComparedLocation(Record):
+    """A location in a source file: `text` is shown to users, `file` and the 1-based `line` are for the Source panel."""
 
     text: str
     file: str
@@ -50,8 +47,8 @@ class ComparedItem(Record):
     element: str
     element_kind: Literal["link", "joint"]
     in_old: bool
-    old_place: ComparedPlace | None
-    new_place: ComparedPlace | None
+    old_place: ComparedLocation | None
+    new_place: ComparedLocation | None
 
 
 class ComparedDescriptions(ServerMessage):

@@ -182,7 +182,7 @@ class Configuration(ServerMessage):
         unsaved: whether there are unsaved edits.
         undo: the edit that undo would revert, or None.
         redo: the edit that redo would repeat, or None.
-        own: whether the page has its own configuration.
+        is_own: whether the page has its own configuration.
         recent: the recently opened or saved files, newest first.
     """
 
@@ -191,7 +191,7 @@ class Configuration(ServerMessage):
     unsaved: bool
     undo: EditName | None
     redo: EditName | None
-    own: bool
+    is_own: bool
     recent: list[str]
 
 
@@ -211,14 +211,14 @@ class TopicChoice(Record):
 
 
 class DisplayChoices(ServerMessage):
-    """The display classes that can be added, and the topics. Response to `AskDisplayChoices`."""
+    """The display classes that can be added, and the topics. Response to `RequestDisplayChoices`."""
 
     classes: list[DisplayClass]
     topics: list[TopicChoice]
 
 
 class Folder(ServerMessage):
-    """The folders and configuration files in a server folder, by name. Response to `AskFolder`."""
+    """The folders and configuration files in a server folder, by name. Response to `RequestFolder`."""
 
     path: str
     parent: str | None
@@ -229,7 +229,7 @@ class Folder(ServerMessage):
 class ConfigurationText(ServerMessage):
     """The text of the configuration, as for saving, and a file name.
 
-    Response to `AskConfigurationText`.
+    Response to `RequestConfigurationText`.
     """
 
     name: str
@@ -308,11 +308,11 @@ class Redo(PageMessage):
     """A request to redo the last undone edit."""
 
 
-class AskDisplayChoices(PageMessage):
+class RequestDisplayChoices(PageMessage):
     """A request for the classes that can be added and the topics that they can show."""
 
 
-class AskFolder(PageMessage):
+class RequestFolder(PageMessage):
     """A request for the contents of a folder of the server.
 
     None means the folder of the open file.
@@ -366,7 +366,7 @@ class SaveConfiguration(PageMessage):
     replace: bool
 
 
-class AskConfigurationText(PageMessage):
+class RequestConfigurationText(PageMessage):
     """A request for the text of the configuration, to store it on the browser's machine."""
 
 

@@ -32,10 +32,10 @@ class ArgumentForm(ServerMessage):
     choices: list[ArgumentChoice]
 
 
-NOTHING_ASKED = ArgumentForm(file="", names=[], values={}, choices=[])
+NO_ARGUMENT_FORM = ArgumentForm(file="", names=[], values={}, choices=[])
 
 
-class GiveArguments(PageMessage):
+class SetArguments(PageMessage):
     """The values that the user has entered for arguments of the form."""
 
     values: dict[str, str]
@@ -136,7 +136,7 @@ class JointDetails(Record):
 
 
 class Description(ServerMessage):
-    """The description of the robot of a RobotModel display. Response to `AskDescription`.
+    """The description of the robot of a RobotModel display. Response to `RequestDescription`.
 
     Links are in file order. `files` are the source files of the description, beginning with the main file.
     """
@@ -187,7 +187,7 @@ class InertiaFinding(Record):
 
 
 class InertiaFindings(ServerMessage):
-    """All findings about a robot's masses and inertias. Response to `AskInertia`."""
+    """All findings about a robot's masses and inertias. Response to `RequestInertia`."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -196,13 +196,13 @@ class InertiaFindings(ServerMessage):
     findings: list[InertiaFinding]
 
 
-class AskDescription(PageMessage):
+class RequestDescription(PageMessage):
     """A request for the details of a RobotModel display's links and joints."""
 
     display: str
 
 
-class AskDescriptionText(PageMessage):
+class RequestDescriptionText(PageMessage):
     """A request for a text of a description. An empty `file` means the expanded text.
 
     If `display` is empty, `file` is a file that a diagnostic refers to.
@@ -212,7 +212,7 @@ class AskDescriptionText(PageMessage):
     file: str
 
 
-class AskInertia(PageMessage):
+class RequestInertia(PageMessage):
     """A request for the findings about masses and inertias.
 
     The computation of the findings takes a while.

@@ -38,12 +38,12 @@ class EditablePart(Record):
 class EditableParts(ServerMessage):
     """The editable parts of a display's link, beginning with the parent joint.
 
-    `why_not` is the reason why the parts cannot be edited, or empty.
+    `refusal_reason` is the reason why the parts cannot be edited, or empty.
     """
 
     display: str
     link: str
-    why_not: str
+    refusal_reason: str
     parts: list[EditablePart]
 
 
@@ -86,7 +86,7 @@ class EditHistory(ServerMessage):
     can_redo: bool
 
 
-class AskEditableParts(PageMessage):
+class RequestEditableParts(PageMessage):
     """A request for the editable parts of a link that the user has selected."""
 
     display: str

@@ -8,7 +8,7 @@ from linkwright.page.protocol.message import PageMessage, ServerMessage
 from linkwright.page.protocol.views_and_tools import View
 
 
-class AskExport(PageMessage):
+class RequestExport(PageMessage):
     """A request to export the scene as a file. `view` is the current view of the page."""
 
     format: Literal["html", "glb"]
@@ -16,17 +16,17 @@ class AskExport(PageMessage):
 
 
 class ExportReady(ServerMessage):
-    """The address of the exported file, for one download. Response to `AskExport`.
+    """The address of the exported file, for one download. Response to `RequestExport`.
 
-    `outside` lists the paths of included files that are neither in a package nor below the description's folder.
+    `outside_files` lists the paths of included files that are neither in a package nor below the description's folder.
     """
 
     url: str
     name: str
-    outside: list[str]
+    outside_files: list[str]
 
 
 class ExportFailed(ServerMessage):
-    """The reason why an export failed. Response to `AskExport`."""
+    """The reason why an export failed. Response to `RequestExport`."""
 
     message: str

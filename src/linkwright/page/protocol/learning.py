@@ -107,7 +107,7 @@ class CourseProblem(ServerMessage):
 
 
 class CatchUpFiles(ServerMessage):
-    """The files that `CatchUp` would write, as absolute paths. Response to `AskCatchUp`."""
+    """The files that `CatchUp` would write, as absolute paths. Response to `RequestCatchUp`."""
 
     address: str
     new: list[str]
@@ -138,7 +138,7 @@ class TakeSolution(PageMessage):
     """A request to copy the solution of the shown step into the workspace."""
 
 
-class AskCatchUp(PageMessage):
+class RequestCatchUp(PageMessage):
     """A request for the files that `CatchUp` would write."""
 
 

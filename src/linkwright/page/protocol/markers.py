@@ -66,7 +66,7 @@ class MarkersChanged(DataContent):
     """
 
     everything: bool
-    gone: list[str]
+    removed_ids: list[str]
     markers: list[MarkerShape]
 
 

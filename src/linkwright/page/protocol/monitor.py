@@ -83,9 +83,9 @@ class TopicMessage(ServerMessage):
 class WatchTopics(PageMessage):
     """The topics that the page measures, shows with messages, and lists from now on."""
 
-    listed: bool
-    measured: list[str]
-    opened: list[str]
+    wants_list: bool
+    measured_topics: list[str]
+    opened_topics: list[str]
 
 
 SAMPLES_KIND = 3
@@ -122,7 +122,7 @@ class SeriesState(Record):
 
 
 class TopicFields(ServerMessage):
-    """The fields of a topic that can be plotted. Response to `AskFields`.
+    """The fields of a topic that can be plotted. Response to `RequestFields`.
 
     The message is sent again when the lengths of arrays are known.
     """
@@ -139,7 +139,7 @@ class SeriesStates(ServerMessage):
     states: list[SeriesState]
 
 
-class AskFields(PageMessage):
+class RequestFields(PageMessage):
     """A request for the fields of a topic.
 
     `topic` is None once the user has chosen a field, so that the server stops reading the topic.
@@ -262,7 +262,7 @@ class ParameterDump(ServerMessage):
 class WatchParameters(PageMessage):
     """Whether the page receives the list of nodes from now on, and whose parameters it shows."""
 
-    listed: bool
+    wants_list: bool
     node: str | None
 
 

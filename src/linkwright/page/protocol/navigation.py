@@ -35,7 +35,7 @@ class NavigationState(ServerMessage):
         goal: the state of the last goal of ``navigate_to_pose``.
         eta: the remaining time in seconds. This value and the next three are None if there is no feedback.
         distance: the remaining distance, meters.
-        taken: the elapsed time, seconds.
+        elapsed: the elapsed time, seconds.
         recoveries: the number of recoveries so far.
         busy: whether a command is being carried out.
         problem: the reason why the last command failed; empty if it succeeded.
@@ -46,7 +46,7 @@ class NavigationState(ServerMessage):
     goal: GoalState
     eta: float | None
     distance: float | None
-    taken: float | None
+    elapsed: float | None
     recoveries: int | None
     busy: bool
     problem: str

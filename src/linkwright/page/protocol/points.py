@@ -35,7 +35,7 @@ class CellGrid(DataContent):
     height: float
 
 
-class AskPoint(PageMessage):
+class RequestPoint(PageMessage):
     """A request for the fields of a point that the user has selected.
 
     The response is `PointFields`.

@@ -179,7 +179,7 @@ class MeshStatus(PageMessage):
     error: str | None
 
 
-class AskProvenance(PageMessage):
+class RequestProvenance(PageMessage):
     """A request for the source positions of a link selected in a RobotModel display."""
 
     display: str
@@ -187,7 +187,7 @@ class AskProvenance(PageMessage):
 
 
 class LinkProvenance(ServerMessage):
-    """The source positions of a link and its macro calls, as lines. Response to `AskProvenance`."""
+    """The source positions of a link and its macro calls, as lines. Response to `RequestProvenance`."""
 
     display: str
     link: str

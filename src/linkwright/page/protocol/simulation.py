@@ -151,7 +151,7 @@ class SaveWorld(PageMessage):
     path: str | None
 
 
-class AskModels(PageMessage):
+class RequestModels(PageMessage):
     """A request for the models on the search path."""
 
 

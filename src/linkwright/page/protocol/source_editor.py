@@ -20,22 +20,22 @@ class OpenEditor(PageMessage):
 class EditorOpened(ServerMessage):
     """The workspace that the page may edit. Response to `OpenEditor`.
 
-    `folder` is its folder, and `uri` the folder's URI for the language server. `why_not` is the reason why no file can
-    be edited, or empty.
+    `folder` is its folder, and `uri` the folder's URI for the language server. `refusal_reason` is the reason why no
+    file can be edited, or empty.
     """
 
     folder: str
     uri: str
-    why_not: str
+    refusal_reason: str
 
 
-class AskSourceFile(PageMessage):
+class RequestSourceFile(PageMessage):
     """A request for a file, and for its changes from now on."""
 
     path: str
 
 
-class LeaveSourceFile(PageMessage):
+class CloseSourceFile(PageMessage):
     """A notice that the page no longer needs the changes to a file."""
 
     path: str
@@ -44,11 +44,11 @@ class LeaveSourceFile(PageMessage):
 class SourceFile(ServerMessage):
     """A file on the disk.
 
-    It is sent as the response to `AskSourceFile`, and again when another program changes the file.
+    It is sent as the response to `RequestSourceFile`, and again when another program changes the file.
 
-    `version` counts the contents that were sent to the page. `text` is None if the file cannot be read. `why_not` is
-    the reason why the file cannot be read or must not be written, or empty. `is_new` is whether the file does not
-    exist, and `WriteSourceFile` creates it.
+    `version` counts the contents that were sent to the page. `text` is None if the file cannot be read.
+    `refusal_reason` is the reason why the file cannot be read or must not be written, or empty. `is_new` is True if the
+    file does not exist yet; `WriteSourceFile` then creates it.
     """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("path",)
@@ -57,7 +57,7 @@ class SourceFile(ServerMessage):
     uri: str
     version: int
     text: str | None
-    why_not: str
+    refusal_reason: str
     is_new: bool
 
 
@@ -130,14 +130,14 @@ class SourceFileWritten(ServerMessage):
     refusal: DiagnosticItem | None
 
 
-class AskSourceFolder(PageMessage):
+class RequestSourceFolder(PageMessage):
     """A request for the names in a folder of the workspace."""
 
     path: str
 
 
 class SourceFolder(ServerMessage):
-    """The names of the subfolders and text files in a folder. Response to `AskSourceFolder`."""
+    """The names of the subfolders and text files in a folder. Response to `RequestSourceFolder`."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("path",)
 
@@ -146,13 +146,13 @@ class SourceFolder(ServerMessage):
     files: list[str]
 
 
-class AskLanguageServer(PageMessage):
+class LanguageServerInput(PageMessage):
     """A message of the Language Server Protocol to the page's language server, as JSON."""
 
     content: str
 
 
-class LanguageServerAnswer(ServerMessage):
+class LanguageServerOutput(ServerMessage):
     """A message of the Language Server Protocol from the page's language server, as JSON.
 
     `number` counts the messages. No message replaces another.

@@ -26,13 +26,13 @@ class TerminalItem(Record):
 class Terminals(ServerMessage):
     """All terminals of the program, sent when a page opens and after each change.
 
-    `folder` is the folder in which shells start. `why_not` is the reason why the last request of the page was refused,
-    or empty.
+    `folder` is the folder in which shells start. `refusal_reason` is the reason why the last request of the page was
+    refused, or empty.
     """
 
     folder: str
     terminals: list[TerminalItem]
-    why_not: str
+    refusal_reason: str
 
 
 class TerminalOutput(ServerMessage):
@@ -98,7 +98,7 @@ class ShowTerminal(PageMessage):
     rows: int
 
 
-class LeaveTerminal(PageMessage):
+class HideTerminal(PageMessage):
     """A notice that the page no longer shows a terminal, for example because its tab is hidden."""
 
     terminal: int

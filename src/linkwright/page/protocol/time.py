@@ -39,7 +39,7 @@ class HistoryExtent(ServerMessage):
     start: float
     end: float
     size: int
-    most: int
+    max_size: int
 
 
 class Playhead(ServerMessage):

@@ -20,10 +20,10 @@ SOUND_KIND = 5
 SOUND_RATE = 16_000
 """The number of samples per second."""
 
-MOST_SAMPLES = 1600
+MAX_SAMPLES = 1600
 """The largest number of samples in a frame."""
 
-MOST_LOST_SAMPLES = 5 * SOUND_RATE
+MAX_LOST_SAMPLES = 5 * SOUND_RATE
 """The largest number of lost samples in a frame. A page that lost more samples reports this number."""
 
 _HEADER = struct.Struct("<IIII")
@@ -47,9 +47,9 @@ def unpack_sound(frame: bytes) -> SoundBlock | None:
     if len(frame) < _HEADER.size:
         return None
     kind, count, lost, _ = _HEADER.unpack_from(frame)
-    if kind != SOUND_KIND or not 0 < count <= MOST_SAMPLES or len(frame) != _HEADER.size + 2 * count:
+    if kind != SOUND_KIND or not 0 < count <= MAX_SAMPLES or len(frame) != _HEADER.size + 2 * count:
         return None
-    if lost > MOST_LOST_SAMPLES:
+    if lost > MAX_LOST_SAMPLES:
         return None
     return SoundBlock(np.frombuffer(frame, "<i2", count, _HEADER.size).astype(np.int16), lost / SOUND_RATE)
 

@@ -64,7 +64,7 @@ class ImportWords(PageMessage):
     text: str
 
 
-class AskWordsFile(PageMessage):
+class RequestWordsFile(PageMessage):
     """A request for the text of the file that contains the words."""
 
 

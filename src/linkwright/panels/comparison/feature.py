@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from linkwright.page.protocol.comparison import (
     ComparedDescriptions,
     ComparedItem,
-    ComparedPlace,
+    ComparedLocation,
     ComparedRobot,
     Mark,
 )
@@ -221,8 +221,8 @@ def _element_of(difference: Difference, old: Robot, new: Robot) -> tuple[Literal
     return "link", "", False
 
 
-def _compared_place(location: DifferenceLocation | None, model: Model) -> ComparedPlace | None:
+def _compared_place(location: DifferenceLocation | None, model: Model) -> ComparedLocation | None:
     if location is None:
         return None
     span = location.span
-    return ComparedPlace(f"{model.display_name(span.file)}:{span.line}:{span.column}", span.file, span.line)
+    return ComparedLocation(f"{model.display_name(span.file)}:{span.line}:{span.column}", span.file, span.line)

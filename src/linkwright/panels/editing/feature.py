@@ -79,7 +79,7 @@ class EditingFeature(PageFeature):
                 self._refuse(page, message, Diagnostic("EDIT105", Phrase(f"{type(error).__name__}: {error}")))
 
     async def _handle_request(self, page: Page, message: PageMessage) -> None:
-        if isinstance(message, editing.AskEditableParts):
+        if isinstance(message, editing.RequestEditableParts):
             page.send(self._editable_parts(page, message))
             page.send(editing.EditHistory(self._history.can_undo, self._history.can_redo))
             return
@@ -138,7 +138,7 @@ class EditingFeature(PageFeature):
         self._previewed_plans[page] = message.number, plan
         page.send(editing.EditPreview(message.number, files_of(plan), list(plan.side_effects), None))
 
-    def _editable_parts(self, page: Page, message: editing.AskEditableParts) -> editing.EditableParts:
+    def _editable_parts(self, page: Page, message: editing.RequestEditableParts) -> editing.EditableParts:
         robot, description = self._robot_and_description(page, message.display)
         refusal_reason = _refusal_reason(robot, description) if page.is_local else elsewhere().message
         parts = [] if robot is None else parts_of(robot, message.link)
@@ -195,11 +195,11 @@ def _edit_unsaved(plan: EditPlan, unsaved: Mapping[str, UnsavedText]) -> None:
     """
     owner = next(unsaved[path].owner for path in plan.texts if path in unsaved)
     for path, text in plan.texts.items():
-        own = unsaved.get(path)
-        if own is None:
+        own_text = unsaved.get(path)
+        if own_text is None:
             owner.edit(path, 0, text)
         else:
-            own.owner.edit(own.path, own.revision, text)
+            own_text.owner.edit(own_text.path, own_text.revision, text)
 
 
 def elsewhere() -> Diagnostic:

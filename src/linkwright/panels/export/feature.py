@@ -12,7 +12,7 @@ from functools import partial
 from linkwright.diagnostics import LinkwrightError, display_path, join_messages
 from linkwright.page.audience import Page
 from linkwright.page.files import Download
-from linkwright.page.protocol.export import AskExport, ExportFailed, ExportReady
+from linkwright.page.protocol.export import ExportFailed, ExportReady, RequestExport
 from linkwright.panels.export.snapshot import Snapshot, snapshot_of
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
@@ -70,7 +70,7 @@ class ExportFeature(PageFeature):
         super().__init__(viewer)
         self._export_tasks: dict[Page, asyncio.Task[None]] = {}
 
-    def receive(self, page: Page, message: AskExport) -> None:
+    def receive(self, page: Page, message: RequestExport) -> None:
         """Start an export, unless an export of the page is already running."""
         if message.format not in FORMATS or page in self._export_tasks:
             return
@@ -83,7 +83,7 @@ class ExportFeature(PageFeature):
         for task in self._export_tasks.values():
             task.cancel()
 
-    async def _export(self, page: Page, message: AskExport) -> None:
+    async def _export(self, page: Page, message: RequestExport) -> None:
         try:
             snapshot = snapshot_of(self.viewer, self.managers.of(page), message.view)
             data = await asyncio.to_thread(partial(export_snapshot, snapshot, message.format))
@@ -98,5 +98,5 @@ class ExportFeature(PageFeature):
             return
         name = re.sub(r"[^\w.-]+", "_", snapshot.name).strip("._") or "robot"
         file = Download(f"{name}.{message.format}", FORMATS[message.format].content_type, data)
-        outside_paths = [display_path(path) for path in snapshot.outside]
+        outside_paths = [display_path(path) for path in snapshot.outside_files]
         page.send(ExportReady(self.context.downloads.offer_once(file), file.name, outside_paths))

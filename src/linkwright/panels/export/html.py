@@ -75,10 +75,10 @@ def page_around(title: str) -> tuple[str, str]:
             )
         ) from None
     script = script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
-    before, after = _PAGE.split("{recorded}")
+    head_template, end_template = _PAGE.split("{recorded}")
     style = style.replace("</style", "<\\/style")
-    head = before.format(policy=_policy(script), program=_PROGRAM, title=html.escape(title), style=style)
-    return head, after.format(script=script)
+    head = head_template.format(policy=_policy(script), program=_PROGRAM, title=html.escape(title), style=style)
+    return head, end_template.format(script=script)
 
 
 def _script(folder: Path) -> str:

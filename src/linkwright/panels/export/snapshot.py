@@ -195,7 +195,7 @@ class Snapshot:
         meshes: finds the files that `scene` refers to.
         problems: the findings about shapes that cannot be drawn.
         marker_meshes: the addresses of the meshes of markers.
-        outside: the included files that are neither in a package nor below the description's folder.
+        outside_files: the included files that are neither in a package nor below the description's folder.
         awaits_size: whether a page must measure the robot and fit the sizes of grid and axes.
         spacing: the typical distance in m between the frames of a link and its parent; None if unknown.
     """
@@ -209,7 +209,7 @@ class Snapshot:
     meshes: MeshFolders = field(repr=False)
     problems: Sequence[Diagnostic] = ()
     marker_meshes: Sequence[str] = ()
-    outside: Sequence[Path] = ()
+    outside_files: Sequence[Path] = ()
     awaits_size: bool = False
     spacing: float | None = None
 
@@ -236,10 +236,12 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
         ]
     snapshot = take_snapshot(models[0], opening_messages, frames, viewer.context.meshes)
     files = viewer.context.library.files
-    outside = [path for model in models for path in files_outside(files(model.text), model.scene, snapshot.meshes)]
+    outside_paths = [
+        path for model in models for path in files_outside(files(model.text), model.scene, snapshot.meshes)
+    ]
     return dataclasses.replace(
         snapshot,
-        outside=list(dict.fromkeys(outside)),
+        outside_files=list(dict.fromkeys(outside_paths)),
         problems=[problem for model in models for problem in _problems(model)],
         awaits_size=manager.config.awaits_size,
         spacing=manager.config.spacing,

@@ -231,7 +231,7 @@ _LIST_SUFFIX = "/list_parameters"
 
 @dataclass(slots=True)
 class _Request:
-    listed: bool
+    wants_list: bool
     node: str | None
     sent: ParameterNodes | None = None
 
@@ -280,9 +280,9 @@ class ParametersFeature(PageFeature):
             except LinkwrightError as error:
                 page.send(NodeParameters(name, [], error.diagnostics[0].message))
                 name = None
-        self._requests[page] = _Request(message.listed, name)
+        self._requests[page] = _Request(message.wants_list, name)
         self._update_subscriptions()
-        if message.listed:
+        if message.wants_list:
             self._send_node_lists()
         if watched_node is None and name is not None:
             self._nodes[name].refresh()
@@ -300,7 +300,7 @@ class ParametersFeature(PageFeature):
         elif not names and self._event_tap is not None:
             self._event_tap.close()
             self._event_tap = None
-        if any(request.listed for request in requests):
+        if any(request.wants_list for request in requests):
             self.context.graph_changes.watch(self._send_node_lists)
         else:
             self.context.graph_changes.unwatch(self._send_node_lists)
@@ -321,7 +321,7 @@ class ParametersFeature(PageFeature):
             [name.removesuffix(_LIST_SUFFIX) for name in services if name.endswith(_LIST_SUFFIX)]
         )
         for page, request in self._requests.items():
-            if request.listed and request.sent != node_list:
+            if request.wants_list and request.sent != node_list:
                 reappeared_node = self._reappeared_node(request, node_list)
                 request.sent = node_list
                 page.send(node_list)

@@ -15,8 +15,8 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import MessageInfo
 from linkwright.page.audience import Page
 from linkwright.page.protocol.monitor import (
-    AskFields,
     PlotSeries,
+    RequestFields,
     SeriesState,
     SeriesStates,
     TopicFields,
@@ -243,7 +243,7 @@ class PlotsFeature(PageFeature):
         self._timeline.on_jump.append(self._on_jump)
         self._read_timer: asyncio.TimerHandle | None = None
 
-    def receive(self, page: Page, message: AskFields | WatchSeries) -> None:
+    def receive(self, page: Page, message: RequestFields | WatchSeries) -> None:
         """Send the fields of a topic, or replace the series that a page plots."""
         if isinstance(message, WatchSeries):
             self._watch(page, message.series, message.seconds)

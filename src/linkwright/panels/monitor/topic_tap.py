@@ -57,7 +57,7 @@ _QUEUE_DEPTH = 500
 
 
 class TopicTap:
-    """A receiver of the messages of a topic.
+    """Receives the messages of a topic.
 
     The topic need not exist yet. Like ``ros2 topic echo``, the subscription requests the strongest QoS that all
     publishers offer. If a later publisher does not offer this QoS, the topic is subscribed to again.

@@ -104,9 +104,9 @@ _MIN_MEASURED_NS = 500_000_000
 class _Request:
     """The topics that a page lists, measures and shows with their messages."""
 
-    listed: bool = False
-    measured: frozenset[str] = frozenset()
-    opened: frozenset[str] = frozenset()
+    wants_list: bool = False
+    measured_topics: frozenset[str] = frozenset()
+    opened_topics: frozenset[str] = frozenset()
     sent: TopicList | None = None
     due: set[str] = field(default_factory=set)
     """The opened topics with new messages for this page."""
@@ -166,17 +166,17 @@ class TopicsFeature(PageFeature):
     def receive(self, page: Page, message: WatchTopics) -> None:
         """Replace the topics that a page lists, measures and expands."""
         previous_request = self._requests.get(page, _Request())
-        opened_topics = frozenset(message.opened)
+        opened_topics = frozenset(message.opened_topics)
         request = _Request(
-            message.listed,
-            frozenset(message.measured),
+            message.wants_list,
+            frozenset(message.measured_topics),
             opened_topics,
-            previous_request.sent if message.listed else None,
+            previous_request.sent if message.wants_list else None,
         )
         request.due = {topic for topic in opened_topics if topic in self._gauges and self._gauges[topic].last}
         self._requests[page] = request
         self._update_subscriptions(page)
-        if message.listed:
+        if message.wants_list:
             self._send_topic_lists()
 
     def remove_page(self, page: Page) -> None:
@@ -192,7 +192,7 @@ class TopicsFeature(PageFeature):
     def message_received(self, topic: str) -> None:
         """Schedule sending a topic's new message to the pages that show the topic."""
         for request in self._requests.values():
-            if topic in request.opened:
+            if topic in request.opened_topics:
                 request.due.add(topic)
                 self._messages_sender.request()
 
@@ -206,12 +206,12 @@ class TopicsFeature(PageFeature):
         `page` is a page with changed requests, or None. The page receives the last messages of its topics soon.
         """
         requests = self._requests.values()
-        requested_topics = set[str]().union(*(request.measured | request.opened for request in requests))
+        requested_topics = set[str]().union(*(request.measured_topics | request.opened_topics for request in requests))
         for topic in self._gauges.keys() - requested_topics:
             self._gauges.pop(topic).tap.close()
         for topic in sorted(requested_topics - self._gauges.keys()):
             self._gauges[topic] = _Gauge(self, self.context, topic)
-        if any(request.listed for request in requests):
+        if any(request.wants_list for request in requests):
             self.context.graph_changes.watch(self._send_topic_lists)
         else:
             self.context.graph_changes.unwatch(self._send_topic_lists)
@@ -226,7 +226,7 @@ class TopicsFeature(PageFeature):
     def _send_topic_lists(self) -> None:
         topic_list = TopicList(self._topic_rows())
         for page, request in self._requests.items():
-            if request.listed and request.sent != topic_list:
+            if request.wants_list and request.sent != topic_list:
                 request.sent = topic_list
                 page.send(topic_list)
 
@@ -247,7 +247,7 @@ class TopicsFeature(PageFeature):
 
     def _send_figures(self) -> None:
         for page, request in self._requests.items():
-            gauges = self._sorted_gauges(request.measured | request.opened)
+            gauges = self._sorted_gauges(request.measured_topics | request.opened_topics)
             if gauges:
                 page.send(TopicFigures([gauge.traffic() for gauge in gauges]))
         if self._gauges:

@@ -78,7 +78,7 @@ class SourceEditorFeature(PageFeature):
 
     def receive(self, page: Page, message: Any) -> None:
         """Forward a message to the language server, or queue a request for files."""
-        if isinstance(message, messages.AskLanguageServer):
+        if isinstance(message, messages.LanguageServerInput):
             if (editor := self._editors.get(page)) is not None:
                 editor.process.send(message.content)
             return
@@ -124,15 +124,15 @@ class SourceEditorFeature(PageFeature):
         editor = self._editors.get(page)
         if editor is None:
             return
-        if isinstance(message, messages.AskSourceFile):
+        if isinstance(message, messages.RequestSourceFile):
             editor.files.known = self._description_files(page)
             await self._send_file(page, editor, message.path)
-        elif isinstance(message, messages.LeaveSourceFile):
+        elif isinstance(message, messages.CloseSourceFile):
             editor.open_files.pop(message.path, None)
         elif isinstance(message, messages.ShowUnsavedText):
             if (open_file := editor.open_files.get(message.path)) is not None:
                 self._start(self._show_unsaved(page, message, open_file.content.text or ""))
-        elif isinstance(message, messages.AskSourceFolder):
+        elif isinstance(message, messages.RequestSourceFolder):
             folders, files = await asyncio.to_thread(editor.files.names, Path(message.path))
             page.send(messages.SourceFolder(message.path, folders, files))
         else:
@@ -154,10 +154,10 @@ class SourceEditorFeature(PageFeature):
         If no file can be edited, the language server is ended, and the response gives the reason.
         """
         description_files = self._description_files(page)
-        why_not = _refusal_reason(page, file, description_files, self._workspace)
-        if why_not is not None:
+        reason = _refusal_reason(page, file, description_files, self._workspace)
+        if reason is not None:
             self.remove_page(page)
-            return messages.EditorOpened("", "", why_not)
+            return messages.EditorOpened("", "", reason)
         files = SourceFiles(Workspace(Path(file), self._workspace), description_files)
         editor = self._editors.get(page)
         if editor is None:
@@ -172,12 +172,12 @@ class SourceEditorFeature(PageFeature):
     def _process(self, page: Page) -> LanguageProcess:
         numbers = count(1)
 
-        def ended() -> None:
+        def on_end() -> None:
             self.remove_page(page)
             page.send(messages.LanguageServerEnded())
 
         return LanguageProcess(
-            page.language, lambda content: page.send(messages.LanguageServerAnswer(next(numbers), content)), ended
+            page.language, lambda content: page.send(messages.LanguageServerOutput(next(numbers), content)), on_end
         )
 
     async def _send_file(self, page: Page, editor: _Editor, path: str) -> None:
@@ -192,7 +192,9 @@ class SourceEditorFeature(PageFeature):
             open_file.content = content
         uri = Path(path).as_uri() if Path(path).is_absolute() else ""
         page.send(
-            messages.SourceFile(path, uri, open_file.version, content.page_text, content.why_not, is_new=content.is_new)
+            messages.SourceFile(
+                path, uri, open_file.version, content.page_text, content.refusal_reason, is_new=content.is_new
+            )
         )
 
     async def _show_unsaved(self, page: Page, message: messages.ShowUnsavedText, on_disk: str) -> None:
@@ -237,7 +239,7 @@ class SourceEditorFeature(PageFeature):
                 stamps = {path: known.stamp for path, known in editor.open_files.items()}
                 changed = await asyncio.to_thread(_changed_paths, stamps)
                 for path in changed:
-                    self._waiting.put_nowait((page, messages.AskSourceFile(path)))
+                    self._waiting.put_nowait((page, messages.RequestSourceFile(path)))
 
 
 def _differs(message: PageMessage, open_file: _OpenFile, refusal: Diagnostic | None) -> bool:

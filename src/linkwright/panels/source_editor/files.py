@@ -39,12 +39,12 @@ class FileContent:
 
     Attributes:
         text: the text with the file's line ends; None if the file cannot be read.
-        why_not: the reason why the file cannot be read or must not be written; empty if it may be edited.
+        refusal_reason: the reason why the file cannot be read or must not be written; empty if it may be edited.
         is_new: whether the file does not exist and can be created.
     """
 
     text: str | None
-    why_not: str = ""
+    refusal_reason: str = ""
     is_new: bool = False
 
     @property
@@ -78,9 +78,9 @@ class SourceFiles:
 
     def read(self, path: Path) -> FileContent:
         """Return the content of a file."""
-        why_not = self._reading_refusal(path)
-        if why_not is not None:
-            return FileContent(None, why_not)
+        reason = self._reading_refusal(path)
+        if reason is not None:
+            return FileContent(None, reason)
         try:
             data = read_bytes(path)
             text = decode(data, str(path))
@@ -104,8 +104,8 @@ class SourceFiles:
             EditRefusedError: the file must not be written.
         """
         real = os.path.realpath(path)
-        why_not = self._reading_refusal(path)
-        refusal = Diagnostic("EDIT106", why_not) if why_not is not None else self._workspace.refusal(real)
+        reason = self._reading_refusal(path)
+        refusal = Diagnostic("EDIT106", reason) if reason is not None else self._workspace.refusal(real)
         if refusal is not None:
             raise EditRefusedError(refusal)
         return EditPlan({real: with_line_ends(text, previous_text)}, {real: previous_text})
@@ -154,8 +154,8 @@ class SourceFiles:
     def _creating_refusal(self, real: Path) -> Diagnostic | None:
         """Return the reason why a file must not be created, or None."""
         if not real.is_relative_to(self.folder) or _is_hidden(real, self.folder):
-            why_not = phrase("new files can only be created in '{folder}'", folder=str(self.folder))
-            return Diagnostic("EDIT106", why_not)
+            reason = phrase("new files can only be created in '{folder}'", folder=str(self.folder))
+            return Diagnostic("EDIT106", reason)
         existing = next(folder for folder in real.parents if folder.is_dir())
         return self._workspace.refusal(str(existing))
 

@@ -11,7 +11,7 @@ from contextlib import suppress
 from queue import SimpleQueue
 from typing import IO
 
-from linkwright.process.framing import framed, read_content
+from linkwright.process.framing import add_header, read_content
 
 
 class LanguageProcess:
@@ -60,7 +60,7 @@ class LanguageProcess:
     def _write(self, server_input: IO[bytes]) -> None:
         with suppress(OSError), server_input:  # The reading thread also notices the end of the process.
             while (message := self._outgoing.get()) is not None:
-                server_input.write(framed(message.encode()))
+                server_input.write(add_header(message.encode()))
                 server_input.flush()
 
     def _read(

@@ -59,7 +59,7 @@ class TerminalFeature(PageFeature):
             messages.WatchProgramPages: self._send_program_pages,
             messages.OpenTerminal: self._open,
             messages.ShowTerminal: self._show,
-            messages.LeaveTerminal: self._leave,
+            messages.HideTerminal: self._hide,
             messages.WriteTerminal: self._write,
             messages.ResizeTerminal: lambda page, message: self._own(page, message).resize(_size(message)),
             messages.AcknowledgeTerminal: lambda page, message: self._own(page, message).acknowledge(message.number),
@@ -113,7 +113,7 @@ class TerminalFeature(PageFeature):
         """Keep the terminals of a page that was closed."""
         left = [terminal for terminal in self._terminals.values() if terminal.page is page]
         for terminal in left:
-            terminal.leave()
+            terminal.detach()
         if left:
             self._report()
 
@@ -153,8 +153,8 @@ class TerminalFeature(PageFeature):
         self._find(message.terminal).show(page, _size(message))
         self._report()
 
-    def _leave(self, page: Page, message: messages.LeaveTerminal) -> None:
-        self._own(page, message).leave()
+    def _hide(self, page: Page, message: messages.HideTerminal) -> None:
+        self._own(page, message).detach()
         self._report()
 
     def _write(self, page: Page, message: messages.WriteTerminal) -> None:
@@ -190,9 +190,9 @@ class TerminalFeature(PageFeature):
             raise _NotShownError
         return self._terminals[number]
 
-    def _state(self, page: Page | None, why_not: Phrase | str = "") -> messages.Terminals:
+    def _state(self, page: Page | None, refusal_reason: Phrase | str = "") -> messages.Terminals:
         items = [terminal.item_for(page) for terminal in self._terminals.values()]
-        return messages.Terminals(str(self._folder), items, why_not)
+        return messages.Terminals(str(self._folder), items, refusal_reason)
 
     def _trusted_pages(self) -> list[Page]:
         """Return the open pages that may use terminals."""

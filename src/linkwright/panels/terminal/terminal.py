@@ -82,7 +82,7 @@ class Terminal:
         self._send(self._history.text(), is_replay=True)
         self._continue()
 
-    def leave(self) -> None:
+    def detach(self) -> None:
         """Detach the terminal from its page."""
         self.page = None
         self._continue()

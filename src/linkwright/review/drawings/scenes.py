@@ -38,7 +38,7 @@ def robot_scene(models: Pair, old: Description, new: Description, roots: Sequenc
         snapshot = _snapshot(models, old, new)
     except LinkwrightError as error:
         return RobotScene(reason=phrase("the scene in 3D is left out: {reason}", reason=error.diagnostics[0].message))
-    outside = [path for path in snapshot.outside if not any(path.is_relative_to(root) for root in roots)]
+    outside = [path for path in snapshot.outside_files if not any(path.is_relative_to(root) for root in roots)]
     if outside:
         reason = phrase(
             "the scene in 3D is left out: it would contain files outside the repository, such as '{path}'",

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, joined, phrase
-from linkwright.review.files.build_facts import BuildFacts, FactKind, listed
+from linkwright.review.files.build_facts import BUILT_KINDS, INSTALLED_KINDS, BuildFacts, FactKind, listed
 
 _SHOWN = (
-    *(FactKind.EXECUTABLE, FactKind.LIBRARY, FactKind.COMPONENT, FactKind.PLUGIN_DESCRIPTION),
+    *(FactKind.EXECUTABLE, FactKind.LIBRARY, *BUILT_KINDS, FactKind.COMPONENT, FactKind.PLUGIN_DESCRIPTION),
     *(FactKind.INTERFACE, FactKind.MODULE, FactKind.ENTRY_POINT, FactKind.TEST),
 )
 
@@ -21,8 +21,11 @@ def build_contents(facts: BuildFacts) -> Phrase | None:
 
 
 def _parts(facts: BuildFacts) -> Iterator[Phrase]:
+    installed = {fact.name for fact in facts.facts if fact.kind in INSTALLED_KINDS}
     for kind in _SHOWN:
+        left_out = installed if kind in BUILT_KINDS else ()
         names = list(dict.fromkeys(fact.name for fact in facts.facts if fact.kind is kind))
+        names = [name for name in names if name not in left_out]
         if names:
             yield phrase("{kind} {names}", kind=kind.title, names=listed(names))
     folders = list(dict.fromkeys(f"{PurePosixPath(target).parent}/" for target in facts.files))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
+from linkwright.diagnostics import Phrase, Span, joined, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
 from linkwright.review.list_changes import change_text, shortened
 from linkwright.review.renamed_packages import PackageNames, renamed_packages
@@ -35,7 +35,20 @@ class FactKind(Enum):
         phrase("installed libraries"),
         phrase("packages and programs that link to them or load them do not build or start"),
     )
+    BUILT_EXECUTABLE = (
+        phrase("built executables"),
+        phrase("launch files and users that start them do not find them"),
+    )
+    BUILT_LIBRARY = (
+        phrase("built libraries"),
+        phrase("packages and programs that link to them or load them do not build or start"),
+    )
+    BUILT_TARGET = (phrase("built targets"), None)
     EXPORTED_TARGET = (phrase("exported targets"), phrase("packages that link to them do not build"))
+    EXPORTED_FOLDER = (
+        phrase("exported include folders"),
+        phrase("packages that include their headers do not build"),
+    )
     COMPONENT = (
         phrase("components"),
         phrase("launch files that load them into a container do not find them"),
@@ -45,10 +58,19 @@ class FactKind(Enum):
         phrase("programs that load their classes do not find them"),
     )
     INTERFACE = (phrase("built interfaces"), phrase("programs that use the types do not build or start"))
+    INTERFACE_DEPENDENCY = (phrase("dependencies of interfaces"), None)
+    DYNAMIC = (
+        phrase("descriptions for dynamic_reconfigure"),
+        phrase("programs that change the parameters do not build or start"),
+    )
     MODULE = (phrase("installed Python modules"), phrase("programs that import them do not find them"))
     ENTRY_POINT = (phrase("entry points"), phrase("programs that load them do not find them"))
     PACKAGE = (phrase("calls of find_package"), None)
-    EXPORTED_DEPENDENCY = (phrase("exported dependencies"), None)
+    EXPORTED_DEPENDENCY = (
+        phrase("exported dependencies"),
+        phrase("packages that have them only through this package do not build"),
+    )
+    STOP = (phrase("errors that stop the build"), None)
     TEST = (phrase("tests"), None)
     SETTING = (phrase("settings"), None)
     FOLDER = (phrase("installed folders that the repository does not have"), None)
@@ -56,6 +78,16 @@ class FactKind(Enum):
     def __init__(self, title: Phrase, reason: Phrase | None) -> None:
         self.title = title
         self.reason = reason
+
+
+INSTALLED_KINDS = (FactKind.EXECUTABLE, FactKind.LIBRARY)
+"""The kinds of targets that are installed."""
+BUILT_KINDS = (FactKind.BUILT_EXECUTABLE, FactKind.BUILT_LIBRARY, FactKind.BUILT_TARGET)
+"""The kinds of targets that are built, and that matter by themselves if they are not installed."""
+_CONDITIONAL = (*INSTALLED_KINDS, *BUILT_KINDS, FactKind.COMPONENT, FactKind.STOP, FactKind.PACKAGE)
+"""The kinds whose conditions are shown when they are added or removed."""
+ANY_VERSION = "any version"
+"""The value of a package that is found in any version."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +100,7 @@ class Fact:
         value: a property that may change, such as the function of an executable; empty if there is none.
         span: the location.
         is_value_used: whether other packages use the value, so that another value is breaking.
+        condition: the condition under which the fact holds, as it is written; empty for always.
     """
 
     kind: FactKind
@@ -75,6 +108,7 @@ class Fact:
     value: str = ""
     span: Span | None = None
     is_value_used: bool = False
+    condition: str = ""
 
 
 _KNOWN_VARIABLES = frozenset(
@@ -109,26 +143,46 @@ class EnvironmentVariables:
 
 
 @dataclass
+class TargetParts:
+    """The parts of a target of CMake.
+
+    Attributes:
+        libraries: the names of packages and libraries that are linked to it, with their locations.
+        sources: its sources relative to the package, with their locations.
+    """
+
+    libraries: dict[str, Span] = field(default_factory=dict)
+    sources: dict[str, Span] = field(default_factory=dict)
+
+
+@dataclass
 class BuildFacts:
     """The facts of a build file.
 
     Attributes:
         facts: the facts that are known.
         files: the sources of the installed files relative to the package, by destination relative to the prefix.
-        is_complete: whether `files` has all files.
+        unknown: the reasons why more files may be installed than `files` has.
         rest: the other commands or settings, each with its name and its text.
         package: the path of the folder of the package relative to the root.
         project: the name of the package; empty if it is not known.
         environment: the environment variables that the file reads.
+        targets: the parts of targets, by target.
     """
 
     facts: list[Fact] = field(default_factory=list)
     files: dict[str, str] = field(default_factory=dict)
-    is_complete: bool = True
+    unknown: frozenset[str] = frozenset()
     rest: list[tuple[str, str]] = field(default_factory=list)
     package: str = ""
     project: str = ""
     environment: EnvironmentVariables = field(default_factory=lambda: EnvironmentVariables(()))
+    targets: dict[str, TargetParts] = field(default_factory=dict)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether `files` has all installed files."""
+        return not self.unknown
 
     def place(self, path: str) -> str:
         """Return an installed path without the name of the package, whose change the manifest reports."""
@@ -137,22 +191,30 @@ class BuildFacts:
         return PurePosixPath(parts[0], *parts[2:]).as_posix() if is_own else path
 
 
-def compare_build_files(pair: FilePair, read: Callable[[Version, str], BuildFacts]) -> None:
+def compare_build_files(
+    pair: FilePair,
+    read: Callable[[Version, str], BuildFacts],
+    compare_more: Callable[[FilePair, BuildFacts, BuildFacts], None] | None = None,
+) -> None:
     """Compare two versions of a build file.
 
     Args:
         pair: the versions.
         read: the function that returns the facts of a version, from its path in the repository.
+        compare_more: a function that compares what only files of this kind have.
     """
     sides = ((pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path))
     versions = {version.file(path): (version, path) for version, path in sides}
     facts = pair.read(lambda file: read(*versions[file]))
     if facts is not None:
         _compare_facts(pair, *facts)
+        if compare_more is not None:
+            compare_more(pair, *facts)
 
 
 def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Add the differences between the facts of two versions of a build file."""
+    conditions: dict[tuple[str, str], list[Fact]] = {}
     for kind in FactKind:
         old_facts, new_facts = (
             {fact.name: fact for fact in facts.facts if fact.kind is kind and _is_reported(pair, facts, fact)}
@@ -168,25 +230,46 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
                 )
                 reason = kind.reason if fact.is_value_used else None
                 pair.add(text, pair.location(fact.span), reason)
+        for name, fact in new_facts.items():
+            if name in old_facts and old_facts[name].condition != fact.condition:
+                conditions.setdefault((old_facts[name].condition, fact.condition), []).append(fact)
         added = [fact for name, fact in new_facts.items() if name not in old_facts]
         removed = [fact for name, fact in old_facts.items() if name not in new_facts]
-        _add_renamed(pair, kind, removed, added)
+        if kind in BUILT_KINDS:
+            installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in INSTALLED_KINDS}
+            added, removed = ([fact for fact in each if fact.name not in installed] for each in (added, removed))
+        _add_renamed(pair, kind, removed, added, _renamed_targets(pair, old, new))
         if added:
-            pair.add(_sentence(kind, added, is_added=True), pair.location(added[0].span))
+            reason = None
+            if kind is FactKind.STOP:
+                reason = phrase("the build fails under a condition under which it did not fail before")
+            pair.add(_sentence(kind, added, is_added=True), pair.location(added[0].span), reason)
         if removed:
             location = pair.location(removed[0].span, is_old=True)
             pair.add(_sentence(kind, removed, is_added=False), location, kind.reason)
+    _add_conditions(pair, conditions)
     _compare_files(pair, old, new)
     _compare_rest(pair, old, new)
     old.environment.compare(pair, new.environment)
 
 
-def _add_renamed(pair: FilePair, kind: FactKind, removed: list[Fact], added: list[Fact]) -> None:
-    """Add the facts whose names follow from that of a renamed package, and take them from both lists."""
+def _add_renamed(
+    pair: FilePair, kind: FactKind, removed: list[Fact], added: list[Fact], targets: Mapping[str, str]
+) -> None:
+    """Add the facts with new names, and take them from both lists.
+
+    Args:
+        pair: the versions.
+        kind: the kind of the facts.
+        removed: the facts of the old version.
+        added: the facts of the new version.
+        targets: the new names of targets that have the same sources, by the old ones.
+    """
     names = PackageNames(renamed_packages(pair.versions))
     for old in list(removed):
         new = next((fact for fact in added if fact.name == names.derived(old.name)), None)
         new = new or next((fact for fact in added if names.has_same_edit(old.name, fact.name)), None)
+        new = new or next((fact for fact in added if fact.name == targets.get(old.name)), None)
         if new is not None:
             removed.remove(old)
             added.remove(new)
@@ -194,9 +277,71 @@ def _add_renamed(pair: FilePair, kind: FactKind, removed: list[Fact], added: lis
             pair.add(text, pair.location(new.span), kind.reason)
 
 
+def _renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[str, str]:
+    """Return the new names of targets that only one version has and that have the same first source."""
+    sources = {
+        next(iter(parts.sources)): name
+        for name, parts in new.targets.items()
+        if parts.sources and not old.targets.get(name, TargetParts()).sources
+    }
+    renamed = {}
+    for name, parts in old.targets.items():
+        source = next((new_source(pair, old, new, item) for item in parts.sources), None)
+        if source in sources and not new.targets.get(name, TargetParts()).sources:
+            renamed[name] = sources[source]
+    return renamed
+
+
+def new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str:
+    """Return the path of a source in the new version.
+
+    Args:
+        pair: the versions.
+        old: the old facts.
+        new: the new facts.
+        source: the path in the old version.
+
+    Returns:
+        The path relative to the package; the old one if the file was not renamed.
+    """
+    path = (PurePosixPath(old.package) / source).as_posix()
+    new_path = next((file.new_path for file in pair.versions.changed_files if file.old_path == path), None)
+    is_inside = new_path is not None and PurePosixPath(new_path).is_relative_to(new.package)
+    return PurePosixPath(new_path).relative_to(new.package).as_posix() if new_path and is_inside else source
+
+
 def _sentence(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:
-    texts = [f"{fact.name} {fact.value}" if kind is FactKind.SETTING else fact.name for fact in facts]
+    texts = [_fact_text(fact) for fact in facts]
     return _list_sentence(kind.title, texts, is_added=is_added)
+
+
+def _fact_text(fact: Fact) -> str:
+    """Return the name of a fact, with its value or condition if a reader needs it."""
+    if fact.kind is FactKind.SETTING or (fact.kind is FactKind.PACKAGE and fact.value not in ("", ANY_VERSION)):
+        return f"{fact.name} {fact.value}"
+    is_plain = not fact.condition or fact.kind not in _CONDITIONAL
+    return fact.name if is_plain else f"{fact.name} (if {fact.condition})"
+
+
+def _add_conditions(pair: FilePair, conditions: Mapping[tuple[str, str], Sequence[Fact]]) -> None:
+    """Add the facts that hold under another condition now; those with the same conditions in one line."""
+    for (old_condition, new_condition), facts in conditions.items():
+        kinds = dict.fromkeys(fact.kind for fact in facts)
+        groups = (
+            phrase("{kind} {names}", kind=kind.title, names=listed([fact.name for fact in facts if fact.kind is kind]))
+            for kind in kinds
+        )
+        text = phrase(
+            "{subjects}: {old} -> {new}",
+            subjects=joined(groups, "; "),
+            old=_condition_text(old_condition),
+            new=_condition_text(new_condition),
+        )
+        pair.add(text, pair.location(facts[0].span))
+
+
+def _condition_text(condition: str) -> Phrase:
+    return phrase("if {condition}", condition=condition) if condition else phrase("always")
 
 
 def _list_sentence(title: Phrase, names: Sequence[str], *, is_added: bool) -> Phrase:
@@ -227,8 +372,6 @@ def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:
 
 def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Add the files that only one version installs although both have them, and those with another destination."""
-    if not old.is_complete or not new.is_complete:
-        return
     old_sources, new_sources = ({source: target for target, source in facts.files.items()} for facts in (old, new))
     kept = {source: _new_source(pair, old, new, source) for source in old_sources}
     moved: dict[tuple[str, str], list[str]] = {}
@@ -239,23 +382,30 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         if new_source is None or target in new.files:
             continue
         if new_target is None:
-            removed.append(target)
+            if new.unknown <= old.unknown:
+                removed.append(target)
         elif new_source == source and old.place(target) != new.place(new_target):
-            moved.setdefault((_folder(target), _folder(new_target)), []).append(_name(target))
+            places = _folder(target), _folder(new_target)
+            is_renamed = places[0] == places[1]
+            moved.setdefault(places, []).append(
+                f"{_name(target)} -> {_name(new_target)}" if is_renamed else _name(target)
+            )
     added = [target for source, target in new_sources.items() if target not in old.files and source not in old_sources]
     for (old_folder, new_folder), names in moved.items():
         text = phrase(
             "installed in {new} instead of {old}: {names}", old=old_folder, new=new_folder, names=listed(names)
         )
+        if old_folder == new_folder:
+            text = phrase("installed under another name in {folder}: {names}", folder=old_folder, names=listed(names))
         pair.add(text, None, phrase("programs that look for the files do not find them"))
-    if added:
+    if added and old.unknown <= new.unknown:
         known = [target for target in added if _is_in_old_version(pair, old, new.files[target])]
-        folders = [name for name in _files_and_folders(added, old.files) if name.endswith("/")]
-        names = list(dict.fromkeys([*folders, *_files_and_folders(known, old.files)]))
+        folders = [name for name in files_and_folders(added, old.files) if name.endswith("/")]
+        names = list(dict.fromkeys([*folders, *files_and_folders(known, old.files)]))
         if names:
             pair.add(phrase("installed now: {names}", names=listed(names)), None)
     if removed:
-        names = _files_and_folders(removed, new.files)
+        names = files_and_folders(removed, new.files)
         text = phrase("not installed any more: {names}", names=listed(names))
         pair.add(text, None, phrase("programs that look for the files do not find them"))
 
@@ -274,7 +424,7 @@ def _is_in_old_version(pair: FilePair, old: BuildFacts, source: str) -> bool:
     return pair.versions.old.file((PurePosixPath(old.package) / source).as_posix()).is_file()
 
 
-def _files_and_folders(targets: Sequence[str], others: Mapping[str, str]) -> list[str]:
+def files_and_folders(targets: Sequence[str], others: Mapping[str, str]) -> list[str]:
     """Return installed files, or their folders if the other version installs nothing in these folders."""
     other_folders = {parent.as_posix() for target in others for parent in PurePosixPath(target).parents}
     names: dict[str, None] = {}
@@ -306,7 +456,7 @@ def _compare_rest(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         return
     for name in names:
         old_texts, new_texts = ([text for other, text in items if other == name] for items in (gone, come))
-        old_text, new_text = "; ".join(old_texts), "; ".join(new_texts)
+        old_text, new_text = ("; ".join(filter(None, texts)) for texts in (old_texts, new_texts))
         if old_texts and new_texts:
             pair.add(_words_text(name, old_text, new_text), None)
         elif new_texts:

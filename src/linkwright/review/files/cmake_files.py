@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from itertools import takewhile
 from pathlib import Path, PurePosixPath
 
@@ -13,16 +14,44 @@ from linkwright.packages.readers.cmake import CMakeFile, read_cmake
 from linkwright.packages.readers.cmake_language import BUILD, Argument, CMakeProgram, Command, within_package
 from linkwright.packages.readers.cmake_syntax import is_open
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.build_facts import BuildFacts, EnvironmentVariables, Fact, FactKind, compare_build_files
+from linkwright.review.files.build_facts import (
+    ANY_VERSION,
+    BuildFacts,
+    EnvironmentVariables,
+    Fact,
+    FactKind,
+    compare_build_files,
+)
+from linkwright.review.files.cmake_branches import conditional_statements, conditions_of
+from linkwright.review.files.cmake_targets import compare_targets, read_targets
 from linkwright.review.versions import Version
 
 CMAKE_FILE = "CMakeLists.txt"
-_EXECUTABLES = ("add_executable", "ament_auto_add_executable")
-_LIBRARIES = ("add_library", "ament_auto_add_library")
+_EXECUTABLES = ("add_executable", "ament_auto_add_executable", "rosbuild_add_executable", "cuda_add_executable")
+_LIBRARIES = ("add_library", "ament_auto_add_library", "rosbuild_add_library", "cuda_add_library")
+_LIBRARY_TYPES = ("SHARED", "STATIC", "MODULE", "INTERFACE", "OBJECT")
+_INTERFACE_COMMANDS = {
+    "add_message_files": ("msg", ".msg"),
+    "add_service_files": ("srv", ".srv"),
+    "add_action_files": ("action", ".action"),
+    "rosbuild_genmsg": ("msg", ".msg"),
+    "rosbuild_gensrv": ("srv", ".srv"),
+    "genaction": ("action", ".action"),
+}
+"""The commands of ROS 1 that build interfaces: the default folder, and the suffix."""
+_VERSION = re.compile(r"\d+(\.\d+)*")
 _INSTALL_KEYWORDS = frozenset(
     {"EXPORT", "ARCHIVE", "LIBRARY", "RUNTIME", "OBJECTS", "INCLUDES", "DESTINATION", "COMPONENT", "OPTIONAL"}
 )
 _TEST_COMMAND = re.compile(r"(\w+_)?add_(\w*_)?(\w*tests?|gmock|gbenchmark|catch2|file_check)")
+_KEYWORDS = frozenset(
+    {
+        *("INCLUDE_DIRS", "LIBRARIES", "CATKIN_DEPENDS", "DEPENDS", "CFG_EXTRAS", "EXPORTED_TARGETS", "DEPENDENCIES"),
+        *("LIBRARY_NAME", "ADD_LINTER_TESTS", "SKIP_INSTALL"),
+        *("SKIP_CMAKE_CONFIG_GENERATION", "SKIP_PKG_CONFIG_GENERATION"),
+    }
+)
+"""The keywords of ``catkin_package`` and of the commands that build interfaces."""
 _IRRELEVANT = re.compile(
     r"CMAKE_(EXPORT_COMPILE_COMMANDS|VERBOSE_MAKEFILE|COLOR_\w+|RULE_MESSAGES|INSTALL_MESSAGE|MESSAGE_\w+|"
     r"\w+_COMPILER_LAUNCHER|TLS_VERIFY|SUPPRESS_\w+|WARN_\w+|ERROR_\w+)"
@@ -36,7 +65,7 @@ _INTERFACE_SUFFIXES = (".msg", ".srv", ".action", ".idl")
 
 def compare_cmake_files(pair: FilePair) -> None:
     """Compare two versions of a ``CMakeLists.txt``, with its subdirectories, as far as CMake is not needed for it."""
-    compare_build_files(pair, read_cmake_facts)
+    compare_build_files(pair, read_cmake_facts, compare_targets)
 
 
 def read_cmake_facts(version: Version, path: str) -> BuildFacts:
@@ -47,6 +76,10 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     commands = list(CMakeProgram(file.parent).run(source))
     for reader in (_targets, _interfaces, _exports, _packages, _tests, _settings):
         facts.facts += reader(commands)
+    facts.facts += _own_interfaces(commands, file.parent)
+    facts.facts += _built_targets(commands)
+    facts.facts += _stops(source, commands)
+    facts.targets = read_targets(commands)
     text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
     facts.environment = EnvironmentVariables(
         (match[1], source.span(match.start(), match.end())) for match in _ENVIRONMENT.finditer(text)
@@ -87,26 +120,28 @@ def _parent(path: str) -> str:
 
 def _read_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
     """Add the files that are copied. Programs are executables."""
-    facts.is_complete = cmake.is_complete
-    _move_missing_folders(facts, cmake, package)
+    facts.unknown = frozenset(cmake.unknown)
+    programs = cmake.programs
+    spans = {item.text: cmake.span(item) for item in cmake.files}
+    _move_missing_files(facts, cmake, package)
     facts.project = "" if cmake.project is None else cmake.project.text
     try:
-        facts.files = {file.destination: file.source for file in cmake.installed(package) if file.content is None}
-    except FileNotFoundError:
-        facts.is_complete = False
-    spans = {item.text: cmake.span(item) for item in cmake.files}
-    for name, path in cmake.programs.items():
+        facts.files = {file.destination: file.source for file in cmake.installed_files(package) if file.content is None}
+    except FileNotFoundError as error:
+        facts.unknown |= {str(error)}
+    for name, path in programs.items():
         facts.facts.append(Fact(FactKind.EXECUTABLE, name, span=spans.get(path)))
-    programs = set(cmake.programs.values())
-    facts.files = {target: source for target, source in facts.files.items() if source not in programs}
+    sources = set(programs.values())
+    facts.files = {target: source for target, source in facts.files.items() if source not in sources}
     facts.facts += [Fact(FactKind.MODULE, module) for module in cmake.modules]
 
 
-def _move_missing_folders(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
-    """Take the folders that the repository does not have from the rules that copy files, and add them as facts."""
+def _move_missing_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
+    """Take what the repository does not have from the rules that copy files, and add the folders as facts."""
     for index, rule in enumerate(cmake.copies):
-        missing = [item for item in rule.items if rule.kind == "DIRECTORY" and not _exists(package, item.text)]
-        facts.facts += [_fact(FactKind.FOLDER, item, rule.destination or "") for item in missing]
+        missing = [item for item in rule.items if not _exists(package, item.text)]
+        if rule.kind == "DIRECTORY":
+            facts.facts += [_fact(FactKind.FOLDER, item, rule.destination or "") for item in missing]
         cmake.copies[index] = replace(rule, items=tuple(item for item in rule.items if item not in missing))
 
 
@@ -117,7 +152,13 @@ def _exists(package: Path, item: str) -> bool:
 def _fact(kind: FactKind, argument: Argument, value: str = "", name: str | None = None) -> Fact:
     span = argument.source.span(argument.start, argument.end)
     is_value_used = kind in (FactKind.EXECUTABLE, FactKind.PLUGIN_DESCRIPTION)
-    return Fact(kind, argument.text if name is None else name, value, span, is_value_used)
+    condition = _conditions(argument.source).get(argument.start, "")
+    return Fact(kind, argument.text if name is None else name, value, span, is_value_used, condition)
+
+
+@lru_cache(maxsize=16)
+def _conditions(source: SourceText) -> dict[int, str]:
+    return conditions_of(source)
 
 
 def _targets(commands: Sequence[Command]) -> Iterator[Fact]:
@@ -144,6 +185,34 @@ def _targets(commands: Sequence[Command]) -> Iterator[Fact]:
             yield from (_fact(FactKind.COMPONENT, argument) for argument in arguments[1:])
 
 
+def _built_targets(commands: Sequence[Command]) -> Iterator[Fact]:
+    """Yield the targets that are built. In ROS 1, those that are not installed can be used, too."""
+    names = {command.name for command in commands}
+    is_ros1 = not names.isdisjoint(("catkin_package", "rosbuild_init"))
+    for command in commands:
+        if command.name not in _EXECUTABLES + _LIBRARIES or not command.arguments or is_open(command.words[0]):
+            continue
+        is_program = command.name in _EXECUTABLES
+        kind = FactKind.BUILT_TARGET
+        if is_ros1:
+            kind = FactKind.BUILT_EXECUTABLE if is_program else FactKind.BUILT_LIBRARY
+        library_type = next((word for word in command.words[1:2] if word in _LIBRARY_TYPES), "")
+        yield _fact(kind, command.arguments[0], library_type)
+
+
+def _stops(source: SourceText, commands: Sequence[Command]) -> Iterator[Fact]:
+    """Yield the messages with which the build fails, also under conditions that do not hold here."""
+    sources = {source.name: source}
+    for command in commands:
+        sources |= {argument.source.name: argument.source for argument in command.arguments[:1]}
+    for each in sources.values():
+        for statement, condition in conditional_statements(each):
+            tokens = statement.tokens
+            if statement.name == "message" and len(tokens) > 1 and tokens[0].text in ("FATAL_ERROR", "SEND_ERROR"):
+                text = " ".join(" ".join(token.text for token in tokens[1:]).split())
+                yield Fact(FactKind.STOP, text, span=each.span(tokens[1].start, tokens[1].end), condition=condition)
+
+
 def _destination(words: Sequence[str]) -> str:
     """Return the folder into which executables are installed, or an empty text if it is not known."""
     start = words.index("RUNTIME") if "RUNTIME" in words else 0
@@ -166,23 +235,73 @@ def _interfaces(commands: Sequence[Command]) -> Iterator[Fact]:
                     yield _fact(FactKind.INTERFACE, argument, name=within_package(argument.text, command.folder))
                 elif argument.text == "DEPENDENCIES":
                     break
+        if command.name in ("rosidl_generate_interfaces", "generate_messages"):
+            yield from _listed_after(command, "DEPENDENCIES", FactKind.INTERFACE_DEPENDENCY)
+        if command.name in ("generate_dynamic_reconfigure_options", "gencfg"):
+            yield from (_fact(FactKind.DYNAMIC, argument) for argument in command.arguments)
+
+
+def _own_interfaces(commands: Sequence[Command], package: Path) -> Iterator[Fact]:
+    """Yield the interfaces that commands of ROS 1 build. Those without a list build all of a folder."""
+    for command in commands:
+        if command.name not in _INTERFACE_COMMANDS:
+            continue
+        folder, suffix = _INTERFACE_COMMANDS[command.name]
+        words = command.words
+        folder = words[words.index("DIRECTORY") + 1] if "DIRECTORY" in words[:-1] else folder
+        named = [argument for argument in command.arguments if argument.text.endswith(suffix)]
+        for argument in named:
+            yield _fact(FactKind.INTERFACE, argument, name=f"{folder}/{argument.text}")
+        if not named and "FILES" not in words:
+            for file in sorted((package / folder).glob(f"*{suffix}")):
+                yield Fact(FactKind.INTERFACE, f"{folder}/{file.name}")
 
 
 def _exports(commands: Sequence[Command]) -> Iterator[Fact]:
+    project = next((command.words[0] for command in commands if command.name == "project" and command.words), "")
     for command in commands:
         if command.name == "pluginlib_export_plugin_description_file" and len(command.arguments) > 1:
             base, description = command.arguments[:2]
             yield _fact(FactKind.PLUGIN_DESCRIPTION, description, base.text)
-        if command.name == "ament_export_dependencies":
+        elif command.name == "ament_export_dependencies":
             yield from (_fact(FactKind.EXPORTED_DEPENDENCY, item) for item in command.arguments)
+        elif command.name == "ament_export_libraries":
+            yield from (_fact(FactKind.EXPORTED_TARGET, item) for item in command.arguments)
+        elif command.name == "ament_export_include_directories":
+            yield from (_exported_folder(item, project) for item in command.arguments)
+        elif command.name == "catkin_package":
+            yield from _listed_after(command, "INCLUDE_DIRS", FactKind.EXPORTED_FOLDER)
+            yield from _listed_after(command, "LIBRARIES", FactKind.EXPORTED_TARGET)
+            yield from _listed_after(command, "CATKIN_DEPENDS", FactKind.EXPORTED_DEPENDENCY)
+            yield from _listed_after(command, "DEPENDS", FactKind.EXPORTED_DEPENDENCY)
+
+
+def _exported_folder(argument: Argument, project: str) -> Fact:
+    """Return the fact about an exported folder. The folder of the project in it makes no difference to others."""
+    return _fact(FactKind.EXPORTED_FOLDER, argument, name=argument.text.removesuffix(f"/{project}"))
+
+
+def _listed_after(command: Command, keyword: str, kind: FactKind) -> Iterator[Fact]:
+    """Yield the arguments between a keyword and the next one."""
+    if keyword in command.words:
+        rest = command.arguments[command.words.index(keyword) + 1 :]
+        yield from (
+            _fact(kind, item)
+            for item in takewhile(lambda argument: argument.text not in _KEYWORDS, rest)
+            if not item.text.startswith("$")
+        )
 
 
 def _packages(commands: Sequence[Command]) -> Iterator[Fact]:
     for command in commands:
         if command.name == "find_package" and command.arguments:
             package, *others = command.arguments
-            yield _fact(FactKind.PACKAGE, package)
+            version = next((other.text for other in others[:1] if _VERSION.fullmatch(other.text)), ANY_VERSION)
+            value = version if "REQUIRED" in command.words or package.text == "catkin" else f"{version}, optional"
+            yield _fact(FactKind.PACKAGE, package, value)
             start = command.words.index("COMPONENTS") if "COMPONENTS" in command.words else len(others)
+            if package.text == "catkin":
+                start = 0  # the keyword can be left out
             for component in others[start:]:
                 if not component.text.isupper():  # a keyword, such as REQUIRED
                     name = component.text if package.text == "catkin" else f"{package.text} {component.text}"
@@ -220,7 +339,11 @@ _FACT_COMMANDS = frozenset(
         *("ament_export_dependencies", "find_package", "cmake_minimum_required", "option"),
         *("ament_python_install_package", "ament_python_install_module"),
         *("add_executable", "add_library", "add_dependencies", "target_link_libraries", "target_include_directories"),
-        *("ament_target_dependencies", "include_directories", "target_sources"),
+        *("ament_target_dependencies", "include_directories", "target_sources", "catkin_package", "generate_messages"),
+        *("ament_export_libraries", "ament_export_include_directories", "rosidl_generate_interfaces", "gencfg"),
+        *("generate_dynamic_reconfigure_options", "rosbuild_add_executable", "rosbuild_add_library", "rosbuild_init"),
+        *("rosbuild_link_boost", "rosbuild_find_ros_package", "cuda_add_executable", "cuda_add_library"),
+        *_INTERFACE_COMMANDS,
         *("message", "project", "list", "unset", "install", "ament_package", "file", "string"),
     }
 )

@@ -14,6 +14,9 @@ from linkwright.review.renamed_packages import PackageNames, renamed_packages
 from linkwright.xmltree import Element
 
 _VERSIONS = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte": ">=", "version_gt": ">"}
+_EXPORTED = frozenset({"depend", "build_export_depend", "buildtool_export_depend"})
+"""The tags of dependencies that packages that depend on the package have, too, when they are built."""
+_EXECUTION = frozenset({"depend", "exec_depend", "run_depend"})
 _VARIABLE = re.compile(r"\$(\w+)")
 
 
@@ -52,7 +55,7 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
         pair.add(text, pair.location(_span(new_elements, keys[0])))
     for tags, keys in removed.items():
         text = phrase("{tags} removed: {packages}", tags=tags, packages=_packages(keys))
-        pair.add(text, pair.location(_span(old_elements, keys[0]), is_old=True))
+        pair.add(text, pair.location(_span(old_elements, keys[0]), is_old=True), _reason(tags, old))
     for (old_tags, new_tags), keys in retagged.items():
         text = phrase("{old} -> {new}: {packages}", old=old_tags, new=new_tags, packages=_packages(keys))
         pair.add(text, pair.location(_span(new_elements, keys[0])))
@@ -60,6 +63,22 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
         EnvironmentVariables(_variables(elements)) for elements in (old_elements, new_elements)
     )
     old_variables.compare(pair, new_variables)
+
+
+def _reason(tags: str, manifest: Manifest) -> Phrase | None:
+    """Return why it is breaking that dependencies are gone, or None if others do not have them through the package.
+
+    Args:
+        tags: the tags of the dependencies.
+        manifest: the old manifest.
+    """
+    names = set(tags.split(" + "))
+    export = manifest.root.first("export")
+    if export is not None and export.first("metapackage") is not None and not names.isdisjoint(_EXECUTION):
+        return phrase("installing the package does not install them any more")
+    if names.isdisjoint(_EXPORTED) or manifest.build_type == "ament_python":
+        return None
+    return phrase("packages that have them only through this package do not build")
 
 
 def _elements(manifest: Manifest) -> _Elements:

@@ -13,6 +13,7 @@ from linkwright.packages import MANIFEST, enclosing_package
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 
@@ -56,8 +57,11 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
 def _read(file: Path) -> Definition:
     package = enclosing_package(file.parent)
     kind = file.parent.name if file.suffix == ".idl" else file.suffix.removeprefix(".")
-    type_name = f"{package[0] if package else file.parent.name}/{kind}/{file.stem}"
+    name = package[0] if package else file.parent.name
     is_ros1 = package is not None and Manifest(read_document(str(package[1] / MANIFEST))).is_ros1
+    if package is None and (file.parent.parent / ROSBUILD_MANIFEST).is_file():
+        name, is_ros1 = file.parent.parent.name, True
+    type_name = f"{name}/{kind}/{file.stem}"
     return parse_source(read_source(file), type_name, TrustedMessages(), is_ros1=is_ros1)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, foreign, phrase
 from linkwright.packages.readers.installed import PROGRAM_GROUP
@@ -27,7 +27,7 @@ def compare_setup_files(pair: FilePair) -> None:
 
 
 def _compare_modules(pair: FilePair) -> None:
-    """Add the executables whose modules only the old version has."""
+    """Report the executables whose module was removed."""
     setup = read_setup(SourceText(str(pair.new_file), pair.new_file.read_text(encoding="utf-8", errors="replace")))
     for program in setup.entry_points:
         path = program.module.replace(".", "/")
@@ -55,7 +55,7 @@ def read_setup_facts(version: Version, path: str) -> BuildFacts:
         raise UnreadableFileError(foreign(setup.error.message))
     parent = PurePosixPath(path).parent.as_posix()
     facts = BuildFacts(package="" if parent == "." else parent)
-    facts.is_complete = setup.has_call
+    facts.unknown = frozenset() if setup.has_call else frozenset({"setup"})
     facts.project = "" if setup.name is None else setup.name[0]
     for installed in setup.installed_files(file.parent):
         facts.files[installed.destination] = installed.source
@@ -64,8 +64,23 @@ def read_setup_facts(version: Version, path: str) -> BuildFacts:
         for program in setup.entry_points
     ]
     facts.facts += [Fact(FactKind.MODULE, name, span=span) for name, span in setup.packages or ()]
+    facts.facts += _other_packages(PythonFile(source), file.parent)
     _read_call(facts, setup, PythonFile(source))
     return facts
+
+
+def _other_packages(python: PythonFile, folder: Path) -> Iterator[Fact]:
+    """Yield the Python packages that ``find_packages`` finds, or that catkin installs."""
+    for call in python.calls("find_packages"):
+        for file in sorted(folder.glob("*/__init__.py")):
+            if not file.parent.name.startswith("test"):
+                yield Fact(FactKind.MODULE, file.parent.name, span=python.span(call))
+    for call in python.calls("generate_distutils_setup"):
+        packages = argument_of(call, "packages")
+        for item in getattr(packages, "elts", ()):
+            name = python.text(item)
+            if name is not None:
+                yield Fact(FactKind.MODULE, name, span=python.span(item))
 
 
 def _read_call(facts: BuildFacts, setup: SetupFile, python: PythonFile) -> None:

@@ -10,7 +10,8 @@ from linkwright.diagnostics import SourceText
 from linkwright.lint.targets import find_targets
 from linkwright.packages.manifest import package_name
 from linkwright.packages.readers.setup_py import read_setup
-from linkwright.review.files.source_names import CPP_SUFFIXES, NameKind, read_source_names
+from linkwright.review.sources.names import CPP_SUFFIXES, NameKind
+from linkwright.review.sources.reading import read_source_names
 
 
 @lru_cache(maxsize=256)

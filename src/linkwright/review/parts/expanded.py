@@ -1,4 +1,4 @@
-"""The elements of changed files that the compared robots show."""
+"""The elements of changed files that the expansions of the compared robots use."""
 
 from __future__ import annotations
 

@@ -162,7 +162,7 @@ def _column(data: NDArray[np.uint8], offset: int, kind: str, step: int, count: i
     return column
 
 
-def decimated(cloud: CloudPoints, max_bytes: int) -> CloudPoints:
+def decimate(cloud: CloudPoints, max_bytes: int) -> CloudPoints:
     """Return every k-th point of a cloud, with k chosen for arrays of at most about `max_bytes` bytes.
 
     At least one point is returned.

@@ -213,7 +213,7 @@ class TfDisplay(ViewerDisplay):
     def on_frames_changed(self) -> None:
         """Update the rows of the frames if they have changed, and the status of each frame."""
         frames = self.host.frames
-        shown_names = tuple(sorted(self._filtered(set(frames.names))))
+        shown_names = tuple(sorted(self._filter_names(set(frames.names))))
         parent_by_name = {
             name: frames.names[parent] if parent >= 0 else None
             for name, parent in zip(frames.names, frames.parents, strict=True)
@@ -232,7 +232,7 @@ class TfDisplay(ViewerDisplay):
         problem = self.host.frames.problem(name)
         return StatusRow(name, "warn", problem) if problem else StatusRow(name, "ok", phrase("Transform OK"))
 
-    def _filtered(self, names: set[str]) -> set[str]:
+    def _filter_names(self, names: set[str]) -> set[str]:
         """Return the names that match the whitelist and do not match the blacklist.
 
         A filter that is empty or not valid has no effect.

@@ -22,7 +22,7 @@ from linkwright.rviz.clouds import (
     Points,
     ScanProjector,
     colored,
-    decimated,
+    decimate,
     deskew,
     points_of_cloud,
     points_of_legacy_cloud,
@@ -184,7 +184,7 @@ class CloudDisplay(TopicDisplay):
             translucent=settings.transformer == "RGB8" and bool((colors[:, 3] < 255).any()),
             pixel=self.pixel_size(),
         )
-        shrink = partial(decimated, content)
+        shrink = partial(decimate, content)
         self.send(content, key=cloud.key, pose=cloud.pose, stamp_ns=cloud.stamp_ns, shrink=shrink)
 
     def _offer_transformers(self, points: Points) -> None:
@@ -280,7 +280,7 @@ class PointsDisplay(CloudDisplay):
         """Return a warning that explains why a message has no points, or None."""
         return None
 
-    def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
+    def place(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
         """Return the points and the pose of their frame, corrected for the scanner's motion.
 
         By default, both are returned unchanged.
@@ -298,7 +298,7 @@ class PointsDisplay(CloudDisplay):
         self.delete_status_row("Message")
         warning = self.lack_of_points(message) if len(points) == 0 else None
         self.delete_status_row("Values") if warning is None else self.set_status_row("Values", "warn", warning)
-        self.show(*self.placed(points, message, pose), self.frame_of(message)[1])
+        self.show(*self.place(points, message, pose), self.frame_of(message)[1])
 
 
 class LaserScanDisplay(PointsDisplay):
@@ -345,7 +345,7 @@ class LaserScanDisplay(PointsDisplay):
             return phrase("All {count} ranges are NaN: the sensor measured nothing", count=len(ranges))
         return None
 
-    def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
+    def place(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
         """Return the points and the pose of their frame, corrected for the scanner's motion.
 
         If the scanner moved during the scan, the points are in the Fixed Frame and the pose is the identity. Otherwise

@@ -23,7 +23,7 @@ _MAX_STORED_LIDARS = 64
 
 
 class LidarRays:
-    """A receiver of the measured rays of lidars.
+    """Receives the measured rays of lidars.
 
     The receiver subscribes only while the rays are drawn.
 

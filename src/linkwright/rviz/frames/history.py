@@ -95,9 +95,9 @@ class FrameHistory:
         """
         if frame == fixed_frame:
             return _IDENTITY
-        own = self.placed_frame(fixed_frame)
-        if own is not None and own.parent is not None:
-            return compose(own.pose, self.pose(own.parent, frame, stamp_ns))
+        placed_frame = self.placed_frame(fixed_frame)
+        if placed_frame is not None and placed_frame.parent is not None:
+            return compose(placed_frame.pose, self.pose(placed_frame.parent, frame, stamp_ns))
         pose_values, _ = self._buffer.lookup(fixed_frame, frame, stamp_ns)
         return np.array(pose_values)
 
@@ -110,7 +110,7 @@ class FrameHistory:
 
         None is also returned if tf has a frame with this name.
         """
-        placed_frame = next((own for own in self._placed_frames.values() if own.name == name), None)
+        placed_frame = next((candidate for candidate in self._placed_frames.values() if candidate.name == name), None)
         return None if placed_frame is None or name in self._buffer.frame_names() else placed_frame
 
     def in_known_frame(self, frame: str, pose: ArrayLike) -> tuple[str, NDArray[np.float64]]:

@@ -191,7 +191,7 @@ class FrameAudience(Protocol):
 
 
 class FrameStream:
-    """The sender of changed frame poses to pages, with the viewer's tf buffer.
+    """Sends changed frame poses to the pages, and keeps the viewer's tf buffer.
 
     A frame that is not in tf can be the Fixed Frame if a display places it (`FrameHistory.set_placed_frame`).
 

@@ -291,7 +291,7 @@ def _default_markers(
             yield replace(base, scale=[scale * 0.15, scale * 0.25, scale * 0.2], points=points)
     elif mode in ("move_plane", "rotate_axis", "move_rotate"):
         points, shades = _ring_triangles(mode)
-        colors = _NO_COLORS if shades is None else _shaded(color[:3], shades)
+        colors = _NO_COLORS if shades is None else _shade(color[:3], shades)
         yield replace(base, shape="triangle_list", points=points, colors=colors)
 
 
@@ -330,7 +330,7 @@ def _ring_triangles(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray
     return corners.reshape(-1, 3).astype(np.float32), shades
 
 
-def _shaded(color: list[float], shades: NDArray[np.float64]) -> NDArray[np.float32]:
+def _shade(color: list[float], shades: NDArray[np.float64]) -> NDArray[np.float32]:
     rgb = shades[:, None] * np.array(color)
     return np.hstack([rgb, np.ones((len(shades), 1))]).astype(np.float32)
 

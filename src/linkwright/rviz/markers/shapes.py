@@ -298,7 +298,7 @@ def _extension(name: str) -> str:
     return name.rpartition(".")[2].lower()
 
 
-_MOST_GONE = 5000
+_MAX_REMOVED_IDS = 5000
 """The maximum number of stored removals. A page that missed more removals receives all markers again."""
 
 
@@ -345,7 +345,7 @@ class MarkerStore:
         self._revision += 1
         self._removed_ids.pop(identity, None)
         self._removed_ids[identity] = self._revision
-        if len(self._removed_ids) > _MOST_GONE:
+        if len(self._removed_ids) > _MAX_REMOVED_IDS:
             self._oldest_revision = self._removed_ids.pop(next(iter(self._removed_ids)))
         return True
 
@@ -375,7 +375,7 @@ class MarkerStore:
             self._display,
             MarkersChanged(
                 everything=sends_all,
-                gone=[] if sends_all else _newer(self._removed_ids, page_revision),
+                removed_ids=[] if sends_all else _newer(self._removed_ids, page_revision),
                 markers=[shape for revision, shape in self._markers.values() if sends_all or revision > page_revision],
             ),
         )

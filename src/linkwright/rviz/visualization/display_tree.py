@@ -214,11 +214,11 @@ class DisplayTree:
         """
         if value == display.config.checked:
             return
-        before, enabled = display.config.box, self._enabled_states()
+        old_state, enabled = display.config.box, self._enabled_states()
         display.config.checked = value
         self._notify_check_box(display, enabled)
         name = EditName("enable" if value else "disable", display.config.name)
-        self._history.add(Edit(name, partial(self._swap_check_box, display.id), before))
+        self._history.add(Edit(name, partial(self._swap_check_box, display.id), old_state))
 
     def add(
         self,
@@ -323,7 +323,7 @@ class DisplayTree:
         if name == display.config.name:
             return
         section = display.config.section
-        before = section.copy_entry("Name")
+        old_entry = section.copy_entry("Name")
 
         def swap(saved_entry: SavedEntry) -> SavedEntry:
             replaced = section.copy_entry("Name")
@@ -335,7 +335,7 @@ class DisplayTree:
         display.config.name = name
         self._notify_arrangement()
         self._rearranged()
-        self._history.add(Edit(EditName("rename", name), swap, before))
+        self._history.add(Edit(EditName("rename", name), swap, old_entry))
 
     # --- applying and reverting edits --------------------------------------------------------------------------
 
@@ -361,18 +361,18 @@ class DisplayTree:
 
     def arrange(self, arrangement: Arrangement) -> Arrangement:
         """Restore an arrangement, and return the arrangement that it replaced."""
-        before, enabled = self._config.arrangement(), self._enabled_states()
+        old_arrangement, enabled = self._config.arrangement(), self._enabled_states()
         self._config.arrange(arrangement)
         self._apply_config(enabled)
-        return before
+        return old_arrangement
 
     def _rearrange(
         self, name: EditName, change: Callable[[], None], new_displays: Sequence[ViewerDisplay] = ()
     ) -> None:
-        before, enabled = self._config.arrangement(), self._enabled_states()
+        old_arrangement, enabled = self._config.arrangement(), self._enabled_states()
         change()
         self._apply_config(enabled, new_displays)
-        self._history.add(Edit(name, self.arrange, before))
+        self._history.add(Edit(name, self.arrange, old_arrangement))
 
     def _enabled_states(self) -> dict[DisplayConfig, bool]:
         return {display.config: display.enabled for display in self.displays}

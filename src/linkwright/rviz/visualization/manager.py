@@ -382,7 +382,7 @@ class VisualizationManager:
 LINGERING = 60.0
 """Seconds for which the displays of a closed page are kept, because the page may only be reloading."""
 
-MOST_LINGERING = 8
+MAX_LINGERING = 8
 """The largest number of managers without pages. If there are more, the oldest of them is closed."""
 
 
@@ -409,19 +409,19 @@ class Managers:
 
     def of(self, page: Page) -> VisualizationManager:
         """Return the manager of a page: a separate manager, or the shared one."""
-        return self._own_managers.get(page.own, self.shared)
+        return self._own_managers.get(page.configuration_name, self.shared)
 
     def enter(self, page: Page) -> VisualizationManager:
         """Return the manager of a page that opens, and create it if it does not exist."""
-        if page.own:
-            timer = self._close_timers.pop(page.own, None)
+        if page.configuration_name:
+            timer = self._close_timers.pop(page.configuration_name, None)
             if timer is not None:
                 timer.cancel()
-            if page.own not in self._own_managers:
-                self._own_managers[page.own] = VisualizationManager(
+            if page.configuration_name not in self._own_managers:
+                self._own_managers[page.configuration_name] = VisualizationManager(
                     self.shared.context, self.shared.config.copy(), self._owner
                 )
-                self._own_managers[page.own].start()
+                self._own_managers[page.configuration_name].start()
         return self.of(page)
 
     def on_page_closed(self, page: Page) -> None:
@@ -432,8 +432,10 @@ class Managers:
         manager = self.of(page)
         manager.pages.discard(page)
         if manager is not self.shared and not len(manager.pages):
-            self._close_timers[page.own] = asyncio.get_running_loop().call_later(LINGERING, self._drop, page.own)
-            if len(self._close_timers) > MOST_LINGERING:
+            self._close_timers[page.configuration_name] = asyncio.get_running_loop().call_later(
+                LINGERING, self._drop, page.configuration_name
+            )
+            if len(self._close_timers) > MAX_LINGERING:
                 self._drop(next(iter(self._close_timers)))
 
     def close(self) -> None:

@@ -183,8 +183,12 @@ def pose_edits(entity: Entity, pose: Pose) -> list[Replacement]:
     element = entity.element.first("pose")
     if element is not None:
         return writing.pose_edits(element, pose)
-    after = _INCLUDE_HEAD if isinstance(entity.written, Include) else ()
-    return [writing.insertion_edit(entity.element, [writing.pose_element(pose)], after=after, first=not after)]
+    preceding_tags = _INCLUDE_HEAD if isinstance(entity.written, Include) else ()
+    return [
+        writing.insertion_edit(
+            entity.element, [writing.pose_element(pose)], after=preceding_tags, first=not preceding_tags
+        )
+    ]
 
 
 def state_entries(world: WorldText, name: str) -> list[Element]:
@@ -345,9 +349,11 @@ def _static_edits(entity: Entity, static: bool, size: Sequence[float] | None) ->
     if child is not None:
         edits = writing.text_edits(child, text)
     else:
-        after = ("uri", "name", "pose") if isinstance(entity.written, Include) else ("pose",)
+        preceding_tags = ("uri", "name", "pose") if isinstance(entity.written, Include) else ("pose",)
         first = entity.element.first("pose") is None and not isinstance(entity.written, Include)
-        edits = [writing.insertion_edit(entity.element, [new_element("static", text)], after=after, first=first)]
+        edits = [
+            writing.insertion_edit(entity.element, [new_element("static", text)], after=preceding_tags, first=first)
+        ]
     if not static and entity.shape is not None and isinstance(entity.written, Model):
         link = entity.written.links[0]
         if link.inertial is None and link.element is not None:

@@ -22,7 +22,7 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.poses import AT_ORIGIN, RawPose
 from linkwright.sdf.scripts import gazebo_look, with_look
 from linkwright.sdf.shapes import Polyline, Shape
-from linkwright.sdf.values import Color, plain
+from linkwright.sdf.values import Color, shortest_text
 from linkwright.xmltree import Element, Text
 
 ShapeKind = Literal["box", "cylinder", "sphere", "wall", "ramp"]
@@ -153,12 +153,12 @@ def tensor_texts(properties: MassProperties) -> dict[str, str]:
 
 def format_number(value: float) -> str:
     """Format a number with six significant digits, as used for masses and inertias."""
-    return plain(float(f"{value:.6g}"))
+    return shortest_text(float(f"{value:.6g}"))
 
 
 def format_length(value: float) -> str:
     """Format a length or angle, rounded to nine decimals."""
-    return plain(round(value, DIGITS))
+    return shortest_text(round(value, DIGITS))
 
 
 def format_lengths(values: tuple[float, ...]) -> str:
@@ -194,7 +194,7 @@ def geometry(kind: str, size: tuple[float, ...]) -> list[Element]:
         points = (new_element("point", format_lengths(point)) for point in outline.points)
         shape = new_element("polyline", *points, new_element("height", format_length(outline.height)))
         pose = ramp_pose(size)
-        text = f"{format_lengths(pose.xyz)} {' '.join(map(plain, pose.rpy))}"
+        text = f"{format_lengths(pose.xyz)} {' '.join(map(shortest_text, pose.rpy))}"
         return [new_element("pose", text), new_element("geometry", shape)]
     if kind == "cylinder":
         return [

@@ -10,7 +10,7 @@ ON_DEMAND = (
     OnDemand(
         "linkwright.simulation.page.modeling.feature:ModelingFeature",
         (
-            *messages(_MODELING, "AddEntity", "AskModels", "ChangeEntities", "CopyEntities", "DeleteEntities"),
+            *messages(_MODELING, "AddEntity", "ChangeEntities", "CopyEntities", "DeleteEntities", "RequestModels"),
             *messages(
                 _MODELING, "GroupEntities", "RedoWorld", "SaveWorld", "SetModeling", "UndoWorld", "UngroupEntity"
             ),

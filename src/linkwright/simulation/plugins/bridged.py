@@ -25,7 +25,7 @@ def hidden_gz_topic(topic: str) -> str:
 
 
 class BridgedTopics:
-    """A watcher that calls functions of plugins when a bridge starts to use the name of a topic.
+    """Calls functions of plugins when a bridge starts to use the name of a topic.
 
     Args:
         node: the simulator's node.

@@ -150,7 +150,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         old_command, self._command = self._command, (0.0, 0.0)
         return old_command != self._command
 
-    def _turn_wheels(self) -> None:
+    def _set_wheel_targets(self) -> None:
         forward, angular = self._limited_command
         for pair in self._pairs:
             pair.left.target, pair.right.target = pair.drive.wheel_speeds(forward, angular)
@@ -182,7 +182,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     def reset(self) -> None:
         """Stop the robot, and reset the odometry to its origin."""
         self._reset_motion()
-        self._turn_wheels()
+        self._set_wheel_targets()
 
 
 class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
@@ -192,7 +192,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
     CARRIED: ClassVar[tuple[str, ...]] = (*_DiffDrive.CARRIED, "_wheel_speeds")
 
     def start(self) -> None:
-        """Create motors for the wheels and topics for the odometry, and subscribe to the commands."""
+        """Create motors for the wheels and publishers of the odometry, and subscribe to the commands."""
         parameters, node = self.parameters, self.node
         count = max(len(parameters.left_joint), len(parameters.right_joint))
         separations, diameters = (
@@ -225,7 +225,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             self.every(parameters.update_rate, partial(self._publish_wheels, transforms or transforms_topic(node)))
 
     def _publish_wheels(self, output: Output) -> None:
-        """Publish the transform of each wheel in the frame of the link that holds it."""
+        """Publish the transform of each wheel in the frame of its parent link."""
         for joint in [joint for pair in self._pairs for joint in pair.joints]:
             scene_joint = self.simulation.scene.joints[joint]
             pose = compose(
@@ -300,7 +300,7 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
     PARAMETERS = GzParameters
 
     def start(self) -> None:
-        """Create motors for the wheels and topics for the odometry, and subscribe to the commands."""
+        """Create motors for the wheels and publishers of the odometry, and subscribe to the commands."""
         parameters = self.parameters
         count = max(len(parameters.left_joint), len(parameters.right_joint))
         sizes = [(parameters.wheel_separation, parameters.wheel_radius)] * count
@@ -326,7 +326,7 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         self._update_odometry()
         forward, _, angular = self._commands.next_velocity()
         self._limited_command = (forward, angular)
-        self._turn_wheels()
+        self._set_wheel_targets()
 
     def _publish(self) -> None:
         self._update_odometry()

@@ -113,7 +113,7 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
     PARAMETERS = GzOdometryParameters
 
     def start(self) -> None:
-        """Create the topics for odometry and transforms."""
+        """Create the publishers of odometry and transforms."""
         parameters, model, node = self.parameters, self.context.path, self.node
         self._child_frame = parameters.robot_base_frame or f"{model}/base_footprint"
         self._frame = parameters.odom_frame or f"{model}/odom"

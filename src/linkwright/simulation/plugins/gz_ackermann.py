@@ -127,7 +127,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._limiter.restart()
         for servo in (servo for servos in self._servos for servo in servos):
             servo.restart()
-        self._turn_wheels(0.0, 0.0)
+        self._set_wheel_targets(0.0, 0.0)
 
     def resume(self, previous: SimulatedPlugin[SteeringParameters]) -> None:
         """Take over velocity and odometry from the previous instance."""
@@ -148,7 +148,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         forward, _, angular = self._commands.next_velocity()
         curvature = self._curvature(forward, angular)
         offset_ratio = parameters.wheel_separation / 2.0 * curvature
-        self._turn_wheels(forward * (1.0 - offset_ratio), forward * (1.0 + offset_ratio))
+        self._set_wheel_targets(forward * (1.0 - offset_ratio), forward * (1.0 + offset_ratio))
         self._steer(*ackermann_angles(parameters.wheel_base * curvature, parameters.kingpin_width * curvature))
 
     def _curvature(self, forward: float, angular: float) -> float:
@@ -164,7 +164,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
             return copysign(max_curvature, angular)
         return min(max(angular / forward, -max_curvature), max_curvature)
 
-    def _turn_wheels(self, left: float, right: float) -> None:
+    def _set_wheel_targets(self, left: float, right: float) -> None:
         for motors, speed in zip(self._motors, (left, right), strict=False):
             for motor in motors:
                 motor.target = speed / self.parameters.wheel_radius

@@ -45,7 +45,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
     CARRIED = ("_pose",)
 
     def start(self) -> None:
-        """Create motors for the wheels and topics for the odometry, and subscribe to the commands.
+        """Create motors for the wheels and publishers of the odometry, and subscribe to the commands.
 
         Raises:
             LinkwrightError: SIM134, a joint does not exist; SIM160, a dimension is not positive, or the model is fixed.
@@ -90,7 +90,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         """Stop the robot, and reset the odometry to its origin."""
         self._commands.restart()
         self._reset_motion()
-        self._turn_wheels((0.0, 0.0, 0.0))
+        self._set_wheel_targets((0.0, 0.0, 0.0))
 
     def resume(self, previous: SimulatedPlugin[MecanumParameters]) -> None:
         """Take over velocity and odometry from the previous instance."""
@@ -99,9 +99,9 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         self._commands.resume(previous._commands)
 
     def _drive(self) -> None:
-        self._turn_wheels(self._commands.next_velocity())
+        self._set_wheel_targets(self._commands.next_velocity())
 
-    def _turn_wheels(self, velocity: tuple[float, float, float]) -> None:
+    def _set_wheel_targets(self, velocity: tuple[float, float, float]) -> None:
         for motors, speed in zip(self._motors, self._drive_train.wheel_speeds(*velocity), strict=True):
             for motor in motors:
                 motor.target = speed

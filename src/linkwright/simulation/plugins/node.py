@@ -15,7 +15,7 @@ from linkwright.graph.stepped.calls import Calls
 from linkwright.graph.stepped.exchange import Exchange
 from linkwright.graph.stepped.node import Output, SteppedNode
 from linkwright.simulation.plugins.bridged import BridgedTopics, hidden_gz_topic
-from linkwright.simulation.plugins.ros_element import overridden
+from linkwright.simulation.plugins.ros_element import override_profile
 from linkwright.xmltree import Element
 
 _INVALID_CHARACTERS = re.compile(r"[^A-Za-z0-9_/~]")
@@ -121,4 +121,4 @@ class PluginNode(SteppedNode):
     def _profile(self, topic: str, side: str, qos: QoSProfile | int) -> QoSProfile:
         profile = QoSProfile.of(qos)
         override = self._qos.get((self._node.handle.resolve_topic_name(topic), side))
-        return profile if override is None else overridden(profile, override)
+        return profile if override is None else override_profile(profile, override)

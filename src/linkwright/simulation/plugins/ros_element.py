@@ -81,7 +81,7 @@ def node_of(name: str, element: Element | None, namespace: str) -> NodeDescripti
     return node
 
 
-def overridden(profile: QoSProfile, element: Element) -> QoSProfile:
+def override_profile(profile: QoSProfile, element: Element) -> QoSProfile:
     """Return a copy of a QoS profile with the policies that an element sets.
 
     Invalid values have no effect.

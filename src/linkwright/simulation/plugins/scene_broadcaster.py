@@ -57,7 +57,7 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
     IGNORED = ("state_hertz",)
 
     def start(self) -> None:
-        """Create the topics for the poses of all entities and of moving entities."""
+        """Create the publishers of the poses of all entities and of moving entities."""
         world_topic = f"/world/{self.context.world.name}"
         self._revision = -1
         self._all = self._dynamic = _Entities((), ())

@@ -29,7 +29,7 @@ class ClassicState(SimulatedPlugin[StateParameters]):
     PARAMETERS = StateParameters
 
     def start(self) -> None:
-        """Create the topics and services for the states of models, links and joints."""
+        """Create the publishers and services for the states of models, links and joints."""
         node = self.node
         self._entities = Entities(self.simulation)
         self._models = node.publisher("gazebo_msgs/msg/ModelStates", "model_states", 1)

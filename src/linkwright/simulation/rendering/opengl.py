@@ -375,8 +375,8 @@ def _resample_interpolated(pixels: Pixels, optics: Optics) -> Pixels:
     column = np.clip(optics.sources[0], 0, optics.pinhole.width - 1.001)
     row = np.clip(optics.sources[1], 0, optics.pinhole.height - 1.001)
     left, top = column.astype(int), row.astype(int)
-    right, below = (column - left)[:, None], (row - top)[:, None]
-    upper = pixels[top, left] * (1 - right) + pixels[top, left + 1] * right
-    lower = pixels[top + 1, left] * (1 - right) + pixels[top + 1, left + 1] * right
-    interpolated: Pixels = np.round(upper * (1 - below) + lower * below)
+    x_fraction, y_fraction = (column - left)[:, None], (row - top)[:, None]
+    upper = pixels[top, left] * (1 - x_fraction) + pixels[top, left + 1] * x_fraction
+    lower = pixels[top + 1, left] * (1 - x_fraction) + pixels[top + 1, left + 1] * x_fraction
+    interpolated: Pixels = np.round(upper * (1 - y_fraction) + lower * y_fraction)
     return interpolated.astype(np.uint8).reshape(optics.height, optics.width, 3)

@@ -96,9 +96,9 @@ def _revolution_mesh(rings: Sequence[tuple[float, float, float]]) -> Triangles:
 
 def _grid_mesh(positions: Array, coordinates: Array, columns: int) -> Triangles:
     """Return the mesh of the triangles between rows of vertices, without degenerate triangles."""
-    start = np.arange(len(positions) - columns - 1).reshape(-1, columns + 1)[:, :-1].ravel()
-    below = start + columns + 1
-    faces = np.concatenate([np.stack([start, below, start + 1], 1), np.stack([start + 1, below, below + 1], 1)])
+    upper = np.arange(len(positions) - columns - 1).reshape(-1, columns + 1)[:, :-1].ravel()
+    lower = upper + columns + 1
+    faces = np.concatenate([np.stack([upper, lower, upper + 1], 1), np.stack([upper + 1, lower, lower + 1], 1)])
     first, second, third = (positions[faces[:, corner]] for corner in range(3))
     is_visible = np.linalg.norm(np.cross(second - first, third - first), axis=1) > _MIN_AREA
     return Triangles(positions, faces[is_visible].ravel(), None, coordinates)

@@ -98,7 +98,7 @@ def changes_to(world: World, running: Mapping[str, SceneModel], world_models: Co
         LinkwrightError: SIM102, a model has the name of a model that stays; SIM140, the pose of a model is not defined.
     """
     frames = Frames(world)
-    moved: dict[str, Transform] = {}
+    moved_poses: dict[str, Transform] = {}
     replaced: list[AddedModel] = []
     added: list[AddedModel] = []
     names: set[str] = set()
@@ -123,9 +123,9 @@ def changes_to(world: World, running: Mapping[str, SceneModel], world_models: Co
         ):
             replaced.append(AddedModel(model, model.name, pose, keeps_motion=pose == running_model.pose))
         elif pose != running_model.pose:
-            moved[model.name] = pose
+            moved_poses[model.name] = pose
     removed_names = tuple(name for name in running if name in world_models and name not in names)
-    return Changes(removed_names, moved, tuple(replaced), tuple(added))
+    return Changes(removed_names, moved_poses, tuple(replaced), tuple(added))
 
 
 def check_models(

@@ -27,7 +27,7 @@ def lift_onto_ground(simulation: Simulation, name: str) -> None:
     """
     if not simulation.free_links(name):
         return
-    height = _penetration_depth(simulation, name)
+    height = _lift_height(simulation, name)
     if not _MIN_DEPTH < height < _MAX_DEPTH:
         return
     x, y, z, *rotation = simulation.model_pose(name)
@@ -57,7 +57,7 @@ def collision_warnings(simulation: Simulation, name: str) -> list[Diagnostic]:
     return [Diagnostic("SIM143", message, span, severity=Severity.WARNING, hint=hint, source=source)]
 
 
-def _penetration_depth(simulation: Simulation, name: str) -> float:
+def _lift_height(simulation: Simulation, name: str) -> float:
     """Return the height in m by which a model must be lifted to leave the ground.
 
     The height is 0 if the model is not inside the ground.

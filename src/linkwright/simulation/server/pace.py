@@ -15,7 +15,7 @@ _PATIENCE_S = 10.0
 
 
 class PaceWatch:
-    """A monitor of the real-time factor of a simulation.
+    """Measures the real-time factor of a simulation.
 
     Args:
         report: called with the finding when the world has become slow, and with None when it has recovered.

@@ -140,7 +140,9 @@ class ActionReader:
             message = phrase("there is no place '{name}'", name=text)
             raise keys.error(message, keys.node(key), did_you_mean(text, list(self._places)))
         if slot is not None and slot.name != "place":
-            raise keys.error(phrase("'{key}' must be a place", key=key), keys.node(key))
+            raise keys.error(
+                phrase("'{key}' must be the name of a place, or {slot}", key=key, slot="{place}"), keys.node(key)
+            )
         return GoTo(slot or text, action or "navigate_to_pose")
 
     def _read_gripper(self) -> Action:

@@ -98,7 +98,7 @@ class CommandSet:
         for command in self.commands:
             for language, templates in command.phrases.items():
                 for template in templates:
-                    values = template.values(words, self.names)
+                    values = template.match(words, self.names)
                     if values is not None and (best is None or template.literal_count > best[0]):
                         best = template.literal_count, Match(command, values, language)
         return None if best is None else best[1]
@@ -131,7 +131,7 @@ class CommandSet:
         """Return True if a text means yes, False if it means no, and None for any other text."""
         words = words_of(text)
         for name, is_yes in (("yes", True), ("no", False)):
-            if any(template.values(words, {}) is not None for template in _all_templates(self.answers[name])):
+            if any(template.match(words, {}) is not None for template in _all_templates(self.answers[name])):
                 return is_yes
         return None
 

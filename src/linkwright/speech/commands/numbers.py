@@ -75,8 +75,12 @@ def _parse_english_integer(words: Words) -> int | None:
         if name in words:
             index = words.index(name)
             multiplier = 1 if words[:index] in ((), ("a",)) else _parse_english_integer(words[:index])
-            rest = words[index + 1 :]
-            remainder = 0 if not rest else _parse_english_integer(rest[1:] if rest[0] == "and" else rest)
+            remaining_words = words[index + 1 :]
+            remainder = (
+                0
+                if not remaining_words
+                else _parse_english_integer(remaining_words[1:] if remaining_words[0] == "and" else remaining_words)
+            )
             is_valid = multiplier is not None and remainder is not None and 0 < multiplier < 10 and remainder < power
             return (
                 power * multiplier + remainder

@@ -18,7 +18,7 @@ Value = float | str
 """The value of a slot: a quantity in meters, radians, seconds or meters per second, or a name in the file."""
 
 Names = Mapping[str, Mapping[Words, str]]
-"""For each slot that a name replaces, the names by their spoken forms."""
+"""The names that can fill each slot, by their spoken forms."""
 
 _OPTIONAL_PATTERN = re.compile(r"\[([^\[\]{}]*)\]")
 _SLOT_PATTERN = re.compile(r"\{(\w*)\}")
@@ -51,7 +51,7 @@ class Template:
         """The number of words outside the slots."""
         return sum(map(len, self.pieces))
 
-    def values(self, words: Words, names: Names) -> dict[str, Value] | None:
+    def match(self, words: Words, names: Names) -> dict[str, Value] | None:
         """Return the values of the slots, or None if the words do not match."""
         return self._match_from(words, 0, names)
 
@@ -93,7 +93,8 @@ def parse_templates(text: str, slots: Sequence[str]) -> list[Template]:
         slots: the slots that are allowed in addition to quantities.
 
     Raises:
-        TemplateError: a bracket is not closed, a slot occurs twice or does not exist, or there is no literal word.
+        TemplateError: there are too many brackets, a bracket is not closed, a slot occurs twice or does not exist, or
+            there is no literal word.
     """
     if len(_OPTIONAL_PATTERN.findall(text)) > _MAX_OPTIONAL:
         raise TemplateError(phrase("it has more than {maximum} optional parts in brackets", maximum=_MAX_OPTIONAL))

@@ -29,7 +29,11 @@ _LOUDEST_FRAMES = 12  # the number of frames that determine the loudest level
 _CEPSTRA = 12
 _LEVEL_WEIGHT = 0.3  # the weight of the zeroth coefficient
 _CHANGE_WEIGHT = 1.5  # the weight of the differences
-_STAY_COST = np.float32(1.0)  # the cost of staying in a frame of a take; a path can wait in the background instead
+_STAY_COST = np.float32(1.0)
+"""The cost of assigning one more frame of the recording to the same frame of a take.
+
+Frames before and after the word are assigned to the background instead, without this cost.
+"""
 _INFINITE_COST = np.float32(1e9)
 _CONTEXT_FRAMES = 2  # the number of frames on each side from which differences are computed
 _MAX_SINGLE_THREAD = 200_000  # the maximum number of multiplications in one thread; OpenBLAS uses several above 262,144

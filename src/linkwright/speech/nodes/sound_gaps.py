@@ -50,7 +50,7 @@ class SampleStamps:
 
 
 class SoundGaps:
-    """A detector of missing sound, for publishers that derive their stamps from a sample count."""
+    """Detects missing sound, for publishers that derive their stamps from a sample count."""
 
     def __init__(self) -> None:
         self._next_stamp: int | None = None

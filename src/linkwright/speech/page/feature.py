@@ -96,7 +96,7 @@ class VoiceFeature(PageFeature):
         self._watch(page, watched=False)
 
     def close(self) -> None:
-        """Handle all pages as closed, so that the publishers and subscriptions are destroyed."""
+        """Treat all pages as closed, so that the publishers and subscriptions are destroyed."""
         for page in {*self._watchers, *self._budgets}:
             self.remove_page(page)
 

@@ -10,7 +10,7 @@ ON_DEMAND = (
         "linkwright.speech.page.feature:VoiceFeature",
         (
             *messages(_VOICE_MODULE, "SayCommand", "SoundBlock", "Talk", "WatchVoice"),
-            *messages(_WORDS_MODULE, "AskWordsFile", "BeginTake", "EndTake", "ImportWords"),
+            *messages(_WORDS_MODULE, "BeginTake", "EndTake", "ImportWords", "RequestWordsFile"),
             *messages(_WORDS_MODULE, "RemoveWord", "RenameWord", "WatchWords"),
         ),
         ("/voice/command",),

@@ -11,13 +11,13 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, fo
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.page.audience import Page
 from linkwright.page.protocol.voice_words import (
-    AskWordsFile,
     BeginTake,
     EndTake,
     EnrolledWord,
     ImportWords,
     RemoveWord,
     RenameWord,
+    RequestWordsFile,
     TakeJudged,
     VoiceWords,
     VoiceWordsFile,
@@ -84,7 +84,7 @@ class WordBook:
                 self._change_words(page, lambda words: _rename(words, name, new_name.strip()))
             case ImportWords(text=text):
                 self._change_words(page, lambda words: _import_words(words, text))
-            case AskWordsFile():
+            case RequestWordsFile():
                 self._send_file(page)
 
     def record_sound(self, page: Page, samples: Samples) -> bool:

@@ -24,7 +24,7 @@ _MAX_BAND_LEVEL = 25.0  # the maximum level of a band in dB, because a single lo
 _MAX_BELOW_LOUDEST = 45.0  # in dB; softer sound does not belong to a take, whatever the noise
 _SMOOTHING_FRAMES = 3  # the number of frames over which levels are averaged
 _START_FRAMES = 4  # the number of consecutive loud frames that start an utterance
-_MINIMUM_FRAMES = 80  # the number of frames in which the minimum is searched
+_MINIMUM_FRAMES = 80  # the number of recent frames whose minimum is a lower bound of the noise floor
 _MEAN_TO_MINIMUM = 1.4  # the ratio of the noise's mean to its minimum, for sums of three frames
 _RISE_RATE, _FALL_RATE = 0.05, 0.08  # the fractions by which the floor approaches the level with each frame
 
@@ -38,7 +38,7 @@ _NOISE_DEVIATIONS = 1.5  # the number of standard deviations by which unsteady n
 
 
 class VoiceActivity:
-    """A detector of speech in a stream, frame by frame.
+    """Detects speech in a stream, frame by frame.
 
     Attributes:
         speaking: whether the last frame belongs to an utterance, including its hangover.

@@ -108,7 +108,7 @@ class Context:
             if self._initialized:
                 raise RuntimeError("Context.init() must only be called once")
             self.ros_arguments = read_ros_arguments(sys.argv if args is None else args)
-            print_diagnostics([finding for _, finding in self.ros_arguments.parameters.left_out], sys.stderr)
+            print_diagnostics([finding for _, finding in self.ros_arguments.parameters.skipped_findings], sys.stderr)
             self._domain_id = domain_id
             if initialize_logging and joins_network and not logging.is_configured():
                 self._logging = set_up(self.ros_arguments, Path(sys.argv[0]).stem or "python3", logging.LEVELS)

@@ -16,7 +16,7 @@ _AUTHORITY = "default_authority"
 
 
 class TransformListener:
-    """A listener that adds the transforms of ``/tf`` and ``/tf_static`` to a buffer.
+    """Adds the transforms of ``/tf`` and ``/tf_static`` to a buffer.
 
     The callbacks are in a reentrant group, so that another callback of the node can wait for a transform.
 
@@ -92,7 +92,7 @@ class TransformListener:
 
 
 class StaticTransformListener(TransformListener):
-    """A listener that adds only the transforms of ``/tf_static`` to a buffer.
+    """Adds only the transforms of ``/tf_static`` to a buffer.
 
     Args:
         buffer: the buffer to fill.

@@ -11,8 +11,8 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.standins.xacro_api.errors import XacroException, translate_error
 from linkwright.standins.xacro_api.stacks import STATE, abs_filename_spec
 from linkwright.xacro.expressions import yaml_data
+from linkwright.xacro.expressions.builtin_names import tokenize
 from linkwright.xacro.expressions.scope import Namespace, Scope, truth
-from linkwright.xacro.expressions.symbols import tokenize
 from linkwright.xacro.expressions.template import substitute
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.session import Inputs, Session

@@ -94,10 +94,10 @@ def import_xml_namespaces(parent: Any, attributes: Any) -> None:
         if parent.hasAttribute(name) and parent.getAttribute(name) != value:
             color.warning(
                 phrase(
-                    "'{name}' is declared as '{value}' here, but as '{attributes}' in an enclosing element",
+                    "'{name}' is declared as '{value}' here, but as '{declared}' in an enclosing element",
                     name=name,
                     value=value,
-                    attributes=parent.getAttribute(name),
+                    declared=parent.getAttribute(name),
                 )
             )
         else:

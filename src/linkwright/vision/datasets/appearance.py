@@ -96,7 +96,7 @@ class LensEffects:
         for channel in range(3):
             result[..., channel] = lookup_table[:, channel].take(color[..., channel])
         if generator.random() < 0.35:
-            result = _blurred(result, float(generator.uniform(0.3, 1.6)))
+            result = _blur(result, float(generator.uniform(0.3, 1.6)))
         if generator.random() < 0.7:
             strength = np.float32(generator.uniform(0.5, 9.0))
             start = int(generator.integers(_NOISE_VALUES - result.size)) if result.size < _NOISE_VALUES else 0
@@ -105,7 +105,7 @@ class LensEffects:
         return result
 
 
-def _blurred(color: Pixels, radius: float) -> Pixels:
+def _blur(color: Pixels, radius: float) -> Pixels:
     from PIL import Image, ImageFilter
 
     blurred: Pixels = np.asarray(Image.fromarray(color).filter(ImageFilter.GaussianBlur(radius)))

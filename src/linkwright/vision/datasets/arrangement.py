@@ -68,8 +68,8 @@ class _Ground:
         if not len(self._half_sizes):
             return True
         local = np.einsum("gji,gj->gi", self._axes, np.array([x, y]) - self._centers)
-        outside = np.maximum(np.abs(local) - self._half_sizes, 0.0)
-        return bool((np.hypot(outside[:, 0], outside[:, 1]) > radius).all())
+        offset = np.maximum(np.abs(local) - self._half_sizes, 0.0)
+        return bool((np.hypot(offset[:, 0], offset[:, 1]) > radius).all())
 
     def has_line_of_sight(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
         """Return whether no structure blocks the line between two points."""

@@ -15,7 +15,7 @@ _MAX_TOPICS = 5
 
 
 class ImageWatch:
-    """A monitor that warns once if no image has arrived for some seconds.
+    """Warns once if no image has arrived for some seconds.
 
     It also reports when images arrive again. The timeout then doubles, so that a slow camera causes only a few
     warnings.

@@ -42,7 +42,7 @@ class Backlog:
         self._depth = depth
         self._fragment_size = fragment_size
         self._write = write
-        self._acknowledged = acknowledged
+        self._wait_for_readers = acknowledged
         self._has_vulnerable_reader = has_vulnerable_reader
         self._now = now
         self._waiting: deque[bytes] = deque(maxlen=depth)
@@ -74,7 +74,7 @@ class Backlog:
         """Return whether the next sample would not replace a sample that may still be requested."""
         if self._unacknowledged_count < self._depth:
             return True
-        if self._acknowledged():
+        if self._wait_for_readers():
             self._unacknowledged_count, self._late_since = 0, None
             return True
         if not self._has_vulnerable_reader():

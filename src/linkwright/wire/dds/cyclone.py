@@ -200,7 +200,7 @@ class Cyclone:
         check_call(self.dds_get_guid(entity, buffer), "reading the GUID of an entity")
         return buffer.raw
 
-    def matched(self, entity: int, *, writer: bool) -> list[int]:
+    def matching_handles(self, entity: int, *, writer: bool) -> list[int]:
         """Return the instance handles of the remote endpoints that match a writer or a reader."""
         function = self.dds_get_matched_subscriptions if writer else self.dds_get_matched_publications
         size = 64

@@ -20,7 +20,7 @@ from linkwright.graph.names.rules import NodeIdentity
 if TYPE_CHECKING:
     from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph
 
-GRACE = 0.4
+GRACE_S = 0.4
 """Seconds after the end of a process within which the departure of its participant is announced."""
 
 WITHDRAWAL_TIMEOUT_S = 1.0
@@ -47,12 +47,12 @@ class _MissingWriter:
 
 
 class DdsDepartureMonitor:
-    """A detector that decides whether publishers that disappeared were lost.
+    """Decides whether publishers that disappeared were lost.
 
     Only the discovery thread may call the methods, except `watch`.
 
     Args:
-        remote: the remote graph, which calls `endpoint_left` and `announced`.
+        remote: the remote graph, which calls `endpoint_left` and `on_announcement`.
         now: the steady clock, in seconds.
     """
 
@@ -82,7 +82,7 @@ class DdsDepartureMonitor:
         if self._watchers and endpoint.is_writer and node is not None and endpoint.participant not in self._reported:
             self._missing_writers.append(_MissingWriter(endpoint, node))
 
-    def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
+    def on_announcement(self, participant: bytes, endpoints: Collection[bytes]) -> None:
         """Handle an announcement.
 
         Missing endpoints that the announcement does not contain were withdrawn.
@@ -126,7 +126,7 @@ class DdsDepartureMonitor:
         self._dead_since = {guid: self._dead_since.get(guid, now) for guid in dead}
         self._reported &= dead | {missing.endpoint.participant for missing in self._missing_writers}
         for guid, since in self._dead_since.items():
-            if now - since >= GRACE and guid not in self._reported:
+            if now - since >= GRACE_S and guid not in self._reported:
                 self._reported.add(guid)
                 for endpoint, node in self._remote.participant_writers(guid):
                     self._report(endpoint, node)

@@ -176,7 +176,7 @@ class Discovery:
         for data, info in samples:
             entities = decode(data) if info.valid_data else None
             if entities is not None:
-                self._remote.entities_announced(entities)
+                self._remote.on_entities_announced(entities)
                 self.changed = True
         return len(samples) == _MAX_SAMPLES
 

@@ -21,7 +21,7 @@ from queue import SimpleQueue
 from linkwright.wire.dds.local_sockets import waiting_bytes
 from linkwright.wire.dds.rtps.messages import FRAGMENT, fragment_count, fragment_start, info_timestamp, message
 from linkwright.wire.dds.rtps.values import PREFIX, UNKNOWN, Address
-from linkwright.wire.guarded_calls import guarded
+from linkwright.wire.guarded_calls import call_guarded
 
 _BUFFER = 212_992
 """Bytes of a receive buffer on Linux, unless a process asks for more."""
@@ -63,7 +63,7 @@ class Receiver:
         self.address = address
         self._waiting = count_waiting
         self._pause = pause
-        self._room = self._remaining_checks = 0
+        self._remaining_packets = self._remaining_checks = 0
         self._is_stuck = False
 
     def begin(self) -> None:
@@ -71,29 +71,29 @@ class Receiver:
 
         If the reader received nothing of the previous sample, `wait_for_room` does not wait for this one.
         """
-        self._room, self._remaining_checks = 0, 1 if self._is_stuck else _MAX_CHECKS
+        self._remaining_packets, self._remaining_checks = 0, 1 if self._is_stuck else _MAX_CHECKS
 
     def wait_for_room(self) -> bool:
         """Wait until a packet fits into the buffer.
 
         Returns False if no packet fits before the number of checks for this sample is exhausted.
         """
-        if not self._room:
-            self._room = self._next_room()
-            self._is_stuck = not self._room
-        if self._room:
-            self._room -= 1
+        if not self._remaining_packets:
+            self._remaining_packets = self._free_packets()
+            self._is_stuck = not self._remaining_packets
+        if self._remaining_packets:
+            self._remaining_packets -= 1
         return not self._is_stuck
 
-    def _next_room(self) -> int:
+    def _free_packets(self) -> int:
         while self._remaining_checks:
             waiting_count = self._waiting(self.address[1])
             if waiting_count is None:
                 self._pause(_BLIND_PAUSE)
                 return _BLIND_PACKETS
-            room = (_BUFFER - waiting_count) // _PACKET_SIZE
-            if room >= _MIN_ROOM:
-                return room
+            packet_count = (_BUFFER - waiting_count) // _PACKET_SIZE
+            if packet_count >= _MIN_ROOM:
+                return packet_count
             self._remaining_checks -= 1
             self._pause(_PAUSE)
         return 0
@@ -177,7 +177,7 @@ class Pacer:
 
     def _run(self) -> None:
         while (writer := self._work.get()) is not None:
-            if guarded(writer.send_next) is not False:  # after an error, continue with the next sample
+            if call_guarded(writer.send_next) is not False:  # after an error, continue with the next sample
                 self._work.put(writer)
 
 

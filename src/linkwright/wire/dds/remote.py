@@ -156,7 +156,7 @@ class RemoteEndpoint:
 
 
 class DepartureWatch(Protocol):
-    """A receiver of notifications about endpoints that disappear.
+    """Receives notifications about endpoints that disappear.
 
     `wire.dds.departures.DdsDepartureMonitor` implements this protocol.
     """
@@ -169,7 +169,7 @@ class DepartureWatch(Protocol):
             node: the node that still announces the endpoint; None if the endpoint was withdrawn.
         """
 
-    def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
+    def on_announcement(self, participant: bytes, endpoints: Collection[bytes]) -> None:
         """Handle an announcement of the current endpoints of a participant's nodes."""
 
 
@@ -224,7 +224,7 @@ class RemoteGraph(RemoteEntities):
             if endpoint is not None:
                 self._forget(endpoint)
 
-    def entities_announced(self, entities: ParticipantEntities) -> None:
+    def on_entities_announced(self, entities: ParticipantEntities) -> None:
         """Record the nodes that a participant announces.
 
         The announcement may arrive before the participant is known.
@@ -236,7 +236,9 @@ class RemoteGraph(RemoteEntities):
             else:
                 participant.entities = entities
             if self.departures is not None:
-                self.departures.announced(entities.participant, {gid for node in entities.nodes for gid in _gids(node)})
+                self.departures.on_announcement(
+                    entities.participant, {gid for node in entities.nodes for gid in _gids(node)}
+                )
 
     def _forget(self, endpoint: RemoteEndpoint) -> None:
         if self.departures is not None:

@@ -200,9 +200,13 @@ class RemoteServer:
         self._response_callbacks.pop(number, None)
 
     def _is_server_available(self) -> bool:
-        request_readers = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True)]
+        request_readers = [
+            self._remote.endpoint(handle) for handle in self._dds.matching_handles(self.pair.writer, writer=True)
+        ]
         cyclone_readers = [endpoint for endpoint in request_readers if endpoint is not None and not endpoint.is_fast]
-        reply_writers = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.reader, writer=False)]
+        reply_writers = [
+            self._remote.endpoint(handle) for handle in self._dds.matching_handles(self.pair.reader, writer=False)
+        ]
         return any(
             _have_same_owner(reader, writer, "serviceid") for reader in cyclone_readers for writer in reply_writers
         )
@@ -305,7 +309,9 @@ class IncomingService:
 
         Otherwise the client would miss the reply.
         """
-        readers = (self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True))
+        readers = (
+            self._remote.endpoint(handle) for handle in self._dds.matching_handles(self.pair.writer, writer=True)
+        )
         return any(_have_same_owner(sender, reader, "clientid") for reader in readers)
 
 

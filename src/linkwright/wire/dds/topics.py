@@ -171,7 +171,7 @@ class OutgoingTopic(MirroredTopic):
         match_status = MatchedStatus()
         if self._dds.dds_get_publication_matched_status(self.entity, c.byref(match_status)) >= 0:
             is_needed = self._is_transient_local or match_status.current_count > 0
-            self._publisher.set_remote_sender(self._send if is_needed else None, self._acknowledged)
+            self._publisher.set_remote_sender(self._send if is_needed else None, self._wait_for_readers)
             self._publisher.set_remote_count(match_status.current_count)
         if status.value & OFFERED_INCOMPATIBLE_QOS:
             self._on_mismatch(self)
@@ -213,7 +213,7 @@ class OutgoingTopic(MirroredTopic):
     def _assert_liveliness(self) -> None:
         self._dds.dds_assert_liveliness(self.entity)
 
-    def _acknowledged(self, seconds: float | None) -> bool:
+    def _wait_for_readers(self, seconds: float | None) -> bool:
         return self.wait_until_acknowledged(0x7FFF_FFFF_FFFF_FFFF if seconds is None else int(seconds * 1e9))
 
     def _wait_for_acks(self, nanoseconds: int) -> bool:
@@ -243,7 +243,7 @@ class OutgoingTopic(MirroredTopic):
 
     def _fast_readers(self) -> list[bytes]:
         """Return the GUIDs of the readers of Fast DDS that match the writer."""
-        endpoints = map(self._remote.endpoint, self._dds.matched(self.entity, writer=True))
+        endpoints = map(self._remote.endpoint, self._dds.matching_handles(self.entity, writer=True))
         return [endpoint.guid for endpoint in endpoints if endpoint is not None and endpoint.is_fast]
 
     def _make_backlog(self, fragment_size: int) -> Backlog | None:

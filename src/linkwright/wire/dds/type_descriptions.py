@@ -141,18 +141,18 @@ def empty_type_data(type_name: str) -> tuple[bytes, bytes]:
     complete += bytes(-len(complete) % 4) + _NO_MEMBERS
     information = _with_dependencies(_MINIMAL_ID, _MINIMAL) + _with_dependencies(_COMPLETE_ID, complete)
     complete_to_minimal = _number(1) + _type_id(complete) + _type_id(_MINIMAL)
-    return _sized(information), _pair(_MINIMAL) + _pair(complete) + _sized(complete_to_minimal)
+    return _add_size(information), _pair(_MINIMAL) + _pair(complete) + _add_size(complete_to_minimal)
 
 
 def _with_dependencies(member_id: int, type_object: bytes) -> bytes:
     """Encode a TypeIdentifierWithDependencies as a member of a mutable structure."""
-    sized_id = _sized(_type_id(type_object) + b"\0" + _number(len(type_object) + 4))
-    return _number(member_id) + _sized(_sized(sized_id + _number(0) + _NO_MEMBERS))
+    sized_id = _add_size(_type_id(type_object) + b"\0" + _number(len(type_object) + 4))
+    return _number(member_id) + _add_size(_add_size(sized_id + _number(0) + _NO_MEMBERS))
 
 
 def _pair(type_object: bytes) -> bytes:
     """Encode a sequence of one TypeIdentifierTypeObjectPair."""
-    return _sized(_number(1) + _type_id(type_object) + b"\0" + _sized(type_object))
+    return _add_size(_number(1) + _type_id(type_object) + b"\0" + _add_size(type_object))
 
 
 def _type_id(type_object: bytes) -> bytes:
@@ -160,10 +160,10 @@ def _type_id(type_object: bytes) -> bytes:
 
     It consists of its kind, EK_MINIMAL or EK_COMPLETE, and its EquivalenceHash.
     """
-    return type_object[:1] + md5(_sized(type_object), usedforsecurity=False).digest()[:14]
+    return type_object[:1] + md5(_add_size(type_object), usedforsecurity=False).digest()[:14]
 
 
-def _sized(data: bytes) -> bytes:
+def _add_size(data: bytes) -> bytes:
     return _number(len(data)) + data
 
 

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 
 from linkwright.wire.dds.cyclone import INFINITY, check_call, load
-from linkwright.wire.guarded_calls import guarded
+from linkwright.wire.guarded_calls import call_guarded
 
 Handler = Callable[[], bool]
 """Handles pending work, and returns whether more is left.
@@ -93,10 +93,10 @@ class WaitingThread(threading.Thread):
                 self._dds.dds_take_guardcondition(self._guard, c.byref(was_set))
             for entity in entities:
                 handler = self._handlers.get(entity)
-                if handler is not None and guarded(handler, self._report):
+                if handler is not None and call_guarded(handler, self._report):
                     unfinished.add(entity)
             if self._idle is not None and not self._is_stopping:
-                seconds = guarded(self._idle, self._report)
+                seconds = call_guarded(self._idle, self._report)
                 deadline = None if seconds is None else time.monotonic() + seconds
 
 

@@ -25,7 +25,7 @@ from linkwright.wire.zenoh.tokens import Token
 if TYPE_CHECKING:
     from linkwright.wire.zenoh.remote import RemoteGraph
 
-GRACE = 0.4
+GRACE_S = 0.4
 """Seconds after a publisher disappears within which changes to its session's other tokens arrive."""
 
 
@@ -45,7 +45,7 @@ class _MissingPublisher:
 
 
 class ZenohDepartureMonitor:
-    """A detector that decides whether publishers that disappeared were lost.
+    """Decides whether publishers that disappeared were lost.
 
     Only the discovery thread may call the methods, except `watch`.
 
@@ -89,7 +89,7 @@ class ZenohDepartureMonitor:
         """Record that a Linkwright session has started."""
         self._live_sessions.add(session)
 
-    def session_leaves(self, session: str) -> None:
+    def session_leaving(self, session: str) -> None:
         """Record that a Linkwright session is about to end."""
         self._departed_sessions.add(session)
 
@@ -106,7 +106,7 @@ class ZenohDepartureMonitor:
         if token.node_key in self._nodes_removed_at:
             self._unordered_nodes.add(token.node_key)
         if self._watchers and token.kind is EndpointKind.PUBLISHER:
-            self._missing_publishers.append(_MissingPublisher(key, token, self._now() + GRACE))
+            self._missing_publishers.append(_MissingPublisher(key, token, self._now() + GRACE_S))
 
     def report_lost_publishers(self) -> float | None:
         """Report the publishers that have become lost since the last call.
@@ -118,7 +118,7 @@ class ZenohDepartureMonitor:
         expired = [missing for missing in self._missing_publishers if missing.deadline <= now]
         self._missing_publishers = [publisher for publisher in self._missing_publishers if publisher.deadline > now]
         for publisher in expired:
-            info = publisher.token.described() if self._is_lost(publisher) else None
+            info = publisher.token.endpoint_info() if self._is_lost(publisher) else None
             if info is not None:
                 for callback in self._watchers:
                     callback(info)
@@ -139,10 +139,10 @@ class ZenohDepartureMonitor:
     def _forget(self, now: float) -> None:
         """Remove the records of nodes and sessions that disappeared long enough ago."""
         for node_key, since in tuple(self._nodes_removed_at.items()):
-            if now - since > GRACE:
+            if now - since > GRACE_S:
                 del self._nodes_removed_at[node_key]
                 self._unordered_nodes.discard(node_key)
         for session, since in tuple(self._ended_at.items()):
-            if now - since > GRACE:
+            if now - since > GRACE_S:
                 del self._ended_at[session]
                 self._departed_sessions.discard(session)

@@ -20,7 +20,7 @@ from linkwright.graph.names.rules import NodeIdentity
 from linkwright.messages import InterfaceNotFoundError, type_hash
 from linkwright.wire.engine import Engine as AnyEngine
 from linkwright.wire.engine import Work, ends_by_error
-from linkwright.wire.guarded_calls import guarded
+from linkwright.wire.guarded_calls import call_guarded
 from linkwright.wire.type_names import dds_type
 from linkwright.wire.zenoh import qos_text, tokens
 from linkwright.wire.zenoh.departures import ZenohDepartureMonitor
@@ -182,7 +182,7 @@ class Engine(AnyEngine):
 
         token = self._create_token(subscription, EndpointKind.SUBSCRIPTION)
         key = token.data_key
-        if token.type_hash == tokens.NO_HASH and self._settings.hashes:  # unknown type: accept any hash
+        if token.type_hash == tokens.NO_HASH and self._settings.has_type_hashes:  # unknown type: accept any hash
             key = tokens.data_key(token.domain_id, token.name, token.type_name, "*")
         self._announce(subscription, IncomingTopic(subscription, token, self._session, key, self._own_gids))
 
@@ -248,7 +248,7 @@ class Engine(AnyEngine):
         )
 
     def _type_hash(self, endpoint: Any, kind: EndpointKind) -> str:
-        if not self._settings.hashes:
+        if not self._settings.has_type_hashes:
             return tokens.NO_HASH
         if endpoint.type_hash:
             return str(endpoint.type_hash)
@@ -259,7 +259,7 @@ class Engine(AnyEngine):
                 return tokens.NO_HASH
             raise
 
-    def look_around(self, seconds: float, on_answered: Callable[[], None]) -> None:
+    def start_discovery(self, seconds: float, on_answered: Callable[[], None]) -> None:
         """Start discovering the whole graph.
 
         Args:
@@ -302,8 +302,8 @@ class Engine(AnyEngine):
         while not self._end_event.is_set():
             self._wake_event.clear()
             self._process_some_requests()
-            guarded(self._update_mirrors, self._report)
-            timeout = 0.0 if self._work else guarded(self._departures.report_lost_publishers, self._report)
+            call_guarded(self._update_mirrors, self._report)
+            timeout = 0.0 if self._work else call_guarded(self._departures.report_lost_publishers, self._report)
             self._wake_event.wait(timeout)
 
     def _update_mirrors(self) -> None:
@@ -343,7 +343,7 @@ class Engine(AnyEngine):
             self._departures.session_ended(session)
             self._is_following = False  # makes `process_tokens` end the subscription to that session
         elif appeared:
-            self._departures.session_leaves(session)
+            self._departures.session_leaving(session)
 
     def _update_match_count(self, mirror: Any) -> None:
         peer_kind = _OPPOSITE.get(mirror.token.kind)

@@ -6,7 +6,7 @@ of seconds and nanoseconds. Values that are the default of rmw_zenoh_cpp are lef
 
 from __future__ import annotations
 
-from linkwright.graph.qos.compatibility import limit_ns, resolved
+from linkwright.graph.qos.compatibility import limit_ns, resolve_defaults
 from linkwright.graph.qos.profile import (
     DurabilityPolicy,
     HistoryPolicy,
@@ -22,7 +22,7 @@ _DEFAULT_DEPTH = 42
 
 def write(profile: QoSProfile) -> str:
     """Return the chunk that encodes a profile."""
-    qos = resolved(profile)
+    qos = resolve_defaults(profile)
     # If the depth is left to the middleware, it becomes the default.
     keeps_all = qos.history is HistoryPolicy.KEEP_ALL
     depth = _DEFAULT_DEPTH if profile.depth == 0 else profile.depth

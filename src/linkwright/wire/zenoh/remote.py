@@ -127,4 +127,4 @@ class RemoteGraph(RemoteEntities):
         """Return the endpoints of other sessions."""
         with self._lock:
             tokens = list(self._tokens.values())
-        return [info for token in tokens if (info := token.described()) is not None]
+        return [info for token in tokens if (info := token.endpoint_info()) is not None]

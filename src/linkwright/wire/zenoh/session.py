@@ -89,20 +89,20 @@ def configuration(settings: Settings) -> zenoh.Config:
     Raises:
         LinkwrightError: DDS111, the configuration is refused.
     """
-    if settings.file:
+    if settings.config_file:
         try:
-            config = zenoh.Config.from_file(settings.file)
+            config = zenoh.Config.from_file(settings.config_file)
         except zenoh.ZError as error:
             raise LinkwrightError(
                 Diagnostic(
                     "DDS111",
-                    phrase("Zenoh refuses the configuration file '{path}'", path=settings.file),
+                    phrase("Zenoh refuses the configuration file '{path}'", path=settings.config_file),
                     hint=phrase("Zenoh reports: {reason}", reason=foreign(_reason(error))),
                 )
             ) from error
     else:
         config = zenoh.Config()
-        for key, value in settings.own:
+        for key, value in settings.default_entries:
             config.insert_json5(key, value)
     for key, value in settings.overrides:
         _override(config, key, value)

@@ -29,7 +29,7 @@ _LEASE_MS = 60_000
 _MAX_WAIT_US = 50_000
 """The time for which a publisher waits for space before it drops a message, in microseconds.
 
-Zenoh's default of 1 ms is shorter than the time after which a busy machine runs the receiver.
+Zenoh's default of 1 ms is shorter than a busy machine may take to schedule the receiver.
 """
 
 _MAX_FRAGMENTS_WAIT_US = 200_000
@@ -64,19 +64,19 @@ class Settings:
 
     Attributes:
         domain_id: the ROS domain.
-        file: the configuration file that replaces Linkwright's configuration; empty for none.
-        own: Linkwright's configuration.
+        config_file: the configuration file that replaces Linkwright's configuration; empty for none.
+        default_entries: Linkwright's configuration.
         overrides: entries that are applied last, to either configuration.
         attempts: the number of checks for a router, a second apart, before continuing without one; None for no limit.
-        hashes: whether types have a hash on the wire; in Humble they have none.
+        has_type_hashes: whether types have a hash on the wire; in Humble they have none.
     """
 
     domain_id: int
-    file: str = ""
-    own: Entries = ()
+    config_file: str = ""
+    default_entries: Entries = ()
     overrides: Entries = ()
     attempts: int | None = 0
-    hashes: bool = True
+    has_type_hashes: bool = True
 
 
 def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: int | None = None) -> Settings:
@@ -93,11 +93,11 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
     domain_id = read_domain_id(variables, domain_id)
     return Settings(
         domain_id=domain_id,
-        file=_path(variables.get(SESSION_FILE, "")),
-        own=_session(domain_id),
+        config_file=_path(variables.get(SESSION_FILE, "")),
+        default_entries=_session(domain_id),
         overrides=_overrides(variables),
         attempts=_attempts(variables),
-        hashes=ASSUMED in variables or variables.get("ROS_DISTRO", "").lower() != _WITHOUT_HASHES,
+        has_type_hashes=ASSUMED in variables or variables.get("ROS_DISTRO", "").lower() != _WITHOUT_HASHES,
     )
 
 

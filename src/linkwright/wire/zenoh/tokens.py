@@ -96,7 +96,7 @@ class Token:
         """
         return self.session, self.node_id
 
-    def described(self) -> EndpointInfo | None:
+    def endpoint_info(self) -> EndpointInfo | None:
         """Return the endpoint's description in ROS terms, or None for nodes and non-ROS endpoints."""
         type_name = ros_type(self.type_name)
         if self.kind is None or type_name is None:

@@ -104,13 +104,13 @@ class OutgoingTopic:
         self._publisher.send_remote = None
 
     def _sender(self) -> Callable[[Any], None]:
-        put, gid, now, write = self._zenoh.put, self.token.gid, time.time_ns, attachment.write
+        put_sample, gid, now, write = self._zenoh.put, self.token.gid, time.time_ns, attachment.write
         numbers, lock = itertools.count(1), Lock()
 
         def send(message: Any) -> None:
             data = message if type(message) is bytes else _to_bytes(message)
             with lock:  # Messages must be sent in the order of their numbers, because a gap counts as a loss.
-                put(data, attachment=write(next(numbers), now(), gid))
+                put_sample(data, attachment=write(next(numbers), now(), gid))
 
         return send
 

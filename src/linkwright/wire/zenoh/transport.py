@@ -53,7 +53,7 @@ class ZenohTransport(BackgroundTransport):
         self._discovery_done = Event()
         super().__init__(settings.domain_id, self._remote, self._departures, logger, **options)
 
-    def look_around(self) -> None:
+    def start_discovery(self) -> None:
         """Discover the whole remote graph.
 
         Before this call, a client of a router receives only the tokens that its own endpoints need.
@@ -67,7 +67,7 @@ class ZenohTransport(BackgroundTransport):
                 self._discovery_done.wait(_ANSWERED_WITHIN)
             return
         answered = Event()
-        self._do(lambda engine: cast("ZenohEngine", engine).look_around(_ANSWERED_WITHIN, answered.set))
+        self._do(lambda engine: cast("ZenohEngine", engine).start_discovery(_ANSWERED_WITHIN, answered.set))
         if must_wait:  # if not waiting, the remote graph arrives step by step
             self._wait_for_answer(answered)
             self._do(self._process_tokens)

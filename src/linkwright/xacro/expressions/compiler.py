@@ -16,7 +16,7 @@ from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import RefusalError, checked_keys
-from linkwright.xacro.expressions.functions import Function, bind_parameters, call, charge_value, cost
+from linkwright.xacro.expressions.calls import Function, bind_parameters, call, charge_value, cost
 from linkwright.xacro.expressions.scope import Environment
 from linkwright.xacro.expressions.yaml_data import COPIED_TYPES, YamlDict, YamlMapping, wrapped
 from linkwright.xacro.faults import Fault

@@ -339,7 +339,7 @@ def _format(text: str, *values: Any, **named_values: Any) -> str:
     from string import Formatter
 
     if text.count("{") > _MAX_FIELDS:
-        raise RefusalError(phrase("the string has more than {count:,} fields", count=_MAX_FIELDS))
+        raise RefusalError(phrase("the format string has more than {count:,} replacement fields", count=_MAX_FIELDS))
     length = len(text)
 
     class Fields(Formatter):

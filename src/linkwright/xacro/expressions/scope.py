@@ -287,18 +287,18 @@ class Namespace(Scope):
 class Local:
     """The environment of a lambda or comprehension: variables and the enclosing environment."""
 
-    __slots__ = ("_around", "_values", "session")
+    __slots__ = ("_enclosing", "_values", "session")
 
-    def __init__(self, around: Environment, values: dict[str, Any]) -> None:
-        self._around = around
+    def __init__(self, enclosing: Environment, values: dict[str, Any]) -> None:
+        self._enclosing = enclosing
         self._values = values
-        self.session: Context = around.session
+        self.session: Context = enclosing.session
 
     def lookup(self, name: str) -> Any:
         """Return the value of a name in this or an enclosing environment; see `Scope.lookup`."""
         if name in self._values:
             return self._values[name]
-        return self._around.lookup(name)
+        return self._enclosing.lookup(name)
 
     def bind(self, name: str, value: Any) -> None:
         """Assign a value to a variable."""
@@ -306,7 +306,7 @@ class Local:
 
     def assign(self, name: str, value: Any) -> None:
         """Define a property in the enclosing scope, for ``name := value``."""
-        self._around.assign(name, value)
+        self._enclosing.assign(name, value)
 
     def inner(self) -> Local:
         """Return the environment of a lambda or comprehension inside this environment."""
@@ -314,12 +314,12 @@ class Local:
 
     def blocks(self) -> Iterator[str]:
         """Yield the names of all blocks that are visible in this environment; see `Scope.blocks`."""
-        return self._around.blocks()
+        return self._enclosing.blocks()
 
     def names(self) -> Iterator[str]:
         """Yield all names that are visible in this environment."""
         yield from self._values
-        yield from self._around.names()
+        yield from self._enclosing.names()
 
 
 Environment = Scope | Local

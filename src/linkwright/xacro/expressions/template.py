@@ -29,10 +29,10 @@ from linkwright.loading.lean_typing import Any
 from linkwright.xacro.cache import TextCompiler
 from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import RefusalError
+from linkwright.xacro.expressions.builtin_names import MATHEMATICS
 from linkwright.xacro.expressions.expression import Expression, compile_expression
 from linkwright.xacro.expressions.sandbox import as_text
 from linkwright.xacro.expressions.scope import Context, Scope
-from linkwright.xacro.expressions.symbols import MATHEMATICS
 from linkwright.xacro.faults import Fault
 
 _COMMANDS = ("arg", "find", "env", "optenv", "dirname", "cwd", "eval")

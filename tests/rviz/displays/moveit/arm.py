@@ -36,7 +36,7 @@ RobotTrajectory = get_message("moveit_msgs/msg/RobotTrajectory")
 
 
 def config(cls: str, extra: str = "") -> RvizConfig:
-    """A file with one display of moveit_rviz_plugin."""
+    """Return a file with one display of moveit_rviz_plugin."""
     return RvizConfig.parse(
         "Visualization Manager:\n  Global Options: {Fixed Frame: base}\n  Displays:\n"
         f"    - {{Class: moveit_rviz_plugin/{cls}, Enabled: true, Name: {cls}{extra}}}\n"
@@ -50,7 +50,7 @@ def pose(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Any:
 
 
 def state(**positions: float) -> Any:
-    """A RobotState; a diff when it says nothing of joints."""
+    """Return a RobotState; without joints it is a diff."""
     message = RobotState(is_diff=not positions)
     message.joint_state.name = list(positions)
     message.joint_state.position = [float(position) for position in positions.values()]
@@ -64,7 +64,7 @@ def primitive(kind: int, *dimensions: float) -> Any:
 def collision_object(
     name: str, *primitives: Any, frame: str = "base", at: Any = None, operation: bytes = b"\x00"
 ) -> Any:
-    """A CollisionObject; a box of one meter where it says nothing."""
+    """Return a CollisionObject, by default a box of one meter."""
     message = CollisionObject(id=name, operation=operation, pose=at or pose())
     message.header.frame_id = frame
     if operation in (b"\x00", b"\x02"):
@@ -83,7 +83,7 @@ def attached(link: str, held: Any) -> Any:
 
 
 def trajectory(*angles: float, seconds: float = 0.1) -> Any:
-    """A DisplayTrajectory of the shoulder; the wrist is out by half a meter from the start."""
+    """Return a DisplayTrajectory of the shoulder; the wrist is off by half a meter from the start."""
     part = RobotTrajectory()
     part.joint_trajectory.joint_names = ["shoulder"]
     for number, angle in enumerate(angles, start=1):
@@ -95,5 +95,5 @@ def trajectory(*angles: float, seconds: float = 0.1) -> Any:
 
 
 def signed(data: bytes) -> list[int]:
-    """Bytes as an Octomap has them."""
+    """Return bytes in the form of an Octomap."""
     return [byte - 256 if byte > 127 else byte for byte in data]

@@ -33,8 +33,8 @@ DisplayRobotState = get_message("moveit_msgs/msg/DisplayRobotState")
 
 
 @asynccontextmanager
-async def shown(cls: str, message_type: str, topic: str, extra: str = ""):
-    """A display, a function that publishes to it, and one that gives the markers drawn."""
+async def open_display(cls: str, message_type: str, topic: str, extra: str = ""):
+    """Return a display, a function that publishes to it, and one that returns the drawn markers."""
     async with open_world(config(cls, extra)) as world:
         world.describe(ARM)
         publisher = world.graph.create_node("talker").create_publisher(message_type, topic, 10)
@@ -49,7 +49,7 @@ async def shown(cls: str, message_type: str, topic: str, extra: str = ""):
 
 
 def moving(extra: str = ""):
-    return shown("Trajectory", "moveit_msgs/msg/DisplayTrajectory", PATH, extra)
+    return open_display("Trajectory", "moveit_msgs/msg/DisplayTrajectory", PATH, extra)
 
 
 def robot() -> PosableRobot:
@@ -186,7 +186,7 @@ async def test_invalid_motions_are_reported():
 
 
 async def test_robot_state_highlights_links():
-    async with shown("RobotState", "moveit_msgs/msg/DisplayRobotState", "/display_robot_state") as (
+    async with open_display("RobotState", "moveit_msgs/msg/DisplayRobotState", "/display_robot_state") as (
         world,
         publish_and_settle,
     ):
@@ -216,7 +216,7 @@ async def test_robot_state_highlights_links():
 async def test_motion_planning_shows_scene_trajectory_and_queries():
     extra = ", Scene Geometry: {Scene Display Time: 0.0001}, Planned Path: {State Display Time: 1000s}"
     kind, topic = "moveit_msgs/msg/DisplayTrajectory", PATH
-    async with shown("MotionPlanning", kind, topic, extra) as (world, publish_and_settle):
+    async with open_display("MotionPlanning", kind, topic, extra) as (world, publish_and_settle):
         display = world.display("MotionPlanning")
         node = world.graph.create_node("move_group")
         scenes = node.create_publisher("moveit_msgs/msg/PlanningScene", "/monitored_planning_scene", 10)

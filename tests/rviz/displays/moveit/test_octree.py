@@ -17,7 +17,7 @@ FREE, OCCUPIED, INNER = 1, 2, 3
 
 
 def node(**children: int) -> bytes:
-    """An inner node of the binary form, of children c0 to c7."""
+    """Return an inner node of the binary form with children c0 to c7."""
     bits = sum(state << 2 * int(name[1:]) for name, state in children.items())
     return struct.pack("<H", bits)
 

@@ -1,4 +1,4 @@
-"""PlanningScene: the robot, what it holds, what is around it."""
+"""PlanningScene: the robot, its attached objects, and its surroundings."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Talker:
         self.publisher = self.node.create_publisher("moveit_msgs/msg/PlanningScene", topic, 10)
 
     async def publish_scene(self, message) -> dict[str, dict]:
-        """Publish a scene, and give what is drawn then."""
+        """Publish a scene, and return the drawing."""
         self.publisher.publish(message)
         await self.w.settle()
         display = self.w.viewer.displays[0]

@@ -130,7 +130,7 @@ class TeleopTwistJoy(SingleNode):
         ):
             self._stop()
             self._node.get_logger().warning(
-                phrase("no node publishes '{topic}' any more, so the robot is stopped", topic=self._joy_topic)
+                phrase("'{topic}' no longer has a publisher, so the robot is stopped", topic=self._joy_topic)
             )
 
 

@@ -247,7 +247,7 @@ class ExecuteLocal(Action):
             destinations=self._destinations(context),
             output_format=self._output_format,
             log_command=self._log_cmd,
-            respawn=bool(self._typed(context, "respawn", self._respawn)),
+            respawn=bool(self._convert_value(context, "respawn", self._respawn)),
             respawn_delay=self._respawn_delay or 0.0,
             respawn_limit=self._respawn_max_retries,
             seconds_to_sigterm=self._seconds(context, self._sigterm_timeout, "sigterm_timeout"),
@@ -288,7 +288,7 @@ class ExecuteLocal(Action):
             message = phrase("'{name}' is '{text}', which is neither true nor false", name=name, text=error.text)
             raise error_at(self.source_location, "LAUNCH141", message, ros_error=error) from error
 
-    def _typed(self, context: LaunchContext, name: str, value: Any) -> Any:
+    def _convert_value(self, context: LaunchContext, name: str, value: Any) -> Any:
         try:
             return perform_typed_substitution(context, value, bool)
         except ValueError as error:

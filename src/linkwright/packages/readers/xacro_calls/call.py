@@ -62,7 +62,7 @@ class CallingFile:
     choices: dict[str, Choice] = field(default_factory=dict)
 
     @cached_property
-    def included(self) -> list[tuple[str | None, str, Inclusion]]:
+    def included_names(self) -> list[tuple[str | None, str, Inclusion]]:
         """Each inclusion, with the package and the file name of its path.
 
         The package is None if the path does not begin with the share folder of a package.
@@ -70,8 +70,8 @@ class CallingFile:
         inclusions: list[tuple[str | None, str, Inclusion]] = []
         for inclusion in self.inclusions:
             last_piece = inclusion.path[-1] if inclusion.path and isinstance(inclusion.path[-1], str) else ""
-            package, rest = split_mark(resolve(inclusion.path, self.choices, Selection()) or last_piece)
-            inclusions.append((package, rest.rpartition("/")[2], inclusion))
+            package, subpath = split_mark(resolve(inclusion.path, self.choices, Selection()) or last_piece)
+            inclusions.append((package, subpath.rpartition("/")[2], inclusion))
         return inclusions
 
     def declare(self, name: str, default: Text | None, other_values: tuple[Text, ...] = ()) -> None:

@@ -155,17 +155,17 @@ def _substitution_text(content: str, file: str) -> Text:
     match = _TAG_AND_REST.match(content)
     if match is None:
         return (UNKNOWN,)
-    tag, rest = match[1], match[2].strip().strip("'\"")
+    tag, argument = match[1], match[2].strip().strip("'\"")
     if tag in _ARGUMENT_TAGS:
-        return (launch_argument(rest),)
+        return (launch_argument(argument),)
     if tag in _SHARE_TAGS:
-        return (Share(parse_markup_text(rest, file)),)
+        return (Share(parse_markup_text(argument, file)),)
     if tag == "dirname":
         return literal(os.path.dirname(file))  # noqa: PTH120 - a part of a path as text
     if tag == "find-exec":
-        return literal(rest)
+        return literal(argument)
     if tag in ("env", "optenv"):
-        default = rest.partition(" ")[2]
+        default = argument.partition(" ")[2]
         return parse_markup_text(default.strip(), file) if default else (UNKNOWN,)
     return (UNKNOWN,)
 

@@ -75,7 +75,7 @@ class Selection:
 
 
 def literal(text: str) -> Text:
-    """Return a text without placeholders."""
+    """Return a `Text` that consists of one literal string."""
     return (text,) if text else ()
 
 
@@ -138,8 +138,8 @@ def split_mark(path: str) -> tuple[str | None, str]:
     """
     if not path.startswith(_SHARE_DELIMITER):
         return None, path
-    package, _, rest = path[1:].partition(_SHARE_DELIMITER)
-    return package, rest
+    package, _, subpath = path[1:].partition(_SHARE_DELIMITER)
+    return package, subpath
 
 
 def _selected_text(placeholder: Placeholder, choices: Mapping[str, Choice], selection: Selection) -> Text | str | None:

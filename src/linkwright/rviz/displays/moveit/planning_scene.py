@@ -226,12 +226,12 @@ class PlanningSceneDisplay(MoveItDisplay):
         requested_components = components(components=_COMPONENTS)
         future = client.call_async(client.srv_type.Request(components=requested_components))
 
-        def answered(_: Any) -> None:
+        def on_response(_: Any) -> None:
             response = future.result()
             if self._client is client and response is not None and not self.scene.has_full_scene:
                 self._on_scene(response.scene)
 
-        future.add_done_callback(answered)
+        future.add_done_callback(on_response)
 
     def _on_scene(self, scene: Any) -> None:
         if not self.host.time.paused:

@@ -18,7 +18,7 @@ from linkwright.rviz.markers.shapes import make_marker, pose_of
 Color = tuple[float, float, float, float]
 """Red, green, blue, alpha, from 0 to 1."""
 
-Form = tuple[MarkerKind, Sequence[float], NDArray[np.float32]]
+MarkerGeometry = tuple[MarkerKind, Sequence[float], NDArray[np.float32]]
 """The kind, the scale and the points of a marker."""
 
 _NO_POINTS = np.empty((0, 3), dtype=np.float32)
@@ -51,7 +51,7 @@ def object_markers(message: Any, namespace: str, color: Color, *, frame: str, ba
         BadObjectError: a number is not finite, the numbers of shapes and poses differ, or a primitive is not valid.
     """
     object_pose = compose(base, _pose(message.pose))
-    groups: tuple[tuple[str, Sequence[Any], Sequence[Any], Callable[[Any], Form]], ...] = (
+    groups: tuple[tuple[str, Sequence[Any], Sequence[Any], Callable[[Any], MarkerGeometry]], ...] = (
         ("primitive", message.primitives, message.primitive_poses, _primitive),
         ("mesh", message.meshes, message.mesh_poses, _mesh),
         ("plane", message.planes, message.plane_poses, _plane),
@@ -82,7 +82,7 @@ def _pose(message: Any) -> Transform:
     return (x, y, z, qx, qy, qz, qw)
 
 
-def _primitive(shape: Any) -> Form:
+def _primitive(shape: Any) -> MarkerGeometry:
     make_form, count = _PRIMITIVES.get(shape.type, (None, 0))
     if make_form is None:
         raise BadObjectError(phrase("Primitives of type {type} are not supported", type=shape.type))
@@ -101,20 +101,20 @@ def _primitive(shape: Any) -> Form:
     return make_form(shape, sizes)
 
 
-def _box(_: Any, sizes: list[float]) -> Form:
+def _box(_: Any, sizes: list[float]) -> MarkerGeometry:
     return "cube", sizes[:3], _NO_POINTS
 
 
-def _sphere(_: Any, sizes: list[float]) -> Form:
+def _sphere(_: Any, sizes: list[float]) -> MarkerGeometry:
     return "sphere", [2.0 * sizes[0]] * 3, _NO_POINTS
 
 
-def _cylinder(_: Any, sizes: list[float]) -> Form:
+def _cylinder(_: Any, sizes: list[float]) -> MarkerGeometry:
     height, radius = sizes[:2]
     return "cylinder", [2.0 * radius, 2.0 * radius, height], _NO_POINTS
 
 
-def _cone(_: Any, sizes: list[float]) -> Form:
+def _cone(_: Any, sizes: list[float]) -> MarkerGeometry:
     height, radius = sizes[:2]
     angles = np.linspace(0.0, 2.0 * math.pi, _CONE_CORNERS + 1)
     rim = np.stack(
@@ -125,7 +125,7 @@ def _cone(_: Any, sizes: list[float]) -> Form:
     return "triangle_list", _UNIT_SCALE, _points(corners)
 
 
-def _prism(shape: Any, sizes: list[float]) -> Form:
+def _prism(shape: Any, sizes: list[float]) -> MarkerGeometry:
     """Return a polygon extruded to a height, with its plane halfway between both faces.
 
     The corners of the polygon must be in order.
@@ -146,7 +146,7 @@ def _prism(shape: Any, sizes: list[float]) -> Form:
 
 _UNIT_SCALE = (1.0, 1.0, 1.0)
 
-_PRIMITIVES: dict[int, tuple[Callable[[Any, list[float]], Form], int]] = {
+_PRIMITIVES: dict[int, tuple[Callable[[Any, list[float]], MarkerGeometry], int]] = {
     1: (_box, 3),
     2: (_sphere, 1),
     3: (_cylinder, 2),
@@ -156,7 +156,7 @@ _PRIMITIVES: dict[int, tuple[Callable[[Any, list[float]], Form], int]] = {
 """The function for each primitive and its number of dimensions, by the type in shape_msgs."""
 
 
-def _mesh(mesh: Any) -> Form:
+def _mesh(mesh: Any) -> MarkerGeometry:
     if not mesh.triangles:
         raise BadObjectError(phrase("A mesh has no triangles"))
     vertex_indices = np.array([triangle.vertex_indices for triangle in mesh.triangles], dtype=np.int64).reshape(-1)
@@ -172,7 +172,7 @@ def _mesh(mesh: Any) -> Form:
     return "triangle_list", _UNIT_SCALE, _points(vertices[vertex_indices])
 
 
-def _plane(plane: Any) -> Form:
+def _plane(plane: Any) -> MarkerGeometry:
     """Return a square in the plane a x + b y + c z + d = 0.
 
     The square is centered on the point of the plane that is nearest to the origin.

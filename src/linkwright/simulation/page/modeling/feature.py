@@ -19,9 +19,9 @@ from linkwright.messages import get_message, get_service
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import PageMessage, ServerMessage
 from linkwright.page.protocol.simulation import (
-    AskModels,
     ModelingState,
     RedoWorld,
+    RequestModels,
     SaveWorld,
     SetModeling,
     UndoWorld,
@@ -147,7 +147,7 @@ class ModelingFeature(PageFeature):
                 refuse(page, f"{type(error).__name__}: {error}")
 
     async def _handle(self, page: Page, message: PageMessage) -> None:
-        if isinstance(message, AskModels):
+        if isinstance(message, RequestModels):
             from linkwright.simulation.page.modeling.entities import model_choices
 
             page.send(await asyncio.to_thread(model_choices, self.context.finder))

@@ -31,22 +31,22 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
     """A sensor that measures at its update rate while one of its topics has a subscription."""
 
     def start(self) -> None:
-        """Create the sensor model and the topics, and schedule measurements."""
-        self.make_sensor()
-        self.make_topics()
+        """Create the sensor model and the publishers, and schedule measurements."""
+        self.create_sensor()
+        self.create_publishers()
         self.every(self.rate, self._measure)
 
     def reset(self) -> None:
         """Create the sensor model again, so that its random numbers restart."""
-        self.make_sensor()
+        self.create_sensor()
 
     @abstractmethod
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Create the sensor model that `measure` uses."""
 
     @abstractmethod
-    def make_topics(self) -> None:
-        """Create the topics to which measurements are published."""
+    def create_publishers(self) -> None:
+        """Create the publishers of the measurements."""
 
     @abstractmethod
     def is_wanted(self) -> bool:
@@ -116,7 +116,7 @@ class OneTopic(SensorPlugin[P], Generic[P]):
     """A sensor with one topic.
 
     Attributes:
-        output: the publisher of the topic, which `make_topics` creates.
+        output: the publisher of the topic, which `create_publishers` creates.
     """
 
     output: Output

@@ -63,7 +63,7 @@ class MountedCamera:
 class CameraPlugin(SensorPlugin[P], Generic[P]):
     """A sensor that renders images."""
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Create the cameras of the sensor, with a new random number generator for their noise."""
         generator = self.random
         self.cameras = [self._mount_camera(camera, generator) for camera in self.sensor.sensor.cameras or (Camera(),)]
@@ -159,8 +159,8 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
         "distortion_t2",
     )
 
-    def make_topics(self) -> None:
-        """Create the topics of each camera, and subscribe to the trigger if it is enabled."""
+    def create_publishers(self) -> None:
+        """Create the publishers of each camera, and subscribe to the trigger if it is enabled."""
         parameters, sensor = self.parameters, self.sensor.sensor
         name = parameters.camera_name or sensor.name
         self._frame = self.classic_frame()
@@ -263,8 +263,8 @@ class GzCamera(CameraPlugin[NoParameters]):
     In the point clouds of depth and RGB-D cameras, the x axis points forwards.
     """
 
-    def make_topics(self) -> None:
-        """Create the topics of the sensor type: images, depth images, points, camera info."""
+    def create_publishers(self) -> None:
+        """Create the publishers of the sensor type: images, depth images, points, camera info."""
         kind = self.sensor.sensor.type
         self._frame = self.gz_frame()
         camera = self.cameras[0].description

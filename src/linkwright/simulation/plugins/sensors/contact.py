@@ -32,7 +32,7 @@ class BumperParameters:
 class _Contacts(OneTopic[P], Generic[P]):
     """A sensor that measures the contacts of one collision, or of all collisions of its link."""
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Create the sensor model for the collision that the sensor's element names.
 
         If the element names no collision, the sensor measures all contacts of the link.
@@ -50,8 +50,8 @@ class ClassicBumper(_Contacts[BumperParameters]):
 
     PARAMETERS = BumperParameters
 
-    def make_topics(self) -> None:
-        """Create the topic for ``gazebo_msgs/msg/ContactsState``."""
+    def create_publishers(self) -> None:
+        """Create the publisher of ``gazebo_msgs/msg/ContactsState``."""
         self.output = self.node.publisher(_STATE_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
     def measure(self) -> None:
@@ -64,8 +64,8 @@ class ClassicBumper(_Contacts[BumperParameters]):
 class GzContact(_Contacts[NoParameters]):
     """The sensor ``contact`` of gz, which publishes nothing while there is no contact."""
 
-    def make_topics(self) -> None:
-        """Create the topic that ``<contact>`` names, or the default topic of gz."""
+    def create_publishers(self) -> None:
+        """Create the publisher on the topic that ``<contact>`` names, or on the default topic of gz."""
         contact = self.sensor.sensor.contact
         declared_topic = "" if contact is None or contact.topic == _DEFAULT_TOPIC else contact.topic
         usual = "" if declared_topic else "/contacts"

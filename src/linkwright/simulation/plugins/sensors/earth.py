@@ -24,7 +24,7 @@ _COVARIANCE_TYPE_DIAGONAL = 2
 class _Receiver(SensorPlugin[P], Generic[P]):
     """A satellite navigation receiver that publishes ``sensor_msgs/msg/NavSatFix``."""
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Create the receiver for the geographic position of the world's origin."""
         coordinates = self.context.world.spherical_coordinates
         self._receiver = NavsatSensor(self.mount, self.sensor.sensor.navsat, coordinates, self.random)
@@ -48,8 +48,8 @@ class ClassicGps(_Receiver[FrameName]):
 
     PARAMETERS = FrameName
 
-    def make_topics(self) -> None:
-        """Create the topics for the position and the velocity."""
+    def create_publishers(self) -> None:
+        """Create the publishers of the position and the velocity."""
         self._fixes = self.node.publisher(_FIX_TYPE, "~/out", SENSOR_QOS)
         self._velocities = self.node.publisher("geometry_msgs/msg/Vector3Stamped", "~/vel", SENSOR_QOS)
 
@@ -69,8 +69,8 @@ class ClassicGps(_Receiver[FrameName]):
 class GzNavsat(_Receiver[NoParameters], OneTopic[NoParameters]):
     """The sensors ``navsat`` and ``gps`` of gz."""
 
-    def make_topics(self) -> None:
-        """Create the topic for ``sensor_msgs/msg/NavSatFix``."""
+    def create_publishers(self) -> None:
+        """Create the publisher of ``sensor_msgs/msg/NavSatFix``."""
         self.output = self.gz_output(_FIX_TYPE, "navsat")
 
     def measure(self) -> None:
@@ -84,13 +84,13 @@ class GzMagnetometer(OneTopic[NoParameters]):
     The sensor publishes the magnetic field in tesla, as ros_gz_bridge does.
     """
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Create the magnetometer for the magnetic field of the world."""
         noise, field = self.sensor.sensor.magnetometer, self.context.world.magnetic_field
         self._sensor = MagnetometerSensor(self.mount, noise, self.random, field)
 
-    def make_topics(self) -> None:
-        """Create the topic for ``sensor_msgs/msg/MagneticField``."""
+    def create_publishers(self) -> None:
+        """Create the publisher of ``sensor_msgs/msg/MagneticField``."""
         self.output = self.gz_output(_MAGNETIC_FIELD_TYPE, "magnetometer")
 
     def measure(self) -> None:
@@ -104,12 +104,12 @@ class GzMagnetometer(OneTopic[NoParameters]):
 class GzAltimeter(OneTopic[NoParameters]):
     """The sensor ``altimeter`` of gz."""
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Create the altimeter."""
         self._sensor = AltimeterSensor(self.mount, self.sensor.sensor.altimeter, self.random)
 
-    def make_topics(self) -> None:
-        """Create the topic for ``ros_gz_interfaces/msg/Altimeter``."""
+    def create_publishers(self) -> None:
+        """Create the publisher of ``ros_gz_interfaces/msg/Altimeter``."""
         self.output = self.gz_output(_ALTIMETER_TYPE, "altimeter")
 
     def measure(self) -> None:
@@ -123,12 +123,12 @@ class GzAltimeter(OneTopic[NoParameters]):
 class GzAirPressure(OneTopic[NoParameters]):
     """The sensor ``air_pressure`` of gz."""
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Create the barometer."""
         self._sensor = Barometer(self.mount, self.sensor.sensor.air_pressure, self.random)
 
-    def make_topics(self) -> None:
-        """Create the topic for ``sensor_msgs/msg/FluidPressure``."""
+    def create_publishers(self) -> None:
+        """Create the publisher of ``sensor_msgs/msg/FluidPressure``."""
         self.output = self.gz_output(_PRESSURE_TYPE, "air_pressure")
 
     def measure(self) -> None:

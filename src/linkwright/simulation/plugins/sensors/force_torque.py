@@ -56,14 +56,14 @@ class ClassicForceTorque(_ForceTorque[ForceTorqueParameters]):
         """The number of measurements per simulated second, from the plugin's parameters."""
         return self.parameters.update_rate
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Find the joint that the parameters name, and create its sensor."""
         joint = self.joint(self.parameters.joint_name)
         self._child = self.simulation.scene.joints[joint].child
         self._sensor = ForceTorqueSensor(self.simulation, joint, ForceTorque(), self.random)
 
-    def make_topics(self) -> None:
-        """Create the topic that the parameters name."""
+    def create_publishers(self) -> None:
+        """Create the publisher on the topic that the parameters name."""
         self._frame = self.parameters.frame_name.lstrip("/") or self._child.rpartition("::")[2]
         self.output = self.node.publisher(_MESSAGE_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
@@ -71,7 +71,7 @@ class ClassicForceTorque(_ForceTorque[ForceTorqueParameters]):
 class GzForceTorque(_ForceTorque[NoParameters]):
     """The sensor ``force_torque`` of gz, in a joint."""
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Find the joint that contains the sensor, and create the sensor model."""
         joint = self.joint(self.sensor.joint.rpartition("::")[2])
         placed_joint = self.simulation.scene.joints[joint]
@@ -79,7 +79,7 @@ class GzForceTorque(_ForceTorque[NoParameters]):
         offset = compose(invert(placed_joint.pose), compose(child, self.sensor.pose))
         self._sensor = ForceTorqueSensor(self.simulation, joint, self.sensor.sensor.force_torque, self.random, offset)
 
-    def make_topics(self) -> None:
-        """Create the topic that the sensor declares, or the default topic of gz."""
+    def create_publishers(self) -> None:
+        """Create the publisher on the topic that the sensor declares, or on the default topic of gz."""
         self._frame = self.gz_frame()
         self.output = self.gz_output(_MESSAGE_TYPE, "forcetorque", "/force_torque")

@@ -33,7 +33,7 @@ class _ImuPlugin(OneTopic[P], Generic[P]):
 
     frame: str
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Create the IMU that the sensor's element describes."""
         self.imu = ImuSensor(self.mount, self.sensor.sensor.imu, generator=self.random)
 
@@ -65,7 +65,7 @@ class ClassicImu(_ImuPlugin[ImuParameters]):
     PARAMETERS = ImuParameters
     IGNORED = ("body_name", "bodyName", "updateRateHZ", "update_rate", "gaussianNoise", "xyzOffset", "rpyOffset")
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Create the IMU.
 
         If the parameters request it, orientations are relative to the initial orientation.
@@ -74,8 +74,8 @@ class ClassicImu(_ImuPlugin[ImuParameters]):
         imu = self.sensor.sensor.imu
         self.imu = ImuSensor(self.mount, imu, generator=self.random, initial_reference=initial)
 
-    def make_topics(self) -> None:
-        """Create the topic that the parameters name, or ``~/out``."""
+    def create_publishers(self) -> None:
+        """Create the publisher on the topic that the parameters name, or ``~/out``."""
         self.frame = self.classic_frame()
         self.output = self.node.publisher(_MESSAGE_TYPE, self.parameters.topic_name or "~/out", SENSOR_QOS)
 
@@ -114,7 +114,7 @@ class OldImu(_ImuPlugin[OldImuParameters]):
         offset = compose((*parameters.xyz_offset, 0.0, 0.0, 0.0, 1.0), rotation)
         return Mount(self.simulation, self.link(parameters.body_name), offset)
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Create an IMU with the same noise on all measured values."""
         axis_noise = (
             Noise("gaussian", stddev=self.parameters.gaussian_noise) if self.parameters.gaussian_noise else Noise()
@@ -122,8 +122,8 @@ class OldImu(_ImuPlugin[OldImuParameters]):
         noise = NoiseXyz(axis_noise, axis_noise, axis_noise)
         self.imu = ImuSensor(self.mount, Imu(noise, noise), generator=self.random)
 
-    def make_topics(self) -> None:
-        """Create the topic that the parameters name."""
+    def create_publishers(self) -> None:
+        """Create the publisher on the topic that the parameters name."""
         self.frame = self.parameters.frame_name.lstrip("/") or self.parameters.body_name
         self.output = self.node.publisher(_MESSAGE_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
@@ -131,7 +131,7 @@ class OldImu(_ImuPlugin[OldImuParameters]):
 class GzImu(_ImuPlugin[NoParameters]):
     """The sensor ``imu`` of gz."""
 
-    def make_topics(self) -> None:
-        """Create the topic that the sensor declares, or the default topic of gz."""
+    def create_publishers(self) -> None:
+        """Create the publisher on the topic that the sensor declares, or on the default topic of gz."""
         self.frame = self.gz_frame()
         self.output = self.gz_output(_MESSAGE_TYPE, "imu")

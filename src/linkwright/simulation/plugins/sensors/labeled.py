@@ -108,9 +108,9 @@ def _label_of(labels: dict[str, int], part: str) -> int:
 class _LabelingCamera(CameraPlugin[NoParameters]):
     """The base class of cameras that need the labels of the visible geoms."""
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Create the camera and the table of labels."""
-        super().make_sensor()
+        super().create_sensor()
         self.labels = Labels(self.simulation)
         self.frame = self.cameras[0].description.optical_frame_id or self.gz_frame()
 
@@ -131,8 +131,8 @@ class _LabelingCamera(CameraPlugin[NoParameters]):
 class GzSegmentation(_LabelingCamera):
     """The sensor ``segmentation_camera`` of gz, which publishes a label map and a colored map."""
 
-    def make_topics(self) -> None:
-        """Create the topics for the label map, the colored map and the camera info."""
+    def create_publishers(self) -> None:
+        """Create the publishers of the label map, the colored map and the camera info."""
         base = self.sensor.sensor.topic or self.gz_topic("segmentation")
         usual = "" if self.sensor.sensor.topic else "/segmentation"
         names = {leaf: f"{usual}/{leaf}" if usual else "" for leaf in ("labels_map", "colored_map", "camera_info")}
@@ -176,8 +176,8 @@ class GzBoxes(_LabelingCamera):
     in gz, boxes of the types ``full_2d`` and ``3d`` also cover only the visible parts.
     """
 
-    def make_topics(self) -> None:
-        """Create the topics for the boxes, the image with boxes and the camera info."""
+    def create_publishers(self) -> None:
+        """Create the publishers of the boxes, the image with boxes and the camera info."""
         topic = self.sensor.sensor.topic or self.gz_topic("boundingbox")
         usual = "" if self.sensor.sensor.topic else "/boundingbox"
         self._boxes = self.node.publisher(_DETECTIONS_TYPE, topic, usual=usual)

@@ -35,7 +35,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
     """The base class of lidars that also publish their rays for display in pages."""
 
     def start(self) -> None:
-        """Create the lidar and the topics for measurements and rays."""
+        """Create the lidar and the publishers of measurements and rays."""
         visualize = self.sensor.sensor.visualize
         self._rays = self.node.publisher(_SCAN_TYPE, RAYS if visualize else OTHER_RAYS, SENSOR_DATA_QOS)
         super().start()
@@ -65,7 +65,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         message.ranges = scan.ranges.ravel().astype(np.float32)
         return message
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Create the lidar that the sensor's element describes."""
         sensor = self.sensor.sensor
         lidar = sensor.lidar or Lidar()
@@ -147,8 +147,8 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
 
     PARAMETERS = RayParameters
 
-    def make_topics(self) -> None:
-        """Create the topic for messages of the type that the parameters request.
+    def create_publishers(self) -> None:
+        """Create the publisher of messages of the type that the parameters request.
 
         Raises:
             LinkwrightError: SIM137, the message type is not an output type of a lidar.
@@ -204,8 +204,8 @@ class OldLaser(_OneLidar[LaserParameters]):
     IGNORED = ("gaussianNoise", "hokuyoMinIntensity")
     KIND: ClassVar[str] = _SCAN_TYPE
 
-    def make_topics(self) -> None:
-        """Create the topic that the parameters name, for messages of type `KIND`."""
+    def create_publishers(self) -> None:
+        """Create the publisher on the topic that the parameters name, for messages of type `KIND`."""
         self.output = self.node.publisher(self.KIND, self.parameters.topic_name, SENSOR_DATA_QOS.depth)
 
     @property
@@ -276,8 +276,8 @@ class Velodyne(_OneLidar[VelodyneParameters]):
     PARAMETERS = VelodyneParameters
     IGNORED = ("gaussianNoise",)
 
-    def make_topics(self) -> None:
-        """Create the topic for the point cloud."""
+    def create_publishers(self) -> None:
+        """Create the publisher of the point cloud."""
         self.output = self.node.publisher(_CLOUD_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
     def publish(self, scan: Scan) -> None:
@@ -313,8 +313,8 @@ class GzLidar(_LidarPlugin[NoParameters]):
     _scans: Output
     _clouds: Output
 
-    def make_topics(self) -> None:
-        """Create the topics for scans and points."""
+    def create_publishers(self) -> None:
+        """Create the publishers of scans and points."""
         self._frame = self.gz_frame()
         self._scans = self.gz_output(_SCAN_TYPE, "scan")
         topic = self.sensor.sensor.topic or self.gz_topic("scan")

@@ -20,12 +20,12 @@ _IMAGE_TYPE, _MODEL_TYPE = "ros_gz_interfaces/msg/LogicalCameraImage", "ros_gz_i
 class GzLogicalCamera(OneTopic[NoParameters]):
     """The sensor ``logical_camera`` of gz, which publishes names and poses of models."""
 
-    def make_sensor(self) -> None:
+    def create_sensor(self) -> None:
         """Read the view frustum from the sensor's element."""
         self._view = self.sensor.sensor.logical_camera or LogicalCamera()
 
-    def make_topics(self) -> None:
-        """Create the topic for ``ros_gz_interfaces/msg/LogicalCameraImage``."""
+    def create_publishers(self) -> None:
+        """Create the publisher of ``ros_gz_interfaces/msg/LogicalCameraImage``."""
         self.output = self.gz_output(_IMAGE_TYPE, "logical_camera")
 
     def measure(self) -> None:

@@ -123,7 +123,7 @@ class _Context:
     source: bytes
     is_for_us: bool = True
     time: int = 0
-    own: bytes = field(default=b"")
+    own_prefix: bytes = field(default=b"")
 
 
 def read_vendor(packet: bytes) -> bytes:
@@ -138,7 +138,7 @@ def parse(packet: bytes, own_prefix: bytes) -> Iterator[Submessage]:
     """Yield the submessages for a participant, up to the first malformed one."""
     if not read_vendor(packet):
         return
-    context = _Context(packet[8:_HEADER], own=own_prefix)
+    context = _Context(packet[8:_HEADER], own_prefix=own_prefix)
     offset = _HEADER
     while offset + 4 <= len(packet):
         kind, flags = packet[offset], packet[offset + 1]
@@ -157,7 +157,7 @@ def parse(packet: bytes, own_prefix: bytes) -> Iterator[Submessage]:
 
 def _read(kind: int, flags: int, order: str, body: bytes, context: _Context) -> Submessage | None:
     if kind == _INFO_DST:
-        context.is_for_us = body[:PREFIX] in (context.own, bytes(PREFIX))
+        context.is_for_us = body[:PREFIX] in (context.own_prefix, bytes(PREFIX))
     elif kind == _INFO_SRC:
         context.source = body[8 : 8 + PREFIX]
     elif kind == _INFO_TS:

@@ -46,7 +46,7 @@ from linkwright.wire.dds.rtps.reader import Reader
 from linkwright.wire.dds.rtps.values import Address, MalformedError
 from linkwright.wire.dds.rtps.writer import Packet, Writer
 from linkwright.wire.dds.settings import Settings
-from linkwright.wire.guarded_calls import guarded
+from linkwright.wire.guarded_calls import call_guarded
 
 _LEASE_S = 10.0
 _ANNOUNCEMENT_INTERVAL_S = 3.0
@@ -244,7 +244,7 @@ class RtpsParticipant:
 
     def _run(self) -> None:
         while not self._is_closing:
-            seconds = guarded(self._do_due_work)
+            seconds = call_guarded(self._do_due_work)
             timeout = _MAX_WAIT_S if seconds is None else seconds
             readable, _, _ = select.select([self._network.socket, self._wake_receiver], [], [], timeout)
             if self._wake_receiver in readable:
@@ -260,9 +260,9 @@ class RtpsParticipant:
                 return
             packet, source = received
             calls: list[Callable[[], None]] = []
-            guarded(partial(self._answer, packet, source, calls))
+            call_guarded(partial(self._answer, packet, source, calls))
             for call in calls:
-                guarded(call)
+                call_guarded(call)
 
     def _answer(self, packet: bytes, source: Address, calls: list[Callable[[], None]]) -> None:
         with self._lock:

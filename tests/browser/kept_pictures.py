@@ -1,7 +1,7 @@
-"""Pictures of the page that stand beside the tests, for people: what a layout looks like is seen, and not computed.
+"""Images of the page beside the tests, for people who judge a layout.
 
-They are not compared with, as fonts and graphics differ from machine to machine; the tests compute what must hold. With
-``LINKWRIGHT_KEEP_PICTURES=yes`` the tests that keep some write them anew.
+No test compares them, because fonts and graphics differ between machines; the tests compute what must hold. With
+``LINKWRIGHT_KEEP_PICTURES=yes`` the tests write them again.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _COLORS = 96
 
 
 def keep(page: Page, name: str) -> None:
-    """Write what a page shows as a small PNG, where pictures are to be kept."""
+    """Save a page's screenshot as a small PNG, if pictures are to be kept."""
     if "LINKWRIGHT_KEEP_PICTURES" not in os.environ:
         return
     with Image.open(io.BytesIO(page.screenshot())) as image:

@@ -135,9 +135,9 @@ _PYTHON_NAMES: dict[str, Any] = {name: _GUARDED.get(name, getattr(builtins, name
 
 def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
     """Split a text at each of the separator characters, and return the parts."""
-    inside = re.sub(r"(?<!\\)([\[\]])", r"\\\1", sep)
+    character_class = re.sub(r"(?<!\\)([\[\]])", r"\\\1", sep)
     try:
-        parts = bounded.split(f"[{inside}]", text)
+        parts = bounded.split(f"[{character_class}]", text)
     except re.error as error:
         raise ValueError(phrase("cannot split at '{sep}': {error}", sep=sep, error=error)) from None
     return [part for part in parts if part] if skip_empty else parts

@@ -1,4 +1,4 @@
-"""A server of models on this machine, which can be told to break, and models that it has."""
+"""An HTTP server on localhost that serves model files and can drop connections."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ def sha256(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def archive(files=FILES, folder="toy-1.0", **more: bytes) -> bytes:
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w") as opened:
+def archive(files=FILES, folder="toy-1.0", **extra_files: bytes) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as zip_file:
         for name, data in files.items():
-            opened.writestr(f"{folder}/{name}", data)
-        for name, data in more.items():
-            opened.writestr(name, data)
-    return packed.getvalue()
+            zip_file.writestr(f"{folder}/{name}", data)
+        for name, data in extra_files.items():
+            zip_file.writestr(name, data)
+    return buffer.getvalue()
 
 
 ARCHIVE = archive()
 
-PACKED = ModelEntry(
+ARCHIVE_ENTRY = ModelEntry(
     name="toy",
     kind="speech",
     address="unset",
@@ -45,7 +45,7 @@ PACKED = ModelEntry(
     sha256=sha256(ARCHIVE),
     files={name: sha256(data) for name, data in FILES.items()},
 )
-SINGLE = ModelEntry(
+FILE_ENTRY = ModelEntry(
     name="toy-net",
     kind="vision",
     address="unset",
@@ -56,41 +56,42 @@ SINGLE = ModelEntry(
 )
 
 
-class Shop:
-    """What is served below ``/``, and how.
+class ModelServer:
+    """An HTTP server with its files.
 
     Attributes:
-        files: content by name.
-        asked: the Range of each request, None for none.
-        breaks: after how many bytes each of the next connections breaks off.
-        ranges: whether it can begin in the middle of a file.
+        files: the content of each file, by name.
+        range_headers: the Range header of each request, or None.
+        disconnect_after: for each of the next connections, the number of bytes after which it is dropped.
+        supports_ranges: whether a download can begin in the middle of a file.
+        address: the server's address, without a slash at the end.
     """
 
     def __init__(self) -> None:
         self.files: dict[str, bytes] = {}
-        self.asked: list[str | None] = []
-        self.breaks: list[int] = []
-        self.ranges = True
+        self.range_headers: list[str | None] = []
+        self.disconnect_after: list[int] = []
+        self.supports_ranges = True
         self.address = ""
 
-    def of(self, entry: ModelEntry, name: str, data: bytes) -> ModelEntry:
-        """The model, offered here."""
+    def add(self, entry: ModelEntry, name: str, data: bytes) -> ModelEntry:
+        """Serve a file, and return the entry with its address."""
         self.files[name] = data
         return replace(entry, address=f"{self.address}/{name}")
 
     async def serve(self, request: web.Request) -> web.StreamResponse:
-        self.asked.append(wanted := request.headers.get("Range"))
+        self.range_headers.append(range_header := request.headers.get("Range"))
         data = self.files.get(request.match_info["name"])
         if data is None:
             raise web.HTTPNotFound
-        first = int(wanted.removeprefix("bytes=").rstrip("-")) if wanted and self.ranges else 0
+        first = int(range_header.removeprefix("bytes=").rstrip("-")) if range_header and self.supports_ranges else 0
         if first and first >= len(data):
             return web.Response(status=416, headers={"Content-Range": f"bytes */{len(data)}"})
         response = web.StreamResponse(status=206 if first else 200)
         response.content_length = len(data) - first
         await response.prepare(request)
-        if self.breaks:
-            await response.write(data[first : first + self.breaks.pop(0)])
+        if self.disconnect_after:
+            await response.write(data[first : first + self.disconnect_after.pop(0)])
             request.transport.close()
             return response
         await response.write(data[first:])
@@ -98,27 +99,27 @@ class Shop:
 
 
 @contextmanager
-def open_shop() -> Iterator[Shop]:
-    """A shop in a thread of its own, because those who fetch wait for it."""
-    shop = Shop()
+def run_model_server() -> Iterator[ModelServer]:
+    """Run the server in a thread, because the download blocks."""
+    server = ModelServer()
     loop = asyncio.new_event_loop()
 
     async def start() -> web.AppRunner:
         app = web.Application()
-        app.router.add_get("/{name}", shop.serve)
+        app.router.add_get("/{name}", server.serve)
         runner = web.AppRunner(app)
         await runner.setup()
         site = web.TCPSite(runner, "127.0.0.1", 0)
         await site.start()
         host, port = runner.addresses[0][:2]
-        shop.address = f"http://{host}:{port}"
+        server.address = f"http://{host}:{port}"
         return runner
 
     runner = loop.run_until_complete(start())
     thread = threading.Thread(target=loop.run_forever)
     thread.start()
     try:
-        yield shop
+        yield server
     finally:
         asyncio.run_coroutine_threadsafe(runner.cleanup(), loop).result()
         loop.call_soon_threadsafe(loop.stop)

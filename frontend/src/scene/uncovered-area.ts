@@ -1,49 +1,49 @@
 import type { Camera } from "three";
 import type { ViewSize } from "../state/views/camera";
-import type { Span } from "../state/views/vector";
+import type { Bounds } from "../state/views/vector";
 import { extentOf, type ScreenExtent } from "./screen-extent";
 
 /** The maximum share of the canvas's width and height that may be excluded when the camera fits something into view. */
 const MAX_COVERED = 0.6;
 
-/** The part of a viewport that is used here. */
-interface ShiftedView {
+/** A viewport whose center can be shifted on the canvas; what `UncoveredArea` needs of `Viewport`. */
+interface OffCenterView {
   readonly size: ViewSize;
   readonly camera: Camera;
   shiftLeft: number;
   shiftDown: number;
 }
 
-/** The part of the canvas that nothing covers, and the moves of the view that bring robots into it. */
-export class FreeRoom {
+/** The part of the canvas that no card or notice covers. Its methods shift the view so that robots are in this part. */
+export class UncoveredArea {
   /** Returns the width covered at the right of the canvas, pixels. */
   getCoveredWidth: () => number = () => 0;
-  private coveredAbove = 0;
+  private coveredTop = 0;
 
   /**
-   * @param computeRobotSpan - returns the bounding box of all robots.
-   * @param aim - updates the camera.
+   * @param computeRobotBounds - returns the bounding box of all robots.
+   * @param updateCamera - applies the shift to the camera.
    */
   constructor(
-    private readonly viewport: ShiftedView,
-    private readonly computeRobotSpan: () => Span | null,
-    private readonly aim: () => void,
+    private readonly viewport: OffCenterView,
+    private readonly computeRobotBounds: () => Bounds | null,
+    private readonly updateCamera: () => void,
     private readonly invalidate: () => void,
   ) {}
 
   /** Returns the size of the free part, and moves the camera's center to the center of that part. */
   center(): ViewSize {
     const { width, height } = this.viewport.size;
-    const [right, coveredHeight] = [Math.min(this.getCoveredWidth(), width * MAX_COVERED), Math.min(this.coveredAbove, height * MAX_COVERED)];
+    const [right, coveredHeight] = [Math.min(this.getCoveredWidth(), width * MAX_COVERED), Math.min(this.coveredTop, height * MAX_COVERED)];
     Object.assign(this.viewport, { shiftLeft: right / 2, shiftDown: coveredHeight / 2 });
     return { width: width - right, height: height - coveredHeight };
   }
 
   /**
-   * Moves the focal point to the center of the part that nothing covers at the right, as far as robots stay on the
-   * canvas.
+   * Shifts the view left, so that the focal point is in the center of the part beside the cards, but no farther than
+   * keeps the robots on the canvas.
    */
-  makeRoom(): void {
+  avoidCards(): void {
     const { viewport } = this;
     const previousShift = viewport.shiftLeft;
     viewport.shiftLeft = 0;
@@ -54,13 +54,13 @@ export class FreeRoom {
   }
 
   /**
-   * Moves robots down whose tops are covered by something of this height, pixels, as far as their feet stay on the
-   * canvas.
+   * Shifts the view down so that a notice of this height (pixels) does not cover the robots, but no farther than keeps
+   * their lower ends on the canvas.
    */
-  makeRoomAbove(height: number): void {
+  avoidNotices(height: number): void {
     const { viewport } = this;
     const previousShift = viewport.shiftDown;
-    this.coveredAbove = height;
+    this.coveredTop = height;
     viewport.shiftDown = 0;
     const extent = height > 0 ? this.extentOfRobots() : null;
     if (extent) viewport.shiftDown = Math.max(0, Math.min(height - extent.top, viewport.size.height - extent.bottom));
@@ -68,13 +68,13 @@ export class FreeRoom {
   }
 
   /** The rightmost pixel column that robots cover, from the left edge of the canvas; 0 without robots. */
-  get robotsReach(): number {
+  get robotsRightEdge(): number {
     return this.extentOfRobots()?.right ?? 0;
   }
 
   private extentOfRobots(): ScreenExtent | null {
-    const box = this.computeRobotSpan();
-    this.aim();
+    const box = this.computeRobotBounds();
+    this.updateCamera();
     return box && extentOf(box, this.viewport.camera, this.viewport.size);
   }
 }

@@ -1,4 +1,4 @@
-"""A robot, a map and a laser for the nodes of navigation, on a graph whose time stands still."""
+"""A fake robot with a map and a laser for the nodes of navigation, on a graph with a stepped clock."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ RAYS = 360
 
 
 def walls(rows: int = 60, columns: int = 80) -> Grid:
-    """A room of 4 by 3 m with walls around it, of cells of 5 cm."""
+    """Return a room of 4 by 3 m with walls around it, in cells of 5 cm."""
     cells = np.zeros((rows, columns), np.int8)
     cells[[0, -1]] = 100
     cells[:, [0, -1]] = 100
     return Grid(cells=cells, resolution=0.05)
 
 
-class Scene:
-    """What a robot tells its nodes.
+class FakeRobot:
+    """The topics of a robot for its nodes.
 
     Attributes:
-        node: that which tells it.
+        node: the node that publishes them.
         pose: x, y and yaw of ``base_link`` in ``map``; ``odom`` is ``map``.
     """
 
@@ -42,12 +42,12 @@ class Scene:
     def stamp(self) -> Time:
         return Time.from_nanoseconds(self.clock.now_ns())
 
-    def tell_map(self, grid: Grid) -> None:
+    def publish_map(self, grid: Grid) -> None:
         self._map.publish(occupancy_message(grid, "map", self.stamp()))
 
-    def tell_pose(self, x: float | None = None, y: float | None = None, yaw: float | None = None) -> None:
-        given = (x, y, yaw)
-        self.pose = tuple(old if new is None else new for old, new in zip(self.pose, given, strict=True))
+    def publish_pose(self, x: float | None = None, y: float | None = None, yaw: float | None = None) -> None:
+        changes = (x, y, yaw)
+        self.pose = tuple(old if new is None else new for old, new in zip(self.pose, changes, strict=True))
         message = self._tf.msg_type()
         message.transforms = [
             self._transform("map", "odom", 0.0, 0.0, 0.0),
@@ -61,16 +61,16 @@ class Scene:
         transform.transform.rotation.z, transform.transform.rotation.w = sin(yaw / 2.0), cos(yaw / 2.0)
         return transform
 
-    def tell_scan(self, *ranges: tuple[int, float]) -> None:
-        """A scan all around, of which some rays, in degrees, meet something at a range; the others reach 5 m."""
+    def publish_scan(self, *ranges: tuple[int, float]) -> None:
+        """Publish a full scan: some rays, given in degrees, have a range, and the others reach 5 m."""
         scan = SCAN()
         scan.header.frame_id, scan.header.stamp = "base_link", self.stamp()
         scan.angle_min, scan.angle_increment = 0.0, float(np.radians(1.0))
         scan.angle_max = float(np.radians(RAYS - 1))
         scan.range_min, scan.range_max = 0.1, 6.0
         values = np.full(RAYS, 5.0)
-        for degrees, reach in ranges:
-            values[degrees] = reach
+        for degrees, range_m in ranges:
+            values[degrees] = range_m
         scan.ranges = values.astype(np.float32)
         self._scan.publish(scan)
 

@@ -82,22 +82,22 @@ class Parameters(NamedTuple):
 class Function:
     """A lambda of an expression."""
 
-    __slots__ = ("_around", "_body", "_parameters")
+    __slots__ = ("_body", "_enclosing", "_parameters")
 
     def __init__(self, parameters: Parameters, body: _Closure, environment: Environment) -> None:
         self._parameters = parameters
         self._body = body
-        self._around = environment
+        self._enclosing = environment
 
     def __repr__(self) -> str:
         return "<lambda>"
 
     def __call__(self, *arguments: Any, **keywords: Any) -> Any:
         """Return the value of the body for the given arguments."""
-        budget = self._around.session.budget
+        budget = self._enclosing.session.budget
         budget.enter_lambda()
         try:
-            return self._body(Local(self._around, self._parameters.bound(arguments, keywords)))
+            return self._body(Local(self._enclosing, self._parameters.bound(arguments, keywords)))
         finally:
             budget.leave_lambda()
 

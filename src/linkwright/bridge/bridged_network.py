@@ -30,22 +30,23 @@ class Snapshot:
         nodes: the nodes.
         endpoints: the endpoints whose node is known.
         subscriptions: the subscriptions, by topic.
-        served: the names of services that have a server.
-        carried: the endpoints that bridges with precedence carry to this network, so that this bridge does not.
-        carried_nodes: the full names of the nodes that those bridges mirror in this network.
+        services_with_server: the names of services that have a server.
+        mirrored_endpoints: the endpoints that bridges with precedence carry to this network, so that this bridge does
+            not.
+        mirrored_nodes: the full names of the nodes that those bridges mirror in this network.
         bridge_gids: the GIDs of publishers of other bridges.
     """
 
     nodes: list[NodeIdentity] = field(default_factory=list)
     endpoints: list[EndpointInfo] = field(default_factory=list)
     subscriptions: dict[str, list[EndpointInfo]] = field(default_factory=dict)
-    served: set[str] = field(default_factory=set)
-    carried: set[Provision] = field(default_factory=set)
-    carried_nodes: set[str] = field(default_factory=set)
+    services_with_server: set[str] = field(default_factory=set)
+    mirrored_endpoints: set[Provision] = field(default_factory=set)
+    mirrored_nodes: set[str] = field(default_factory=set)
     bridge_gids: set[bytes] = field(default_factory=set)
 
 
-class Side:
+class BridgedNetwork:
     """One of the two networks of a bridge.
 
     Args:
@@ -96,7 +97,7 @@ class Side:
         """
         self._transport.watch(callback)
         self._transport.watch_lost(lambda _publisher: callback())
-        self._transport.look_around()
+        self._transport.start_discovery()
 
     def update(self) -> None:
         """Update `snapshot` to the nodes and endpoints that are known now."""
@@ -106,7 +107,7 @@ class Side:
             if not other_bridge_id:
                 snapshot.nodes.append(node)
             elif other_bridge_id < self._bridge_id:
-                snapshot.carried_nodes.add(node.full_name)
+                snapshot.mirrored_nodes.add(node.full_name)
         for endpoint in self._transport.remote_endpoints():
             if endpoint.node is None:
                 continue
@@ -114,13 +115,13 @@ class Side:
             if other_bridge_id:
                 snapshot.bridge_gids.add(endpoint.gid)
                 if other_bridge_id < self._bridge_id:
-                    snapshot.carried.add(endpoint_provision(endpoint))
+                    snapshot.mirrored_endpoints.add(endpoint_provision(endpoint))
                 continue
             snapshot.endpoints.append(endpoint)
             if endpoint.kind is EndpointKind.SUBSCRIPTION:
                 snapshot.subscriptions.setdefault(endpoint.name, []).append(endpoint)
             elif endpoint.kind is EndpointKind.SERVICE:
-                snapshot.served.add(endpoint.name)
+                snapshot.services_with_server.add(endpoint.name)
         self.snapshot = snapshot
 
 

@@ -1,0 +1,53 @@
+"""The conditions around the commands of a ``CMakeLists.txt``, as they are written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from linkwright.diagnostics import SourceText
+from linkwright.packages.readers.cmake_syntax import BLOCK_ENDS, Statement, branches, end_of_block, statements
+
+
+def conditions_of(source: SourceText) -> dict[int, str]:
+    """Return the condition of each argument in a file, by the offset of the argument. Unconditional ones are absent."""
+    conditions: dict[int, str] = {}
+    for statement, condition in conditional_statements(source):
+        if condition:
+            conditions |= {token.start: condition for token in statement.tokens}
+    return conditions
+
+
+def conditional_statements(source: SourceText) -> Iterator[tuple[Statement, str]]:
+    """Yield the commands of a file, each with the condition around it; empty if there is none."""
+    yield from _walk(list(statements(source)), ())
+
+
+def _walk(body: Sequence[Statement], around: tuple[str, ...]) -> Iterator[tuple[Statement, str]]:
+    index = 0
+    while index < len(body):
+        statement = body[index]
+        index += 1
+        if statement.name not in BLOCK_ENDS:
+            yield statement, " AND ".join(around)
+            continue
+        end = end_of_block(body, index, statement.name)
+        block = body[index:end]
+        if statement.name != "if":
+            yield from _walk(block, around)
+        else:
+            yield from _walk_branches(statement, block, around)
+        index = end + 1
+
+
+def _walk_branches(
+    opening: Statement, body: Sequence[Statement], around: tuple[str, ...]
+) -> Iterator[tuple[Statement, str]]:
+    earlier: list[str] = []
+    for condition, branch in branches(opening, body):
+        if condition is None:
+            texts = [f"NOT ({text})" if " " in text else f"NOT {text}" for text in earlier[:1]]
+        else:
+            text = " ".join(f'"{token.text}"' if token.is_quoted else token.text for token in condition.tokens)
+            earlier.append(text)
+            texts = [text]
+        yield from _walk(branch, (*around, *texts))

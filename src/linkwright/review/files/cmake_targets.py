@@ -1,0 +1,101 @@
+"""The libraries that are linked to the targets of a ``CMakeLists.txt``, and the sources of the targets."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+from linkwright.diagnostics import Phrase, Span, phrase
+from linkwright.packages.readers.cmake_language import Argument, Command, within_package
+from linkwright.packages.readers.cmake_syntax import is_open
+from linkwright.review.file_pair import FilePair
+from linkwright.review.files.build_facts import BuildFacts, TargetParts, listed, new_source
+
+_SOURCE_COMMANDS = frozenset(
+    {
+        *("add_executable", "add_library", "ament_auto_add_executable", "ament_auto_add_library", "target_sources"),
+        *("rosbuild_add_executable", "rosbuild_add_library", "cuda_add_executable", "cuda_add_library"),
+    }
+)
+_LINK_COMMANDS = frozenset({"target_link_libraries", "ament_target_dependencies", "rosbuild_link_boost"})
+_VARIABLE = re.compile(r"\$\{(\w+?)_(LIBRARIES|LIBRARY|TARGETS|LIBS)\}", re.IGNORECASE)
+
+
+def read_targets(commands: Iterable[Command]) -> dict[str, TargetParts]:
+    """Return the parts of targets, by target. Packages and their targets count as the same library."""
+    targets: dict[str, TargetParts] = {}
+    for command in commands:
+        if (command.name not in _SOURCE_COMMANDS and command.name not in _LINK_COMMANDS) or not command.arguments:
+            continue
+        target, *arguments = command.arguments
+        parts = targets.setdefault(target.text, TargetParts())
+        for argument in arguments:
+            if argument.text.isupper():
+                continue  # a keyword, such as PUBLIC
+            if command.name in _LINK_COMMANDS:
+                parts.libraries.setdefault(_library(argument.text, command.name), _span(argument))
+            elif not is_open(argument.text):
+                parts.sources.setdefault(within_package(argument.text, command.folder), _span(argument))
+    return targets
+
+
+def _library(text: str, command: str) -> str:
+    """Return the name of a library, or of the package to whose targets it belongs."""
+    variable = _VARIABLE.fullmatch(text)
+    if variable is not None:
+        return variable[1]
+    if command == "rosbuild_link_boost":
+        return f"boost_{text}"
+    return text if text.startswith("$<") else text.partition("::")[0]
+
+
+def _span(argument: Argument) -> Span:
+    return argument.source.span(argument.start, argument.end)
+
+
+def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
+    """Add the libraries and sources of targets in both versions that differ; equal changes of targets are one line."""
+    changes: dict[_Key, list[tuple[str, Span]]] = {}
+    for name, parts in new.targets.items():
+        before = old.targets.get(name)
+        if before is None:
+            continue
+        sources = {new_source(pair, old, new, item): span for item, span in before.sources.items()}
+        for kind, old_items, new_items in (
+            ("libraries", before.libraries, parts.libraries),
+            ("sources", sources, parts.sources if sources else {}),
+        ):
+            if kind == "sources" and not new_items:
+                continue  # not built any more
+            span = next(iter({**new_items, **old_items}.values()), None)
+            for is_added, items in ((True, _lone(new_items, old_items)), (False, _lone(old_items, new_items))):
+                if items and span is not None:
+                    key = _Key(kind, is_added, tuple(items))
+                    changes.setdefault(key, []).append((name, new_items.get(items[0], span)))
+    for key, targets in changes.items():
+        text = _text(key.kind, [name for name, _ in targets], key.items, is_added=key.is_added)
+        pair.add(text, pair.location(targets[0][1]))
+
+
+class _Key(NamedTuple):
+    """A change of targets: what differs, and the names that only one version has."""
+
+    kind: str
+    is_added: bool
+    items: tuple[str, ...]
+
+
+def _lone(items: Mapping[str, Span], others: Mapping[str, Span]) -> list[str]:
+    return [item for item in items if item not in others]
+
+
+def _text(kind: str, targets: Sequence[str], items: Sequence[str], *, is_added: bool) -> Phrase:
+    names = {"targets": listed(targets), "names": listed(items)}
+    if kind == "libraries":
+        if is_added:
+            return phrase("{targets} linked to {names}", **names)
+        return phrase("{targets} not linked any more to {names}", **names)
+    if is_added:
+        return phrase("sources of {targets} added: {names}", **names)
+    return phrase("sources of {targets} removed: {names}", **names)

@@ -1,0 +1,127 @@
+"""Files that a build file does not install any more because they are gone or have another name."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.packages.manifest import MANIFEST
+from linkwright.review.changes import Change, Effect
+from linkwright.review.files.build_facts import BuildFacts, FactKind, files_and_folders, listed
+from linkwright.review.installed_paths import build_file, package_facts, python_packages
+from linkwright.review.kinds import rule_of
+from linkwright.review.renamed_packages import renamed_packages
+from linkwright.review.sources.reading import read_source_names
+from linkwright.review.versions import Version, Versions
+
+_HEADERS = "include/"
+_TEST_FOLDERS = frozenset({"test", "tests"})
+
+
+def lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the build files whose packages do not install files of the old version any more, each with a change.
+
+    Files that are compared on their own are reported with their own lines.
+    """
+    moved_packages = {package.old_folder for package in renamed_packages(versions)}
+    changed = {file.path for file in changed_files}
+    packages: dict[str, list[ChangedFile]] = {}
+    for file in changed_files:
+        if file.old_path is None or file.old_path == file.new_path or file.is_submodule:
+            continue
+        package = package_of(versions.old, file.old_path)
+        if package is not None and package not in moved_packages and _reports_nothing(file.old_path):
+            packages.setdefault(package, []).append(file)
+    for package, files in packages.items():
+        path = build_file(versions.new, package)
+        old, new = package_facts(versions.old, package), package_facts(versions.new, package)
+        if path is not None and old is not None and new is not None:
+            changes = [
+                *_lost_targets(files, old, new, is_compared=path in changed),
+                *_lost_modules(versions, files, old),
+            ]
+            yield from ((path, change) for change in changes)
+
+
+def package_of(version: Version, path: str) -> str | None:
+    """Return the folder of the package that contains a file relative to the root, or None if there is none."""
+    folders = (parent.as_posix().removeprefix(".") for parent in PurePosixPath(path).parents)
+    return next((folder for folder in folders if version.file(f"{folder}/{MANIFEST}".lstrip("/")).is_file()), None)
+
+
+def _reports_nothing(path: str) -> bool:
+    rule = rule_of(path)
+    return rule is None or rule.removal_reason is None
+
+
+def _lost_targets(
+    files: Sequence[ChangedFile], old: BuildFacts, new: BuildFacts, *, is_compared: bool
+) -> Iterator[Change]:
+    """Yield the changes about files that are not installed any more, those about headers apart."""
+    if not new.unknown <= old.unknown:
+        return
+    sources = {_within(old, file.old_path or ""): file for file in files}
+    installed = set(new.files.values())
+    lost = []
+    for target, source in old.files.items():
+        file = sources.get(source)
+        if file is None or target in new.files:
+            continue
+        if is_compared and file.new_path is not None and _within(new, file.new_path) not in installed:
+            continue  # the comparison of the build files reports it
+        lost.append(target)
+    headers = [target for target in lost if target.startswith(_HEADERS)]
+    others = [target for target in lost if target not in headers]
+    for targets, reason in (
+        (headers, phrase("code of other packages that includes them does not build")),
+        (others, phrase("programs that look for the files do not find them")),
+    ):
+        if targets:
+            names = listed(files_and_folders(targets, new.files))
+            yield Change(phrase("not installed any more: {names}", names=names), Effect.BREAKING, reason)
+
+
+def _within(facts: BuildFacts, path: str) -> str:
+    """Return a path relative to the package, or as it is if the file is outside."""
+    pure_path = PurePosixPath(path)
+    return pure_path.relative_to(facts.package).as_posix() if pure_path.is_relative_to(facts.package) else path
+
+
+def _lost_modules(versions: Versions, files: Sequence[ChangedFile], old: BuildFacts) -> Iterator[Change]:
+    """Yield the changes about Python modules that are gone or renamed."""
+    packages = python_packages(versions.old, old.package)
+    removed: dict[bool, list[str]] = {}
+    for file in files:
+        module = _module(old, file.old_path or "", packages)
+        if module is None:
+            continue
+        is_program = read_source_names(versions.old.file(file.old_path or "")).is_program
+        new_module = None if file.new_path is None else _module(old, file.new_path, packages)
+        if new_module is None:
+            removed.setdefault(is_program, []).append(module)
+        elif new_module != module:
+            text = phrase("Python module '{old}' renamed to '{new}'", old=module, new=new_module)
+            yield _module_change(text, is_program=is_program)
+    for is_program, names in removed.items():
+        text = phrase("{kind} removed: {names}", kind=FactKind.MODULE.title, names=listed(names))
+        yield _module_change(text, is_program=is_program)
+
+
+def _module_change(text: Phrase, *, is_program: bool) -> Change:
+    return Change(text) if is_program else Change(text, Effect.BREAKING, FactKind.MODULE.reason)
+
+
+def _module(facts: BuildFacts, path: str, packages: Collection[str]) -> str | None:
+    """Return the name of the module in a file of an installed Python package, or None for another file."""
+    pure_path = PurePosixPath(_within(facts, path))
+    if pure_path.suffix != ".py" or not _TEST_FOLDERS.isdisjoint(pure_path.parts):
+        return None
+    for package in packages:
+        folder = PurePosixPath(package)
+        for place in (folder, PurePosixPath("src") / folder):
+            if pure_path.is_relative_to(place):
+                parts = (*PurePosixPath(folder.name).parts, *pure_path.relative_to(place).with_suffix("").parts)
+                return ".".join(part for part in parts if part != "__init__")
+    return None

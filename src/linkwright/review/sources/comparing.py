@@ -1,0 +1,369 @@
+"""The comparison of the sources of nodes: topics, services, actions, parameters, frames, options and classes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from difflib import SequenceMatcher
+from functools import cached_property
+from pathlib import Path, PurePosixPath
+
+from linkwright.diagnostics import Phrase, Span, joined_first, phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.packages.manifest import MANIFEST
+from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
+from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
+from linkwright.review.installed_paths import is_exported_header
+from linkwright.review.sources.details import detail_changes
+from linkwright.review.sources.names import (
+    CPP_SUFFIXES,
+    PYTHON_SUFFIX,
+    YES,
+    Detail,
+    NameKind,
+    SourceName,
+    SourceNames,
+)
+from linkwright.review.sources.reading import is_program_text, read_source_names
+from linkwright.review.sources.reasons import is_used_by_others, removal_reason
+from linkwright.review.versions import Version, Versions
+
+_TEST_FOLDERS = frozenset({"test", "tests"})
+_SKIPPED = frozenset({"setup.py", "conf.py"})
+_MAX_NAMES = 12
+_MAX_FUNCTIONS = 3
+"""The number of functions of a file with other arguments up to which each has a line."""
+_UNITS = re.compile(
+    r"\b(?:ros|rclcpp|std|chrono|(?:nano|micro|milli)?seconds|Duration|[num]?s|Hz|from_seconds|float|int)\b"
+)
+_SIMILAR = 0.6
+"""The ratio of equal characters from which two names of the same kind are similar."""
+_LOCAL = (NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION)
+"""The kinds of which another source may have the same name for another thing."""
+
+
+def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
+    """Yield the changed sources of nodes in which names differ.
+
+    A name that only moves to another file is not a change. Of names that are expressions, only the expressions are
+    compared.
+    """
+    files = [file for file in changed_files if _is_source(versions, file)]
+    sides = (
+        _Side(versions.old, [file.old_path for file in files]),
+        _Side(versions.new, [file.new_path for file in files]),
+    )
+    for file in files:
+        changes = list(_Pair(*sides, file).changes())
+        if changes:
+            yield Subject(SubjectKind.SOURCE, file.path, file.old_path, file.new_path, changes)
+
+
+def _is_source(versions: Versions, file: ChangedFile) -> bool:
+    path = PurePosixPath(file.path)
+    if path.name in _SKIPPED or path.name.startswith(("test_", ".")) or file.is_submodule:
+        return False
+    if not _TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
+        return False
+    version = versions.new if file.new_path else versions.old
+    return is_program_text(version.file(file.path))
+
+
+class _Side:
+    """The names in the changed sources of a version.
+
+    Args:
+        version: the version.
+        paths: the paths of the sources; None for one that the version does not have.
+    """
+
+    def __init__(self, version: Version, paths: Sequence[str | None]) -> None:
+        self.version = version
+        self._names = {path: read_source_names(version.file(path)) for path in paths if path is not None}
+
+    def names(self, path: str | None) -> SourceNames:
+        """Return the names in a changed source."""
+        return self._names.get(path, SourceNames()) if path is not None else SourceNames()
+
+    @cached_property
+    def _known(self) -> frozenset[tuple[NameKind, str]]:
+        return frozenset((item.kind, _key(item)) for names in self._names.values() for item in names.names)
+
+    @cached_property
+    def _functions(self) -> frozenset[str]:
+        overrides = {name for names in self._names.values() for name in names.overrides}
+        declared = {name.rpartition("::")[2] for kind, name in self._known if kind is NameKind.FUNCTION}
+        return frozenset(overrides | declared)
+
+    @cached_property
+    def _expressions(self) -> list[tuple[NameKind, str]]:
+        return [(item.kind, item.type) for names in self._names.values() for item in names.expressions]
+
+    def count(self, item: SourceName) -> int:
+        """Return how many names in changed sources are expressions for the same kind and type."""
+        return self._expressions.count((item.kind, item.type))
+
+    def lacks(self, item: SourceName, path: str) -> bool:
+        """Return whether neither a changed source nor another source of the same package has a name.
+
+        Args:
+            item: the name.
+            path: the path of a source of the package.
+        """
+        if (item.kind, _key(item)) in self._known:
+            return False
+        if item.kind is NameKind.FUNCTION and item.name.rpartition("::")[2] in self._functions:
+            return False  # in a base class, for example
+        if item.kind in _LOCAL:
+            return True
+        package = self.package(path)
+        if package is None:
+            return True
+        if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
+            return False
+        texts = (f'"{item.name}"', f"'{item.name}'")
+        for file in self.version.file(package).rglob("*"):
+            relative = self.version.relative(file)
+            if file.suffix not in (*CPP_SUFFIXES, PYTHON_SUFFIX) or relative in self._names or not file.is_file():
+                continue
+            if not _TEST_FOLDERS.isdisjoint(file.parts) or is_launch_file_name(file.name):
+                continue
+            content = file.read_text("utf-8", errors="replace")
+            if any(text in content for text in texts):
+                return False
+        return True
+
+    def package(self, path: str) -> str | None:
+        """Return the folder of the package of a file, or None if it is in none."""
+        parents = (parent.as_posix() for parent in PurePosixPath(path).parents)
+        names = (MANIFEST, "manifest.xml")
+        return next(
+            (parent for parent in parents if any((self.version.file(parent) / n).is_file() for n in names)), None
+        )
+
+    def _generates(self, name: str, path: str) -> bool:
+        """Return whether a description of parameters beside a source, from which code is generated, has a parameter."""
+        files = self.version.file(path).parent.glob("*.y*ml")
+        return any(f"{name.rpartition('.')[2]}:" in file.read_text("utf-8", errors="replace") for file in files)
+
+
+def _has_manifest(folder: Path) -> bool:
+    return any((folder / name).is_file() for name in (MANIFEST, ROSBUILD_MANIFEST))
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """Both versions of a changed source.
+
+    Attributes:
+        old: the names of the old version.
+        new: the names of the new version.
+        file: the source.
+    """
+
+    old: _Side
+    new: _Side
+    file: ChangedFile
+
+    def changes(self) -> Iterator[Change]:
+        """Yield the differences."""
+        old_names, new_names = self.old.names(self.file.old_path), self.new.names(self.file.new_path)
+        for kind in NameKind:
+            yield from self._changes_of(kind, old_names, new_names)
+        yield from self._rate_changes(old_names, new_names)
+
+    def _changes_of(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        before = {_key(item): item for item in old_names.of(kind)}
+        after = {_key(item): item for item in new_names.of(kind)}
+        changed = [(item, *each) for name, item in after.items() if name in before
+                   for each in detail_changes(before[name], item)]  # fmt: skip
+        if kind is NameKind.FUNCTION and not self._is_interface(self.file.old_path or self.file.path):
+            changed = []
+        if kind is NameKind.FUNCTION and len(changed) > _MAX_FUNCTIONS:
+            yield self._merged_functions(changed)
+            changed = []
+        for item, text, reason in changed:
+            yield self._change(text, item.span, self.new, reason)
+        path = self.file.path
+        removed = [item for name, item in before.items() if name not in after and self.new.lacks(item, path)]
+        old_path = self.file.old_path or path
+        added = [item for name, item in after.items() if name not in before and self.old.lacks(item, old_path)]
+        if kind in (NameKind.CLASS, NameKind.FUNCTION) and not self._is_interface(old_path):
+            return
+        if kind is NameKind.FUNCTION and not path.endswith(PYTHON_SUFFIX):
+            classes = [{item.name for item in names.of(NameKind.CLASS)} for names in (old_names, new_names)]
+            removed = [item for item in removed if _has_class(item, classes[0] & classes[1])]
+            added = [item for item in added if _has_class(item, classes[0] & classes[1])]
+        for old_item, new_item in _renamed(removed, added):
+            text = phrase("{kind} {old} renamed to {new}", kind=kind.title, old=_name(old_item), new=_name(new_item))
+            is_same = kind is NameKind.FRAME and old_item.name.strip("/") == new_item.name.strip("/")
+            reason = None if is_same else self._reason([old_item], old_names)  # tf takes both names for the same
+            yield self._change(text, new_item.span, self.new, reason)
+            removed.remove(old_item)
+            added.remove(new_item)
+        yield from self._expression_changes(kind, removed, added)
+        yield from self._lone_changes(kind, removed, added, old_names)
+
+    def _merged_functions(self, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]]) -> Change:
+        """Return one change for many functions with other arguments."""
+        names = joined_first(dict.fromkeys(item.name for item, _, _ in changed), _MAX_NAMES)
+        text = phrase("functions with other arguments: {names}", names=names)
+        reason = next((reason for _, _, reason in changed if reason is not None), None)
+        if reason is not None:
+            reason = phrase("code that calls them with the old arguments does not build")
+        return self._change(text, changed[0][0].span, self.new, reason)
+
+    def _is_interface(self, path: str) -> bool:
+        """Return whether other packages can use what a file defines: it is a module, or an installed header."""
+        package = self.old.package(path)
+        if path.endswith(PYTHON_SUFFIX):
+            return package is not None and (self.old.version.file(path).parent / "__init__.py").is_file()
+        return package is not None and is_exported_header(self.old.version, package, path)
+
+    def _lone_changes(
+        self, kind: NameKind, removed: Sequence[SourceName], added: Sequence[SourceName], old_names: SourceNames
+    ) -> Iterator[Change]:
+        if not is_used_by_others(kind, self.file.path, old_names):
+            return
+        if added and (kind is not NameKind.FUNCTION or self.file.old_path is not None):
+            text = phrase("{kind} added: {names}", kind=kind.plural, names=_names(added))
+            reason = _required_reason(added) if self.file.old_path is not None else None
+            yield self._change(text, added[0].span, self.new, reason)
+        if removed:
+            text = phrase("{kind} removed: {names}", kind=kind.plural, names=_names(removed))
+            yield self._change(text, removed[0].span, self.old, self._reason(removed, old_names))
+
+    def _reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
+        return removal_reason(items, names, self.file.old_path or self.file.path)
+
+    # --- expressions ------------------------------------------------------------------------------------------------
+
+    def _expression_changes(
+        self, kind: NameKind, removed: list[SourceName], added: list[SourceName]
+    ) -> Iterator[Change]:
+        """Yield what changes between literal names and expressions, and take these names from the lists."""
+        old_names, new_names = self.old.names(self.file.old_path), self.new.names(self.file.new_path)
+        sides = [[item for item in names.expressions if item.kind is kind] for names in (old_names, new_names)]
+        gone = [item for item in sides[0] if all(item.name != other.name for other in sides[1])]
+        come = [item for item in sides[1] if all(item.name != other.name for other in sides[0])]
+        for item in list(gone):  # another name for the same thing
+            other = next((each for each in come if each.type == item.type), None)
+            if other is not None:
+                gone.remove(item)
+                come.remove(other)
+        for item in list(removed):
+            other = next((each for each in come if each.type == item.type or len(removed) == len(come) == 1), None)
+            if other is not None:
+                removed.remove(item)
+                come.remove(other)
+                text = phrase(
+                    "{kind} {name} has a computed name now: {new}", kind=kind.title, name=_name(item), new=other.name
+                )
+                yield self._change(text, other.span, self.new, None)
+        for item in list(added):
+            other = next((each for each in gone if each.type == item.type or len(added) == len(gone) == 1), None)
+            if other is not None:
+                added.remove(item)
+                gone.remove(other)
+                text = phrase(
+                    "{kind} {name} had a computed name: {old}", kind=kind.title, name=_name(item), old=other.name
+                )
+                yield self._change(text, item.span, self.new, None)
+        come = [item for item in come if self.new.count(item) > self.old.count(item)]
+        gone = [item for item in gone if self.old.count(item) > self.new.count(item)]
+        if come:
+            text = phrase("{kind} with computed names added: {names}", kind=kind.plural, names=_names(come))
+            yield self._change(text, come[0].span, self.new, None)
+            removed.clear()
+        if gone:
+            text = phrase("{kind} with computed names removed: {names}", kind=kind.plural, names=_names(gone))
+            yield self._change(text, gone[0].span, self.old, None)
+            added.clear()
+
+    def _rate_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        """Yield the rates and periods that differ, if both versions have equally many."""
+        old_rates, new_rates = old_names.rates, new_names.rates
+        if len(old_rates) != len(new_rates):
+            return
+        for (old_text, _), (new_text, span) in zip(old_rates, new_rates, strict=True):
+            is_same_call = old_text.partition("(")[0] == new_text.partition("(")[0]
+            if is_same_call and old_text != new_text and (_is_number(old_text) or _is_number(new_text)):
+                text = phrase("rate or period: {old} -> {new}", old=old_text, new=new_text)
+                yield self._change(text, span, self.new, None)
+
+    @staticmethod
+    def _change(text: Phrase, span: Span, side: _Side, reason: Phrase | None) -> Change:
+        path = side.version.relative(span.file)
+        location = None if path is None else Location(path, span.line, span.column, side.version.is_old)
+        return Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
+
+
+def _key(item: SourceName) -> str:
+    """Return the name by which versions are compared. A handle of ROS 1 may be private without saying so."""
+    return item.name.lstrip("~/") if item.kind is NameKind.PARAMETER else item.name
+
+
+def _is_number(rate: str) -> bool:
+    """Return whether the argument of a rate has no names besides those of units."""
+    argument = rate.partition("(")[2]
+    return re.search(r"[A-Za-z_]{2,}", _UNITS.sub("", re.sub(r"(\d)[a-z]+", r"\1", argument))) is None
+
+
+def _name(item: SourceName) -> str:
+    """Return a name with the type of its messages, or the default of a parameter."""
+    return f"'{item.name}' ({item.type})" if item.type else f"'{item.name}'"
+
+
+def _names(items: Sequence[SourceName]) -> Phrase:
+    return joined_first(map(_name, items), _MAX_NAMES)
+
+
+def _required_reason(items: Sequence[SourceName]) -> Phrase | None:
+    """Return why added names break others, or None if none of them is required."""
+    names = [item.name for item in items if (Detail.REQUIRED, YES) in item.details]
+    if not names:
+        return None
+    if items[0].kind is NameKind.FUNCTION:
+        return phrase("classes that derive from the class and do not define it do not build")
+    return phrase("callers that do not pass '{name}' get an error", name=joined_first(names, _MAX_NAMES))
+
+
+def _has_class(function: SourceName, classes: Collection[str]) -> bool:
+    """Return whether a function of C++ is in one of the classes, or in none."""
+    names = function.name.split("::")[:-1]
+    return not names or names[-1] in classes
+
+
+def _renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list[tuple[SourceName, SourceName]]:
+    """Return the removed and added names that are the same thing.
+
+    These are the only ones if their types or names are alike, the only ones of a type, and the most similar names.
+    """
+    pairs: list[tuple[SourceName, SourceName]] = []
+    if len(removed) == len(added) == 1:
+        (old,), (new,) = removed, added
+        has_types = old.kind not in (NameKind.PARAMETER, NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION)
+        is_same = old.type == new.type and (has_types or bool(old.type))
+        return [(old, new)] if is_same or _similarity(old, new) >= _SIMILAR else []
+    rest = list(added)
+    for item in removed:
+        candidates = [each for each in rest if _similarity(item, each) >= _SIMILAR and _fits(item, each)]
+        same = [[each for each in items if each.type == item.type and item.type] for items in (removed, rest)]
+        if item.kind is not NameKind.PARAMETER and len(same[0]) == len(same[1]) == 1:
+            candidates = same[1]
+        if candidates:
+            best = max(candidates, key=lambda each: _similarity(item, each))
+            pairs.append((item, best))
+            rest.remove(best)
+    return pairs
+
+
+def _fits(old: SourceName, new: SourceName) -> bool:
+    return old.type == new.type or not old.type or not new.type
+
+
+def _similarity(old: SourceName, new: SourceName) -> float:
+    old_name, new_name = (item.name.rpartition("::")[2].casefold() for item in (old, new))
+    return SequenceMatcher(None, old_name, new_name, autojunk=False).ratio()

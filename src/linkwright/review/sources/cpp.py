@@ -1,0 +1,345 @@
+"""The names in a source in C++, for rclcpp and roscpp."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import SourceText, Span
+from linkwright.review.sources.cpp_functions import DeclaredFunction, declared_functions
+from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
+
+_COMMENT_OR_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])'""", re.DOTALL)
+_KINDS = {
+    "create_publisher": NameKind.PUBLISHER,
+    "advertise": NameKind.PUBLISHER,
+    "advertiseCamera": NameKind.PUBLISHER,
+    "create_subscription": NameKind.SUBSCRIPTION,
+    "subscribe": NameKind.SUBSCRIPTION,
+    "subscribeCamera": NameKind.SUBSCRIPTION,
+    "create_service": NameKind.SERVICE,
+    "advertiseService": NameKind.SERVICE,
+    "create_client": NameKind.CLIENT,
+    "serviceClient": NameKind.CLIENT,
+    "create_server": NameKind.ACTION,
+    "declare_parameter": NameKind.PARAMETER,
+    "auto_declare": NameKind.PARAMETER,
+    "declare_parameter_if_not_declared": NameKind.PARAMETER,
+    "get_parameter_or": NameKind.PARAMETER,
+    "param": NameKind.PARAMETER,
+    "getParam": NameKind.PARAMETER,
+    "getParamCached": NameKind.PARAMETER,
+    "lookupTransform": NameKind.FRAME_LOOKUP,
+    "waitForTransform": NameKind.FRAME_LOOKUP,
+    "canTransform": NameKind.FRAME_LOOKUP,
+}
+_CALL = re.compile(
+    rf"(?P<scope>\brclcpp_action::|\bros::param::|[.>]\s*|\b)(?P<name>{'|'.join(_KINDS)}|(?<=ros::param::)get)"
+    r"\s*(?=[<(])"
+)
+_ROS1 = frozenset(
+    {
+        *("advertise", "advertiseCamera", "advertiseService", "subscribe", "subscribeCamera", "serviceClient"),
+        *("param", "getParam", "getParamCached", "get", "lookupTransform", "waitForTransform", "canTransform"),
+    }
+)
+"""The methods whose names other libraries have, too, so that only literal names count."""
+_NODE_FIRST = frozenset({"declare_parameter_if_not_declared"})
+_DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2, "declare_parameter_if_not_declared": 2}
+_OUTPUTS = frozenset({"getParam", "getParamCached", "get"})
+_ROS2_PARAMETERS = frozenset({"declare_parameter", "auto_declare", "declare_parameter_if_not_declared"})
+_NODE = re.compile(
+    r"(?::\s*|,\s*)(?:rclcpp(?:_lifecycle)?::)?(?:Lifecycle)?Node\s*\(|"
+    r"\brclcpp(?:_lifecycle)?::(?:Lifecycle)?Node::make_shared\s*\(|"
+    r"\bmake_shared<\s*rclcpp(?:_lifecycle)?::(?:Lifecycle)?Node\s*>\s*\("
+)
+_INIT = re.compile(r"\bros::init\s*\(")
+_MEMBER = re.compile(
+    r"\b(?P<class>(?:actionlib::)?Simple(?P<action>ActionServer|ActionClient)|message_filters::Subscriber)\s*"
+    r"<(?P<type>[^<>;(){}]*)>\s*(?P<variable>\w+)\b"
+)
+_FRAME = re.compile(r"\b(?P<child>child_)?frame_id_?\s*=(?!=)\s*(?P<value>[^;\n]+);")
+_STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
+_RATE = re.compile(
+    r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
+)
+_COMPONENT = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(")
+_HANDLES = re.compile(r"\bNodeHandle\b(?P<names>[^;{}<>]*)[;{]")
+_HANDLE = re.compile(r'\b(?P<name>\w+)\s*\(\s*(?:\w+\s*,\s*)?"(?P<namespace>[^"]+)"\s*\)')
+_RECEIVER = re.compile(r"\b(?P<name>\w+)\s*(?:\.|->)\s*$")
+_CLASS = re.compile(
+    r"^[ \t]*(?:class|struct|enum(?:\s+class)?)\s+(?:[A-Z]\w*_(?:PUBLIC|EXPORT|API|DECL)(?:_TYPE)?\s+)?"
+    r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)[^;{]*)?\{",
+    re.MULTILINE,
+)
+_TEXT = re.compile(r'\s*(?:(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"\s*\)?\s*')
+_VARIABLE = re.compile(r"\s*(?:\w+::)*(?P<name>\w+)\s*(?:\.c_str\(\))?\s*")
+_CONSTANT = re.compile(
+    r"(?:\b(?:string|char|auto|string_view)\b[\s*&const]*\b(?P<name>\w+)\s*(?:\[\s*\])?\s*(?:=|(?P<open>[({]))"
+    r'\s*(?P<made>(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"(?(made)\s*\))(?(open)\s*[)}])\s*;)'
+    r'|#\s*define\s+(?P<macro>\w+)[ \t]+\(?"(?P<value>[^"\\]*)"'
+)
+_LITERAL = re.compile(r'\s*(-?[\d.]+(?:e-?\d+)?f?|true|false|"[^"\\]*"|(?:std::)?string\((?P<text>"[^"\\]*")\))\s*')
+_WRAPPED = re.compile(r"\s*(?:rclcpp::)?ParameterValue\s*\((?P<value>.*)\)\s*", re.DOTALL)
+_QOS = re.compile(r"\d+|[\w:]*QoS\w*\s*[({].*|rmw_qos_profile_\w+|(?:rclcpp::)?(?:\w+::)?\w*QoS\w*", re.DOTALL)
+_BRACKETS = {"(": ")", "<": ">", "[": "]", "{": "}"}
+
+
+def read_cpp(source: SourceText, names: SourceNames) -> None:
+    """Add the names in a source in C++."""
+    reader = _Reader(source, names)
+    reader.read()
+
+
+class _Reader:
+    """Adds the names in a source.
+
+    Args:
+        source: the source.
+        names: the names to which those of the source are added.
+    """
+
+    def __init__(self, source: SourceText, names: SourceNames) -> None:
+        self._source = source
+        self._names = names
+        self._text = _COMMENT_OR_TEXT.sub(_without_comment, source.text)
+        self._constants = _constants(self._text)
+        self._namespaces = _namespaces(self._text)
+
+    def read(self) -> None:
+        """Add the names."""
+        text = self._text
+        for match in _CALL.finditer(text):
+            self._read_call(match)
+        for pattern, kind, index in ((_NODE, NameKind.NODE, 0), (_INIT, NameKind.NODE, 2)):
+            for match in pattern.finditer(text):
+                self._add_argument(kind, match.end() - 1, index)
+        for match in _FRAME.finditer(text):
+            kind = NameKind.FRAME if match["child"] else NameKind.MESSAGE_FRAME
+            self._add_literal(kind, match.start("value"), match.end("value"))
+        for match in _STAMPED.finditer(text):
+            for index in (2, 3):
+                self._add_argument(NameKind.FRAME, match.end() - 1, index)
+        for match in _MEMBER.finditer(text):
+            self._read_member(match)
+        for match in _RATE.finditer(text):
+            self._read_rate(match)
+        for match in _COMPONENT.finditer(text):
+            for begin, end in list(_arguments(text, match.end() - 1))[:1]:
+                self._add(NameKind.PLUGIN, "".join(text[begin:end].split()), begin, end)
+        for match in _CLASS.finditer(text):
+            self._add(NameKind.CLASS, match["name"], match.start("name"), match.end("name"))
+        self._read_functions()
+        self._names.is_program = re.search(r"\bint\s+main\s*\(", text) is not None
+
+    def _read_functions(self) -> None:
+        """Add the functions of a header; the type of each is the list of its parameters, for each overload."""
+        if PurePosixPath(self._source.name).suffix not in HEADER_SUFFIXES:
+            return
+        overloads: dict[str, list[DeclaredFunction]] = {}
+        for function in declared_functions(self._text):
+            if function.is_override:
+                self._names.overrides.add(function.name.rpartition("::")[2])
+            else:
+                overloads.setdefault(function.name, []).append(function)
+        for name, functions in overloads.items():
+            types = "; ".join(sorted(", ".join(function.parameters) for function in functions))
+            details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
+            start = self._text.find(name.rpartition("::")[2], functions[0].start)
+            self._add(NameKind.FUNCTION, name, start, start + len(name.rpartition("::")[2]), types, details)
+
+    def _read_call(self, match: re.Match[str]) -> None:
+        text, function = self._text, match["name"]
+        kind = NameKind.PARAMETER if function == "get" else _KINDS[function]
+        is_action = match["scope"].startswith("rclcpp_action") or function == "create_server"
+        if is_action and kind is NameKind.CLIENT:
+            kind = NameKind.ACTION_CLIENT
+        start, type_name = match.end(), ""
+        if text[start] == "<":
+            end = _end_of(text, start)
+            type_name = " ".join(text[start + 1 : end].split())
+            if function == "advertiseService":
+                type_name = type_name.partition(",")[0].removesuffix("::Request")
+            type_name = type_name.rpartition("::")[2]
+            start = text.find("(", end, end + 20)
+        if start < 0 or text[start : start + 1] != "(":
+            return
+        if function == "param" and not type_name and not match["scope"].strip():
+            return  # a function of another name
+        arguments = list(_arguments(text, start))
+        if kind is NameKind.FRAME_LOOKUP:
+            for begin, end in arguments[:2]:
+                self._add_literal(kind, begin, end)
+            return
+        named = arguments[1:2] if function in _NODE_FIRST else arguments[:1]
+        candidates = arguments if is_action else named
+        found = next(((begin, end) for begin, end in candidates if self._value(begin, end) is not None), None)
+        if found is not None:
+            receiver = _RECEIVER.search(text, max(0, match.start("name") - 80), match.start("name"))
+            namespace = self._namespaces.get(receiver["name"], "") if receiver and function in _ROS1 else ""
+            self._add_called(kind, function, type_name, arguments, found, namespace)
+        elif candidates and (function not in _ROS1 or (type_name and kind is not NameKind.PARAMETER)):
+            begin, end = candidates[0] if not is_action else candidates[min(1, len(candidates) - 1)]
+            expression = SourceName(kind, " ".join(text[begin:end].split()), type_name, self._span(begin, end))
+            self._names.expressions.append(expression)
+
+    def _add_called(
+        self,
+        kind: NameKind,
+        function: str,
+        type_name: str,
+        arguments: list[tuple[int, int]],
+        found: tuple[int, int],
+        namespace: str,
+    ) -> None:
+        details: list[tuple[Detail, str]] = []
+        others = [self._text[begin:end].strip() for begin, end in arguments[1:]]
+        if kind is NameKind.PARAMETER:
+            if type_name:
+                details.append((Detail.VALUE_TYPE if function in _ROS2_PARAMETERS else Detail.READ_AS, type_name))
+            type_name = "" if function in _OUTPUTS else self._default(function, arguments)
+        elif kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION) and others and _QOS.fullmatch(others[0]):
+            details.append((Detail.QUEUE if function in _ROS1 else Detail.QOS, " ".join(others[0].split())))
+        if kind is NameKind.PUBLISHER and function in _ROS1 and others[-1:] == ["true"]:
+            details.append((Detail.LATCH, YES))
+        name = self._value(*found) or ""
+        if namespace and name and not name.startswith(("/", "~")):
+            name = f"{namespace}{'' if namespace == '~' else '/'}{name}"
+        self._add(kind, name, *found, type_name, tuple(details))
+
+    def _default(self, function: str, arguments: list[tuple[int, int]]) -> str:
+        """Return the literal default of a parameter; that of a function that returns the value is the second."""
+        index = _DEFAULT_INDEX.get(function, 1)
+        index = index if index < len(arguments) else 1
+        if index >= len(arguments):
+            return ""
+        text = self._text[slice(*arguments[index])]
+        wrapped = _WRAPPED.fullmatch(text)
+        value = _LITERAL.fullmatch(wrapped["value"] if wrapped else text)
+        if value is not None:
+            return value["text"] or value[1]
+        variable = _VARIABLE.fullmatch(text)
+        constant = self._constants.get(variable["name"]) if variable else None
+        return "" if constant is None else f'"{constant}"'
+
+    def _read_member(self, match: re.Match[str]) -> None:
+        """Add the topic or action that a member of a class, or a variable, is made with."""
+        kind = {"ActionServer": NameKind.ACTION, "ActionClient": NameKind.ACTION_CLIENT}.get(
+            match["action"], NameKind.SUBSCRIPTION
+        )
+        type_name = match["type"].split("::")[-1].strip()
+        for made in re.finditer(rf"\b{match['variable']}\s*[({{]", self._text):
+            if self._text[made.end() - 1] == "{":
+                continue
+            for begin, end in list(_arguments(self._text, made.end() - 1))[:3]:
+                if self._add_literal(kind, begin, end, type_name):
+                    break
+
+    def _read_rate(self, match: re.Match[str]) -> None:
+        arguments = list(_arguments(self._text, match.end() - 1))
+        is_timer = match["name"] == "create_timer"
+        texts = [" ".join(self._text[slice(*each)].split()) for each in arguments]
+        index = 1 if is_timer and len(texts) > 1 and not re.search(r"\d", texts[0]) else 0
+        if index < len(texts):
+            name = match["name"].split()[0]
+            self._names.rates.append((f"{name}({texts[index]})", self._span(*arguments[index])))
+
+    def _value(self, begin: int, end: int) -> str | None:
+        """Return the text of a literal or of a constant of the source, or None for another expression."""
+        literal = _TEXT.fullmatch(self._text[begin:end])
+        if literal is not None:
+            return literal["text"]
+        variable = _VARIABLE.fullmatch(self._text[begin:end])
+        return None if variable is None else self._constants.get(variable["name"])
+
+    def _add_argument(self, kind: NameKind, start: int, index: int) -> None:
+        arguments = list(_arguments(self._text, start))
+        if index < len(arguments):
+            self._add_literal(kind, *arguments[index])
+
+    def _add_literal(self, kind: NameKind, begin: int, end: int, type_name: str = "") -> bool:
+        """Add the name in an argument if it is literal, and return whether it is."""
+        text = self._value(begin, end)
+        if text:
+            self._add(kind, text, begin, end, type_name)
+        return bool(text)
+
+    def _add(
+        self,
+        kind: NameKind,
+        name: str,
+        begin: int,
+        end: int,
+        type_name: str = "",
+        details: tuple[tuple[Detail, str], ...] = (),
+    ) -> None:
+        literal = _TEXT.fullmatch(self._text[begin:end])
+        if literal is not None:
+            begin, end = begin + literal.start("text"), begin + literal.end("text")
+        if name:
+            self._names.add(SourceName(kind, name, type_name, self._span(begin, end), details))
+
+    def _span(self, begin: int, end: int) -> Span:
+        while begin < end and self._text[begin].isspace():
+            begin += 1
+        return self._source.span(begin, max(end, begin + 1))
+
+
+def _constants(text: str) -> Mapping[str, str]:
+    """Return the texts of constants and of variables that are set once, by name."""
+    constants: dict[str, str] = {}
+    for match in _CONSTANT.finditer(text):
+        name = match["name"] or match["macro"]
+        assigned = len(re.findall(rf"\b{name}\b\s*(?:\[\s*\])?\s*=(?!=)", text))
+        is_output = re.search(rf"\b(?:\w*[pP]aram\w*|get\w*)\s*(?:<[^<>]*>)?\([^;()]*\b{name}\b", text) is not None
+        if assigned <= 1 and not is_output and name not in constants:
+            constants[name] = match["text"] if match["macro"] is None else match["value"]
+    return constants
+
+
+def _namespaces(text: str) -> Mapping[str, str]:
+    """Return the namespaces of node handles of ROS 1, by variable."""
+    members = set(re.findall(r"\bNodeHandle\s+(\w+)\s*;", text))
+    namespaces = {
+        match["name"]: match["namespace"].rstrip("/")
+        for handles in _HANDLES.finditer(text)
+        for match in _HANDLE.finditer(handles["names"])
+    }
+    for match in _HANDLE.finditer(text):
+        if match["name"] in members:
+            namespaces[match["name"]] = match["namespace"].rstrip("/")
+    return namespaces
+
+
+def _without_comment(match: re.Match[str]) -> str:
+    """Return a text as it is, and spaces for a comment or character."""
+    return match[0] if match[0].startswith('"') else re.sub(r"[^\n]", " ", match[0])
+
+
+def _end_of(text: str, start: int) -> int:
+    """Return the offset of the bracket that closes the one at an offset, or the end of the text."""
+    depth, opening = 0, text[start]
+    for index in range(start, len(text)):
+        depth += (text[index] == opening) - (text[index] == _BRACKETS[opening])
+        if depth == 0:
+            return index
+    return len(text)
+
+
+def _arguments(text: str, start: int) -> Iterator[tuple[int, int]]:
+    """Yield the offsets of the arguments in the parentheses that begin at an offset."""
+    depth, begin, is_text = 0, start + 1, False
+    for index in range(start + 1, len(text)):
+        character = text[index]
+        if character == '"' and text[index - 1] != "\\":
+            is_text = not is_text
+        if is_text:
+            continue
+        if depth == 0 and character in ",)":
+            if text[begin:index].strip():
+                yield begin, index
+            if character == ")":
+                return
+            begin = index + 1
+        depth += (character in "([{") - (character in ")]}")

@@ -1,0 +1,137 @@
+"""The public functions that a header in C++ declares, with the types of their arguments."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+_PREPROCESSOR = re.compile(r"^[ \t]*#(?:[^\n\\]|\\.|\\\n)*", re.MULTILINE)
+_SCOPE = re.compile(r"\b(?:class|struct)\s+(?:[A-Z]\w*_\w+\s+)?(?P<name>\w+)\s*(?:final\s*)?(?::(?!:).*)?$", re.DOTALL)
+_OPEN_SCOPE = re.compile(r"^(?:inline\s+)?namespace\b|^extern\s*\"")
+_ACCESS = re.compile(r"(?:^|\s)(?P<access>public|protected|private)\s*(?:slots|Q_SLOTS)?$")
+_FUNCTION = re.compile(r"(?P<name>~?\w+|operator\s*\S+)\s*\(")
+_INITIALIZERS = re.compile(r"(?<=\))\s*(?:noexcept\s*)?:(?!:).*$", re.DOTALL)
+_QUALIFIERS = re.compile(
+    r"\s*(?:const|volatile|noexcept(?:\([^)]*\))?|override|final|&&?|=\s*0|=\s*default|->[^()]*|\s)*", re.DOTALL
+)
+_PARAMETER = re.compile(r"(?P<type>.*[\s*&>])(?P<name>\w+)\s*(?P<array>\[\w*\])?", re.DOTALL)
+_WORDS = frozenset({"const", "unsigned", "signed", "long", "struct", "typename", "short", "enum", "class"})
+_KEYWORDS = frozenset({"if", "for", "while", "switch", "return", "sizeof", "decltype", "alignas", "static_assert"})
+_OPENING = re.compile(r"[({\[<]")
+_CLOSING = re.compile(r"[)}\]>]")
+
+
+class DeclaredFunction(NamedTuple):
+    """A function of a header.
+
+    Attributes:
+        name: the name with that of its class.
+        parameters: the types of the parameters; one with a default ends with ``= ...``.
+        is_pure: whether derived classes must define it.
+        is_override: whether it overrides a function of a base class, which decides who can call it.
+        start: the offset of the declaration.
+    """
+
+    name: str
+    parameters: tuple[str, ...]
+    is_pure: bool
+    is_override: bool
+    start: int
+
+
+class _Scope(NamedTuple):
+    name: str
+    is_open: bool
+    access: str
+
+
+def declared_functions(text: str) -> Iterator[DeclaredFunction]:
+    """Yield the public functions that a header declares.
+
+    Args:
+        text: the text of the header without comments.
+    """
+    text = _PREPROCESSOR.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
+    scopes: list[_Scope] = []
+    start = depth = 0
+    for index, character in enumerate(text):
+        depth += (character == "(") - (character == ")")
+        if depth > 0 or character not in ";{}:":
+            continue
+        depth = 0
+        chunk = text[start:index].strip()
+        access = _ACCESS.search(chunk) if character == ":" else None
+        if character == ":":
+            if access is not None and scopes:
+                scopes[-1] = scopes[-1]._replace(access=access["access"])
+                start = index + 1
+            continue
+        is_visible = all(scope.is_open and scope.access == "public" for scope in scopes)
+        if character != "}" and is_visible and "(" in chunk and not chunk.startswith(("using", "typedef", "friend")):
+            yield from _function(chunk, [scope.name for scope in scopes if scope.name], start)
+        if character == "{":
+            scopes.append(_scope(chunk))
+        elif character == "}" and scopes:
+            scopes.pop()
+        start = index + 1
+
+
+def _scope(chunk: str) -> _Scope:
+    """Return the scope that a text opens. Only namespaces and classes can have declarations for others."""
+    if _OPEN_SCOPE.search(chunk):
+        return _Scope("", is_open=True, access="public")
+    match = _SCOPE.search(chunk)
+    if match is None or re.search(r"\benum\b", chunk) or ("(" in chunk and ")" in chunk and ":" not in chunk):
+        return _Scope("", is_open=False, access="private")
+    is_struct = re.search(rf"\bstruct\s+(?:\w+\s+)?{match['name']}\b", chunk) is not None
+    return _Scope(match["name"], is_open=True, access="public" if is_struct else "private")
+
+
+def _function(chunk: str, classes: list[str], start: int) -> Iterator[DeclaredFunction]:
+    """Yield the function that a declaration declares, if it is one."""
+    declaration = _INITIALIZERS.sub("", chunk)
+    for match in _FUNCTION.finditer(declaration):
+        end = _end_of(declaration, match.end() - 1)
+        rest = declaration[end + 1 :]
+        is_name = match["name"] not in _KEYWORDS and not match["name"].isupper() and not match["name"].startswith("~")
+        if end < 0 or not _QUALIFIERS.fullmatch(rest) or not is_name or "=" in declaration[: match.start()]:
+            continue
+        parameters = tuple(_parameter(text) for text in _split(declaration[match.end() : end]))
+        name = "::".join([*classes, "".join(match["name"].split())])
+        is_override = re.search(r"\b(?:override|final)\b", rest) is not None
+        yield DeclaredFunction(name, parameters, re.search(r"=\s*0\s*$", rest) is not None, is_override, start)
+        return
+
+
+def _parameter(text: str) -> str:
+    """Return the type of a parameter, with a mark if it has a default."""
+    value, _, default = text.partition("=")
+    match = _PARAMETER.fullmatch(value.strip())
+    type_name = value
+    if match is not None and set(match["type"].split()) - _WORDS and match["name"] not in _WORDS:
+        type_name = match["type"] + (match["array"] or "")
+    type_name = re.sub(r"\s*([*&<>,:])\s*", r"\1", " ".join(type_name.split()))
+    return f"{type_name} = ..." if default else type_name
+
+
+def _end_of(text: str, start: int) -> int:
+    """Return the offset of the parenthesis that closes the one at an offset, or -1."""
+    depth = 0
+    for index in range(start, len(text)):
+        depth += (text[index] == "(") - (text[index] == ")")
+        if depth == 0:
+            return index
+    return -1
+
+
+def _split(text: str) -> Iterator[str]:
+    """Yield the parameters in the text between parentheses."""
+    depth = begin = 0
+    for index, character in enumerate(text):
+        depth += bool(_OPENING.match(character)) - bool(_CLOSING.match(character))
+        if character == "," and depth == 0:
+            yield text[begin:index]
+            begin = index + 1
+    if text[begin:].strip() not in ("", "void"):
+        yield text[begin:]

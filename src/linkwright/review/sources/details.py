@@ -1,0 +1,110 @@
+"""The changes of a name that both versions of a source have: its type, its default and its other properties."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.sources.names import NO, Detail, NameKind, SourceName
+
+_CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
+_BEST_EFFORT = re.compile(r"best_?effort|sensor_?data", re.IGNORECASE)
+_TRANSIENT = re.compile(r"transient_?local|latching", re.IGNORECASE)
+_DEFAULT = " = ..."
+"""The end of a parameter of a function that has a default."""
+
+
+def detail_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
+    """Yield the changes of a name, each with the reason why it is breaking, or None."""
+    if old.type != new.type:
+        yield from _type_changes(old, new)
+    old_details, new_details = dict(old.details), dict(new.details)
+    for detail in Detail:
+        before, after = old_details.get(detail), new_details.get(detail)
+        if before == after or (detail is Detail.QOS and None in (before, after)):
+            continue
+        missing = NO if detail in (Detail.LATCH, Detail.REQUIRED) else "-"
+        text = phrase(
+            "{kind} '{name}': {property} {old} -> {new}",
+            kind=new.kind.title,
+            name=new.name,
+            property=detail.title,
+            old=before or missing,
+            new=after or missing,
+        )
+        yield text, _reason(new, detail, before, after)
+
+
+def _type_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
+    if new.kind is NameKind.FUNCTION:
+        old_text, new_text = (" | ".join(f"({each})" for each in item.type.split("; ")) for item in (old, new))
+        text = phrase("function '{name}': {old} -> {new}", name=new.name, old=old_text, new=new_text)
+        reason = phrase("code that calls '{name}' with the old arguments does not build", name=new.name)
+        yield text, None if _accepts_all(old.type, new.type) else reason
+    elif new.kind in (NameKind.PARAMETER, NameKind.OPTION):
+        text = phrase(
+            "{kind} '{name}': default {old} -> {new}",
+            kind=new.kind.title,
+            name=new.name,
+            old=old.type or "-",
+            new=new.type or "-",
+        )
+        if old.type and new.type:
+            yield text, None
+    elif old.type and new.type:
+        text = phrase(
+            "{kind} '{name}': type {old} -> {new}", kind=new.kind.title, name=new.name, old=old.type, new=new.type
+        )
+        reason = phrase("programs that use '{name}' with the old type get nothing", name=new.name)
+        yield text, reason
+
+
+def _accepts_all(old: str, new: str) -> bool:
+    """Return whether new overloads of a function accept the arguments of all old ones."""
+    overloads = [_parameters(text) for text in new.split("; ")]
+    return all(any(_accepts(_parameters(text), overload) for overload in overloads) for text in old.split("; "))
+
+
+def _parameters(text: str) -> list[str]:
+    return re.split(r", (?![^<]*>)", text) if text else []
+
+
+def _accepts(old: list[str], new: list[str]) -> bool:
+    required = [parameter for parameter in old if not parameter.endswith(_DEFAULT)]
+    types = [parameter.removesuffix(_DEFAULT) for parameter in old]
+    is_same = [parameter.removesuffix(_DEFAULT) for parameter in new[: len(types)]] == types
+    return is_same and all(parameter.endswith(_DEFAULT) for parameter in new[len(required) :])
+
+
+def _reason(name: SourceName, detail: Detail, before: str | None, after: str | None) -> Phrase | None:
+    """Return why another property is breaking, or None if it is not."""
+    old, new = before or "", after or ""
+    if detail is Detail.QOS:
+        return _qos_reason(name, old, new)
+    if detail is Detail.VALUE_TYPE and name.kind is NameKind.PARAMETER and before and after:
+        return phrase("values of the old type are rejected")
+    if detail is Detail.REQUIRED and name.kind is NameKind.FUNCTION:
+        return phrase("classes that derive from the class and do not define it do not build") if after else None
+    if detail is Detail.REQUIRED and after:
+        return phrase("callers that do not pass '{name}' get an error", name=name.name)
+    if detail is Detail.LATCH and before:
+        return phrase("subscribers that start later do not get the last message")
+    return None
+
+
+def _qos_reason(name: SourceName, old: str, new: str) -> Phrase | None:
+    """Return why another QoS is breaking: a subscription only gets what the publisher offers, or None."""
+    was_weak, is_weak = _BEST_EFFORT.search(old), _BEST_EFFORT.search(new)
+    kept, keeps = _TRANSIENT.search(old), _TRANSIENT.search(new)
+    if name.kind is NameKind.PUBLISHER:
+        if is_weak and not was_weak:
+            return phrase("subscriptions that ask for reliable messages get nothing")
+        if kept and not keeps:
+            return phrase("subscriptions that ask for messages from before their start get nothing")
+    if name.kind is NameKind.SUBSCRIPTION:
+        if was_weak and not is_weak:
+            return phrase("the node gets nothing from publishers that send with best effort")
+        if keeps and not kept:
+            return phrase("the node gets nothing from publishers that keep no messages")
+    return None

@@ -1,0 +1,113 @@
+"""The names in a source of a node that other programs use or give it: topics, parameters, frames, options."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from enum import Enum
+
+from linkwright.diagnostics import Phrase, Span, phrase
+
+HEADER_SUFFIXES = (".hpp", ".hh", ".hxx", ".h")
+CPP_SUFFIXES = (".cpp", ".cc", ".cxx", *HEADER_SUFFIXES)
+PYTHON_SUFFIX = ".py"
+DYNAMIC_SUFFIX = ".cfg"
+"""The suffix of descriptions of dynamic_reconfigure, which are written in Python."""
+
+YES, NO = "yes", "no"
+"""The values of properties that a name has or has not."""
+
+
+class NameKind(Enum):
+    """The kind of a name: what a report calls one of them, and several of them."""
+
+    PUBLISHER = (phrase("publisher"), phrase("publishers"))
+    SUBSCRIPTION = (phrase("subscription"), phrase("subscriptions"))
+    SERVICE = (phrase("service"), phrase("services"))
+    CLIENT = (phrase("service client"), phrase("service clients"))
+    ACTION = (phrase("action"), phrase("actions"))
+    ACTION_CLIENT = (phrase("action client"), phrase("action clients"))
+    PARAMETER = (phrase("parameter"), phrase("parameters"))
+    NODE = (phrase("node"), phrase("nodes"))
+    FRAME = (phrase("frame"), phrase("frames"))
+    MESSAGE_FRAME = (phrase("frame of messages"), phrase("frames of messages"))
+    FRAME_LOOKUP = (phrase("frame that is looked up"), phrase("frames that are looked up"))
+    OPTION = (phrase("command-line option"), phrase("command-line options"))
+    PLUGIN = (phrase("exported class"), phrase("exported classes"))
+    CLASS = (phrase("class"), phrase("classes"))
+    FUNCTION = (phrase("function"), phrase("functions"))
+
+    def __init__(self, title: Phrase, plural: Phrase) -> None:
+        self.title = title
+        self.plural = plural
+
+
+class Detail(Enum):
+    """A property of a name besides its type: what a report calls it."""
+
+    QOS = phrase("QoS")
+    QUEUE = phrase("queue")
+    LATCH = phrase("latched")
+    VALUE_TYPE = phrase("type")
+    READ_AS = phrase("read as")
+    MINIMUM = phrase("minimum")
+    MAXIMUM = phrase("maximum")
+    CHOICES = phrase("choices")
+    LEVEL = phrase("level")
+    REQUIRED = phrase("required")
+
+    @property
+    def title(self) -> Phrase:
+        """The name of the property in a report."""
+        return self.value
+
+
+@dataclass(frozen=True)
+class SourceName:
+    """A name in a source.
+
+    Attributes:
+        kind: the kind.
+        name: the name as it is written, or the text of the expression that gives it.
+        type: the type of the messages, or the default of a parameter or option; empty if it is not literal.
+        span: the location.
+        details: the other properties that are literal.
+    """
+
+    kind: NameKind
+    name: str
+    type: str
+    span: Span
+    details: tuple[tuple[Detail, str], ...] = ()
+
+
+@dataclass
+class SourceNames:
+    """The names in a source.
+
+    Attributes:
+        names: the literal names, each once.
+        expressions: the names that are expressions, whose values are not known.
+        rates: the texts of rates and periods, each with its location.
+        overrides: the names of functions that override those of a base class.
+        is_program: whether the source is a program that is started, and not a library that is imported.
+    """
+
+    names: list[SourceName] = field(default_factory=list)
+    expressions: list[SourceName] = field(default_factory=list)
+    rates: list[tuple[str, Span]] = field(default_factory=list)
+    overrides: set[str] = field(default_factory=set)
+    is_program: bool = False
+
+    def add(self, name: SourceName) -> None:
+        """Add a literal name, or complete the same one."""
+        for index, other in enumerate(self.names):
+            if (other.kind, other.name) == (name.kind, name.name):
+                if name.type and not other.type:
+                    self.names[index] = name
+                return
+        self.names.append(name)
+
+    def of(self, kind: NameKind) -> Iterator[SourceName]:
+        """Yield the literal names of a kind."""
+        return (name for name in self.names if name.kind is kind)

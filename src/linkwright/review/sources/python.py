@@ -1,0 +1,347 @@
+"""The names in a source in Python, for rclpy, rospy and argparse, and in descriptions of dynamic_reconfigure."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from functools import cached_property
+
+from linkwright.diagnostics import SourceText
+from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
+from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
+from linkwright.review.sources.python2 import as_python3
+
+_RCLPY = {
+    "create_publisher": (NameKind.PUBLISHER, "msg_type", "topic", 2),
+    "create_subscription": (NameKind.SUBSCRIPTION, "msg_type", "topic", 3),
+    "create_service": (NameKind.SERVICE, "srv_type", "srv_name", -1),
+    "create_client": (NameKind.CLIENT, "srv_type", "srv_name", -1),
+}
+"""The methods of nodes with the parameters of the type and of the name, which are the first two, and the index of the
+QoS."""
+_NAME_FIRST = {
+    "Publisher": NameKind.PUBLISHER,
+    "Subscriber": NameKind.SUBSCRIPTION,
+    "Service": NameKind.SERVICE,
+    "ServiceProxy": NameKind.CLIENT,
+    "SimpleActionServer": NameKind.ACTION,
+    "SimpleActionClient": NameKind.ACTION_CLIENT,
+}
+"""The classes of ROS 1 whose first two arguments are the name and the type."""
+_NODE_FIRST = {
+    "ActionServer": NameKind.ACTION,
+    "ActionClient": NameKind.ACTION_CLIENT,
+    "Subscriber": NameKind.SUBSCRIPTION,
+}
+"""The classes of ROS 2 whose first three arguments are the node, the type and the name."""
+_NODES = ("init_node", "create_node", "Node", "LifecycleNode")
+_RATES = {"Rate": 0, "create_rate": 0, "Timer": 0, "create_timer": 0}
+_LOOKUPS = {
+    **dict.fromkeys(("lookup_transform", "lookupTransform", "can_transform", "canTransform"), (0, 1)),
+    **dict.fromkeys(("waitForTransform", "lookup_transform_async", "lookupTransformFull"), (0, 1)),
+}
+_PARAMETER_CALLS = ("declare_parameter", "get_param", "get_param_cached", "get_parameter_or", "add_parameter")
+_LOOKED_UP = (*_PARAMETER_CALLS, "search_param", "has_param")
+_ITEMS = ("items", "iteritems", "keys", "iterkeys")
+_FRAME_FIELDS = {"frame_id": NameKind.MESSAGE_FRAME, "child_frame_id": NameKind.FRAME}
+_QOS = re.compile(r"\d+|[\w.]*(QoS|qos_profile|QOS)\w*(\(.*\))?", re.DOTALL)
+
+
+def read_python(source: SourceText, names: SourceNames) -> None:
+    """Add the names in a source in Python 3 or Python 2.
+
+    Raises:
+        SyntaxError: the text is neither.
+    """
+    _Reader(_parsed(source), names).read()
+
+
+def read_dynamic_parameters(source: SourceText, names: SourceNames) -> None:
+    """Add the parameters of a description of dynamic_reconfigure, with their defaults and limits.
+
+    Raises:
+        SyntaxError: the text is not Python.
+    """
+    python = _parsed(source)
+    for call in python.calls("add"):
+        name = python.text(_argument(call, 0, "name"))
+        if name is None:
+            continue
+        details = [(Detail.VALUE_TYPE, _shown(python, _argument(call, 1, "paramtype")).removesuffix("_t"))]
+        for detail, index, keyword in (
+            (Detail.LEVEL, 2, "level"),
+            (Detail.MINIMUM, 5, "min"),
+            (Detail.MAXIMUM, 6, "max"),
+        ):
+            text = _shown(python, _argument(call, index, keyword))
+            if text and text != "None":
+                details.append((detail, text))
+        choices = argument_of(call, "edit_method")
+        if choices is not None:
+            values = (_shown(python, item.args[1]) for item in _constants(python, choices) if len(item.args) > 1)
+            details.append((Detail.CHOICES, ", ".join(values)))
+        default = _shown(python, _argument(call, 4, "default"))
+        names.add(SourceName(NameKind.PARAMETER, name, default, python.span(call), tuple(details)))
+
+
+def _constants(python: PythonFile, node: ast.expr) -> Iterator[ast.Call]:
+    """Yield the calls that make the constants of an enumeration of dynamic_reconfigure."""
+    for part in ast.walk(python.resolved(node)):
+        value = python.resolved(part) if isinstance(part, ast.Name) else part
+        if isinstance(value, ast.Call) and called_name(value).endswith("const"):
+            yield value
+
+
+def _parsed(source: SourceText) -> _SourceFile:
+    try:
+        return _SourceFile(source)
+    except SyntaxError:
+        text = as_python3(source.text)
+        return _SourceFile(SourceText(source.name, text))
+
+
+def _argument(call: ast.Call, index: int, keyword: str) -> ast.expr | None:
+    if 0 <= index < len(call.args):
+        return call.args[index]
+    return argument_of(call, keyword)
+
+
+def _shown(python: PythonFile, node: ast.expr | None) -> str:
+    """Return the text of a literal, also of one that a name has, or else of the expression."""
+    if node is None:
+        return ""
+    value = python.resolved(node)
+    return " ".join(ast.unparse(value if isinstance(value, (ast.Constant, ast.UnaryOp)) else node).split())
+
+
+def _is_required(call: ast.Call, option: str) -> bool:
+    """Return whether callers must pass an option or argument of a command line."""
+    if not option.startswith("-"):
+        return argument_of(call, "nargs") is None and argument_of(call, "default") is None
+    value = argument_of(call, "required")
+    return isinstance(value, ast.Constant) and value.value is True
+
+
+class _SourceFile(PythonFile):
+    """A source, in which attributes of a class or object that are set once have their values, too."""
+
+    @cached_property
+    def _attributes(self) -> dict[str, ast.expr | None]:
+        attributes: dict[str, ast.expr | None] = {}
+        for node in ast.walk(self.tree):
+            targets = node.targets if isinstance(node, ast.Assign) else ()
+            for target in targets:
+                for part in ast.walk(target):
+                    if isinstance(part, ast.Attribute):
+                        is_first = part is target and part.attr not in attributes
+                        attributes[part.attr] = node.value if is_first and isinstance(node, ast.Assign) else None
+            if isinstance(node, (ast.AugAssign, ast.AnnAssign)) and isinstance(node.target, ast.Attribute):
+                attributes[node.target.attr] = None
+        return attributes
+
+    def resolved(self, node: ast.expr) -> ast.expr:
+        """Return the expression that is assigned to a name or attribute, and any other expression unchanged."""
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            value = self._attributes.get(node.attr)
+            if node.attr not in self._attributes:
+                value = self.assigned_expression(node.attr)  # a constant of the class
+            return node if value is None or isinstance(value, ast.Attribute) else self.resolved(value)
+        return super().resolved(node)
+
+    def value(self, node: ast.expr | None, depth: int = 0) -> Value:
+        """Return the value of an expression, or `UNKNOWN` if the value is not certain."""
+        if isinstance(node, ast.Attribute):
+            resolved = self.resolved(node)
+            if resolved is not node:
+                return super().value(resolved, depth + 1)
+        return super().value(node, depth)
+
+
+class _Reader:
+    """Adds the names in a source.
+
+    Args:
+        python: the source.
+        names: the names to which those of the source are added.
+    """
+
+    def __init__(self, python: PythonFile, names: SourceNames) -> None:
+        self._python = python
+        self._names = names
+
+    def read(self) -> None:
+        """Add the names."""
+        tree = self._python.tree
+        nodes = [node for node in ast.walk(tree) if isinstance(node, (ast.Call, ast.Assign, ast.For))]
+        for node in sorted(nodes, key=lambda node: (node.lineno, node.col_offset)):
+            if isinstance(node, ast.Assign):
+                self._read_assignment(node)
+            elif isinstance(node, ast.For):
+                self._read_loop(node)
+            else:
+                function = called_name(node).rpartition(".")[2]
+                if isinstance(node.func, ast.Attribute) and function == "":
+                    function = node.func.attr
+                self._read_call(node, function)
+        for statement in tree.body:
+            if isinstance(statement, (ast.ClassDef, ast.FunctionDef)) and not statement.name.startswith("_"):
+                kind = NameKind.CLASS if isinstance(statement, ast.ClassDef) else NameKind.FUNCTION
+                self._names.add(SourceName(kind, statement.name, "", self._python.span(statement)))
+            self._names.is_program |= isinstance(statement, ast.If) and "__main__" in ast.unparse(statement.test)
+            self._names.is_program |= isinstance(statement, ast.FunctionDef) and statement.name == "main"
+
+    def _read_assignment(self, node: ast.Assign) -> None:
+        for target in node.targets:
+            if isinstance(target, ast.Attribute) and target.attr in _FRAME_FIELDS:
+                self._add_frame(_FRAME_FIELDS[target.attr], node.value)
+
+    def _read_loop(self, loop: ast.For) -> None:
+        """Add the parameters that a loop over a dictionary of defaults reads."""
+        source = loop.iter
+        if isinstance(source, ast.Call) and isinstance(source.func, ast.Attribute) and source.func.attr in _ITEMS:
+            source = source.func.value
+        defaults = self._python.resolved(source)
+        variable = loop.target.elts[0] if isinstance(loop.target, ast.Tuple) else loop.target
+        if not isinstance(defaults, ast.Dict) or not isinstance(variable, ast.Name):
+            return
+        calls = (node for node in ast.walk(loop) if isinstance(node, ast.Call) and node.args)
+        names = [call.args[0] for call in calls if called_name(call).rpartition(".")[2] in _LOOKED_UP]
+        used = [name for name in names if variable.id in (n.id for n in ast.walk(name) if isinstance(n, ast.Name))]
+        if not used:
+            return
+        prefix = "~" if isinstance(used[0], ast.BinOp) and self._python.text(used[0].left) == "~" else ""
+        for key, value in zip(defaults.keys, defaults.values, strict=True):
+            self._add(NameKind.PARAMETER, key, value, prefix=prefix)
+
+    def _read_call(self, call: ast.Call, function: str) -> None:
+        for keyword in call.keywords:
+            if keyword.arg in _FRAME_FIELDS and function not in _PARAMETER_CALLS:
+                self._add_frame(_FRAME_FIELDS[keyword.arg], keyword.value)
+        if function in _RCLPY:
+            kind, type_keyword, name_keyword, qos_index = _RCLPY[function]
+            qos = self._qos(_argument(call, qos_index, "qos_profile"))
+            self._add(kind, _argument(call, 1, name_keyword), _argument(call, 0, type_keyword), qos)
+        elif function in _NODE_FIRST and len(call.args) > 2 and self._python.text(call.args[0]) is None:
+            self._add(_NODE_FIRST[function], _argument(call, 2, "action_name"), _argument(call, 1, "action_type"))
+        elif function in _NAME_FIRST and (call.args or call.keywords):
+            self._read_ros1_call(call, function)
+        elif function in _PARAMETER_CALLS:
+            self._read_parameter(call, function)
+        elif function == "declare_parameters":
+            self._read_parameters(_argument(call, 0, "namespace"), _argument(call, 1, "parameters"))
+        elif (function in _NODES and self._python.text(_argument(call, 0, "node_name")) is not None) or (
+            function == "__init__" and self._is_node(call)
+        ):
+            self._add(NameKind.NODE, _argument(call, 0, "node_name"), None)
+        else:
+            self._read_other_call(call, function)
+
+    def _read_ros1_call(self, call: ast.Call, function: str) -> None:
+        name, types = _argument(call, 0, "name"), _argument(call, 1, "data_class")
+        if self._python.text(name) is None and not called_name(call).startswith(("rospy", "actionlib")):
+            return
+        details = []
+        for keyword, detail in (("queue_size", Detail.QUEUE), ("latch", Detail.LATCH)):
+            value = argument_of(call, keyword)
+            if isinstance(value, ast.Constant) and value.value not in (None, False):
+                details.append((detail, YES if value.value is True else str(value.value)))
+        self._add(_NAME_FIRST[function], name, types, tuple(details))
+
+    def _read_other_call(self, call: ast.Call, function: str) -> None:
+        if function in _RATES and called_name(call).partition(".")[0] != "threading" and call.args:
+            period = self._python.resolved(call.args[0])
+            text = f"{function}({_shown(self._python, period)})"
+            self._names.rates.append((text, self._python.span(call.args[0])))
+        elif function in _LOOKUPS:
+            for index in _LOOKUPS[function]:
+                if index < len(call.args):
+                    self._add_frame(NameKind.FRAME_LOOKUP, call.args[index])
+        elif function == "sendTransform" and len(call.args) == 5:
+            for index in (3, 4):
+                self._add_frame(NameKind.FRAME, call.args[index])
+        elif function in ("add_argument", "add_option"):
+            self._read_option(call)
+
+    def _read_option(self, call: ast.Call) -> None:
+        texts = [text for text in map(self._python.text, call.args) if text]
+        if not texts:
+            return
+        name = max(texts, key=len)
+        default = argument_of(call, "default")
+        details = [(Detail.REQUIRED, YES)] if _is_required(call, name) else []
+        for detail, keyword in ((Detail.VALUE_TYPE, "type"), (Detail.CHOICES, "choices")):
+            node = argument_of(call, keyword)
+            if node is not None:
+                details.append((detail, _shown(self._python, node)))
+        text = "" if default is None else _shown(self._python, default)
+        self._names.add(SourceName(NameKind.OPTION, name, text, self._python.span(call.args[0]), tuple(details)))
+
+    def _read_parameter(self, call: ast.Call, function: str) -> None:
+        index = 2 if function == "get_parameter_or" else 1
+        keyword = "value" if function == "declare_parameter" else "default"
+        node, value = _argument(call, 0, "name"), _argument(call, index, keyword)
+        is_ros1 = function.startswith("get_param") and function != "get_parameter_or"
+        if is_ros1 and self._python.text(node) is None:
+            return  # a function of another name
+        resolved = None if value is None else self._python.resolved(value)
+        details: tuple[tuple[Detail, str], ...] = ()
+        if function == "declare_parameter" and isinstance(resolved, (ast.Constant, ast.UnaryOp)):
+            literal = resolved.operand if isinstance(resolved, ast.UnaryOp) else resolved
+            if isinstance(literal, ast.Constant) and literal.value is not None:
+                details = ((Detail.VALUE_TYPE, type(literal.value).__name__),)
+        self._add(NameKind.PARAMETER, node, value, details)
+
+    def _read_parameters(self, namespace: ast.expr | None, parameters: ast.expr | None) -> None:
+        items = None if parameters is None else self._python.resolved(parameters)
+        prefix = self._python.text(namespace)
+        if not isinstance(items, (ast.List, ast.Tuple)) or prefix is None:
+            if parameters is not None:
+                self._add_expression(NameKind.PARAMETER, parameters, "")
+            return
+        for item in items.elts:
+            pair = self._python.resolved(item)
+            if isinstance(pair, (ast.Tuple, ast.List)) and pair.elts:
+                value = pair.elts[1] if len(pair.elts) > 1 else None
+                self._add(NameKind.PARAMETER, pair.elts[0], value, prefix=f"{prefix}." if prefix else "")
+            else:
+                self._add_expression(NameKind.PARAMETER, item, "")
+
+    def _is_node(self, call: ast.Call) -> bool:
+        """Return whether a call of ``__init__`` is in a class that is derived from a node."""
+        classes = (node for node in ast.walk(self._python.tree) if isinstance(node, ast.ClassDef))
+        around = [node for node in classes if node.lineno <= call.lineno <= (node.end_lineno or node.lineno)]
+        return bool(around) and any(ast.unparse(base).endswith("Node") for base in around[-1].bases)
+
+    def _qos(self, node: ast.expr | None) -> tuple[tuple[Detail, str], ...]:
+        text = "" if node is None else _shown(self._python, self._python.resolved(node))
+        return ((Detail.QOS, text),) if _QOS.fullmatch(text) else ()
+
+    def _add_frame(self, kind: NameKind, node: ast.expr) -> None:
+        text = self._python.text(node)
+        if text:
+            self._names.add(SourceName(kind, text, "", self._python.span(node)))
+
+    def _add(
+        self,
+        kind: NameKind,
+        node: ast.expr | None,
+        type_node: ast.expr | None,
+        details: tuple[tuple[Detail, str], ...] = (),
+        prefix: str = "",
+    ) -> None:
+        text = self._python.text(node)
+        if kind is NameKind.PARAMETER:
+            value = None if type_node is None else self._python.resolved(type_node)
+            is_literal = isinstance(value, (ast.Constant, ast.List, ast.UnaryOp))
+            type_name = ast.unparse(value) if is_literal and value is not None else ""
+        else:
+            type_name = "" if type_node is None else ast.unparse(type_node).rpartition(".")[2]
+        if node is not None and text is None:
+            self._add_expression(kind, node, type_name)
+        elif node is not None and text:
+            self._names.add(SourceName(kind, prefix + text, type_name, self._python.span(node), details))
+
+    def _add_expression(self, kind: NameKind, node: ast.expr, type_name: str) -> None:
+        text = " ".join(ast.unparse(node).split())
+        self._names.expressions.append(SourceName(kind, text, type_name, self._python.span(node)))

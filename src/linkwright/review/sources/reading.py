@@ -1,0 +1,50 @@
+"""Read the names in a source of a node, in Python, in C++ or as a description of dynamic_reconfigure."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.diagnostics import SourceText
+from linkwright.review.sources.cpp import read_cpp
+from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON_SUFFIX, SourceNames
+from linkwright.review.sources.python import read_dynamic_parameters, read_python
+
+_MAX_BYTES = 1 << 20
+_PYTHON_LINE = b"python"
+
+
+def read_source_names(path: Path) -> SourceNames:
+    """Return the names in a source; those of a file that cannot be read are empty."""
+    names = SourceNames()
+    try:
+        if path.stat().st_size > _MAX_BYTES:
+            return names
+        source = SourceText(str(path), path.read_text("utf-8", errors="replace"))
+        if path.suffix == DYNAMIC_SUFFIX:
+            read_dynamic_parameters(source, names)
+        elif path.suffix in CPP_SUFFIXES:
+            read_cpp(source, names)
+        else:
+            read_python(source, names)
+    except (OSError, ValueError, SyntaxError, RecursionError):
+        return SourceNames()
+    return names
+
+
+def is_program_text(path: Path) -> bool:
+    """Return whether a file is a source in Python or C++, or a description of dynamic_reconfigure.
+
+    A script may have no suffix, but then a first line that names Python.
+    """
+    if path.suffix in (*CPP_SUFFIXES, PYTHON_SUFFIX):
+        return True
+    if path.suffix not in ("", DYNAMIC_SUFFIX):
+        return False
+    try:
+        with path.open("rb") as file:
+            head = file.read(_MAX_BYTES if path.suffix else 256)
+    except OSError:
+        return False
+    if path.suffix == DYNAMIC_SUFFIX:
+        return b"ParameterGenerator" in head
+    return head.startswith(b"#!") and _PYTHON_LINE in head.splitlines()[0]

@@ -1,0 +1,61 @@
+"""The rules for breaking changes of sources: names that other programs use."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.review.breaking import frame_reason, name_reason
+from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
+
+_CLIENTS = (NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME)
+_MAX_NAMES = 8
+_HEADERS = "include"
+
+
+def is_used_by_others(kind: NameKind, path: str, names: SourceNames) -> bool:
+    """Return whether names of a kind matter outside of a source.
+
+    Classes of C++ matter if they are in a header for other packages, functions of Python if they can be imported.
+
+    Args:
+        kind: the kind.
+        path: the path of the source.
+        names: the names in the source.
+    """
+    if kind not in (NameKind.CLASS, NameKind.FUNCTION):
+        return True
+    pure_path = PurePosixPath(path)
+    if pure_path.suffix == PYTHON_SUFFIX:
+        return not names.is_program or kind is NameKind.CLASS
+    return pure_path.suffix in CPP_SUFFIXES and _HEADERS in pure_path.parts
+
+
+def removal_reason(items: Sequence[SourceName], names: SourceNames, path: str) -> Phrase | None:
+    """Return why it is breaking that names are gone, or None if other programs do not use them.
+
+    Args:
+        items: the names, all of a kind.
+        names: all names in the old source.
+        path: the path of the old source.
+    """
+    kind = items[0].kind
+    if kind in _CLIENTS:
+        return None
+    text = joined_first([item.name for item in items], _MAX_NAMES)
+    if kind is NameKind.PARAMETER:
+        return phrase("values that launch files and parameter files give to '{name}' have no effect", name=text)
+    if kind is NameKind.FRAME:
+        return frame_reason(str(text))
+    if kind is NameKind.OPTION:
+        return phrase("callers that pass '{name}' get an error", name=text)
+    if kind is NameKind.PLUGIN:
+        return phrase("programs and configurations that load the class do not find it")
+    if kind in (NameKind.CLASS, NameKind.FUNCTION):
+        if names.is_program:
+            return None
+        if path.endswith(PYTHON_SUFFIX):
+            return phrase("programs that import '{name}' do not find it", name=text)
+        return phrase("code of other packages that uses '{name}' does not build", name=text)
+    return name_reason(str(text))

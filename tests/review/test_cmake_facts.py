@@ -1,0 +1,154 @@
+"""The lines of a review about targets, conditions, versions and interfaces of a CMakeLists.txt."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences
+
+MANIFEST = {"a/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+
+AMENT = """cmake_minimum_required(VERSION 3.8)
+project(arm)
+find_package(ament_cmake REQUIRED)
+find_package(Eigen3 3.3 REQUIRED)
+find_package(rclcpp REQUIRED)
+if(NOT rclcpp_FOUND)
+  message(WARNING "no rclcpp")
+endif()
+rosidl_generate_interfaces(${PROJECT_NAME} msg/State.msg DEPENDENCIES std_msgs)
+add_library(core SHARED src/core.cpp)
+add_executable(driver src/driver.cpp)
+add_executable(helper src/helper.cpp)
+target_link_libraries(driver PUBLIC core rclcpp::rclcpp)
+install(TARGETS core driver DESTINATION lib/${PROJECT_NAME})
+install(FILES config/a.yaml RENAME b.yaml DESTINATION share/${PROJECT_NAME})
+install(FILES ${GENERATED} RENAME ${NAME} DESTINATION share/${PROJECT_NAME})
+install(FILES config/c.yaml config/d.yaml DESTINATION share/${PROJECT_NAME})
+ament_export_include_directories(include)
+ament_export_libraries(core)
+ament_export_dependencies(rclcpp std_msgs)
+ament_package()
+"""
+CATKIN = """cmake_minimum_required(VERSION 2.8.3)
+project(arm)
+find_package(catkin REQUIRED roscpp tf)
+add_message_files(FILES State.msg Load.msg)
+add_service_files(DIRECTORY services FILES Home.srv)
+generate_messages(DEPENDENCIES std_msgs)
+generate_dynamic_reconfigure_options(cfg/Arm.cfg)
+catkin_package(INCLUDE_DIRS include LIBRARIES core CATKIN_DEPENDS roscpp tf)
+add_library(core src/core.cpp)
+add_executable(driver src/driver.cpp)
+target_link_libraries(driver core ${catkin_LIBRARIES})
+"""
+ROSBUILD = """cmake_minimum_required(VERSION 2.4.6)
+include($ENV{ROS_ROOT}/core/rosbuild/rosbuild.cmake)
+rosbuild_init()
+rosbuild_genmsg()
+rosbuild_add_library(core src/core.cpp)
+rosbuild_add_executable(driver src/driver.cpp)
+target_link_libraries(driver core)
+"""
+OTHERS = {
+    **dict.fromkeys(("a/config/a.yaml", "a/config/c.yaml", "a/config/d.yaml"), "rate: 10\n"),
+    **{f"a/msg/{name}.msg": "int32 value\n" for name in ("State", "Load")},
+    "a/services/Home.srv": "---\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "expected", "is_breaking"),
+    [
+        (AMENT, "core rclcpp::rclcpp", "core rclcpp::rclcpp tf2::tf2", ["'driver' linked to 'tf2'"], False),
+        (AMENT, "core rclcpp::rclcpp", "core ${rclcpp_TARGETS}", [], False),
+        (AMENT, "src/core.cpp", "src/core.cpp src/more.cpp", ["sources of 'core' added: 'src/more.cpp'"], False),
+        (AMENT, "SHARED", "STATIC", ["built targets: 'core': SHARED -> STATIC"], False),
+        (AMENT, "add_executable(helper src/helper.cpp)", "", ["built targets removed: 'helper'"], False),
+        (AMENT, "add_executable(helper src/helper.cpp)",
+         "if(BUILD_HELPER)\nadd_executable(helper src/helper.cpp)\nendif()",
+         ["built targets 'helper': always -> if BUILD_HELPER"], False),
+        (AMENT, "Eigen3 3.3", "Eigen3 3.4", ["calls of find_package: 'Eigen3': 3.3 -> 3.4"], False),
+        (AMENT, "rclcpp REQUIRED", "rclcpp",
+         ["calls of find_package: 'rclcpp': any version -> any version, optional"], False),
+        (AMENT, 'message(WARNING "no rclcpp")', 'message(FATAL_ERROR "no rclcpp")',
+         ["errors that stop the build added: 'no rclcpp (if NOT rclcpp_FOUND)'"], True),
+        (AMENT, "DEPENDENCIES std_msgs", "DEPENDENCIES std_msgs geometry_msgs",
+         ["dependencies of interfaces added: 'geometry_msgs'"], False),
+        (AMENT, "a.yaml RENAME b.yaml", "a.yaml RENAME e.yaml",
+         ["installed under another name in share/arm: 'b.yaml -> e.yaml'"], True),
+        (AMENT, "config/c.yaml config/d.yaml", "config/c.yaml",
+         ["not installed any more: 'share/arm/d.yaml'"], True),
+        (AMENT, "RENAME ${NAME}", "RENAME ${OTHER}", [], False),
+        (AMENT, "directories(include)", "directories(include/${PROJECT_NAME})", [], False),
+        (AMENT, "ament_export_libraries(core)", "", ["exported targets removed: 'core'"], True),
+        (AMENT, "dependencies(rclcpp std_msgs)", "dependencies(rclcpp)",
+         ["exported dependencies removed: 'std_msgs'"], True),
+        (CATKIN, "State.msg Load.msg", "State.msg", ["built interfaces removed: 'msg/Load.msg'"], True),
+        (CATKIN, "FILES Home.srv", "FILES", ["built interfaces removed: 'services/Home.srv'"], True),
+        (CATKIN, "options(cfg/Arm.cfg)", "options()",
+         ["descriptions for dynamic_reconfigure removed: 'cfg/Arm.cfg'"], True),
+        (CATKIN, "roscpp tf)\nadd_mes", "roscpp)\nadd_mes", ["calls of find_package removed: 'tf'"], False),
+        (CATKIN, "LIBRARIES core ", "", ["exported targets removed: 'core'"], True),
+        (CATKIN, "DEPENDS roscpp tf", "DEPENDS roscpp", ["exported dependencies removed: 'tf'"], True),
+        (CATKIN, "INCLUDE_DIRS include", "", ["exported include folders removed: 'include'"], True),
+        (CATKIN, "add_executable(driver src/driver.cpp)\n", "", ["built executables removed: 'driver'"], True),
+        (CATKIN, "core ${catkin_LIBRARIES}", "${catkin_LIBRARIES}", ["'driver' not linked any more to 'core'"], False),
+        (ROSBUILD, "executable(driver", "executable(drive",
+         ["built executables: 'driver' renamed to 'drive'"], True),
+        (ROSBUILD, "rosbuild_init()", "rosbuild_init()\ncheck()\ncheck()", ["check added"], False),
+        (ROSBUILD, "rosbuild_genmsg()", "", ["built interfaces removed: 'msg/Load.msg', 'msg/State.msg'"], True),
+    ],
+)  # fmt: skip
+def test_facts_of_cmake_files_are_compared(repository, compare, text, old, new, expected, is_breaking):
+    assert text.count(old) == 1
+    repository.commit({**MANIFEST, **OTHERS, "a/CMakeLists.txt": text})
+    repository.write({"a/CMakeLists.txt": text.replace(old, new)})
+    result = compare(repository)
+    assert [sentence for found in result.subjects for sentence in sentences(found)] == expected
+    assert bool(breaking(result)) is is_breaking
+
+
+def test_new_executable_under_a_condition_is_shown_with_it(repository, compare):
+    repository.commit({**MANIFEST, "a/CMakeLists.txt": AMENT})
+    install = "install(TARGETS tuner DESTINATION lib/arm)"
+    more = f"if(WITH_TUNER AND UNIX)\n  {install}\nelse()\n  message(FATAL_ERROR no)\nendif()\n"
+    repository.write({"a/CMakeLists.txt": AMENT.replace("ament_package", more + "ament_package")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == [
+        "installed executables added: 'tuner (if WITH_TUNER AND UNIX)'",
+        "errors that stop the build added: 'no (if NOT (WITH_TUNER AND UNIX))'",
+    ]
+
+
+def test_package_that_moves_from_rosbuild_to_catkin_keeps_its_programs(repository, compare):
+    repository.commit({**MANIFEST, **OTHERS, "a/CMakeLists.txt": ROSBUILD})
+    repository.write({"a/CMakeLists.txt": CATKIN})
+    found = breaking(compare(repository))
+    assert [sentence for sentence in found if "executables" in sentence or "interfaces" in sentence] == []
+
+
+def test_target_of_renamed_sources_is_renamed(repository, compare):
+    repository.commit({**MANIFEST, "a/CMakeLists.txt": AMENT, "a/src/driver.cpp": "int main() { return 0; }\n"})
+    text = AMENT.replace("driver", "arm_driver")
+    repository.commit(
+        {"a/CMakeLists.txt": text, "a/src/driver.cpp": None, "a/src/arm_driver.cpp": "int main() { return 0; }\n"}
+    )
+    assert breaking(compare(repository, "HEAD~1..HEAD")) == ["installed executables: 'driver' renamed to 'arm_driver'"]
+
+
+def test_subdirectory_of_a_package_of_rosbuild_is_compared_with_it(repository, compare):
+    text = ROSBUILD.replace("rosbuild_add_library(core src/core.cpp)", "rosbuild_add_subdirectory(src)")
+    lib = "rosbuild_add_library(core core.cpp)\n"
+    manifest = "<package><license>BSD</license></package>"
+    repository.commit({"a/manifest.xml": manifest, "a/CMakeLists.txt": text, "a/src/CMakeLists.txt": lib})
+    repository.write({"a/src/CMakeLists.txt": lib.replace("(core", "(arm_core").replace("core.cpp", "arm.cpp")})
+    assert breaking(compare(repository)) == ["built libraries removed: 'core'"]
+
+
+def test_contents_of_a_removed_build_file_have_what_was_built(repository, compare):
+    repository.commit({"a/manifest.xml": "<package/>", "a/CMakeLists.txt": ROSBUILD})
+    repository.commit({"a/CMakeLists.txt": None})
+    (found,) = compare(repository, "HEAD~1..HEAD").subjects
+    assert sentences(found) == ["build file removed: built executables 'driver'; built libraries 'core'"]

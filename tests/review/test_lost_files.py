@@ -1,0 +1,87 @@
+"""The lines of a review about installed files, headers and modules that are gone."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+CMAKE = """cmake_minimum_required(VERSION 3.8)
+project(arm)
+install(DIRECTORY include/ DESTINATION include)
+install(DIRECTORY scripts/ DESTINATION lib/${PROJECT_NAME} USE_SOURCE_PERMISSIONS)
+ament_python_install_package(${PROJECT_NAME})
+"""
+SETUP = """from setuptools import setup, find_packages
+setup(name="arm", packages=find_packages(exclude=["test"]))
+"""
+CATKIN_SETUP = """from distutils.core import setup
+from catkin_pkg.python_setup import generate_distutils_setup
+setup(**generate_distutils_setup(packages=["arm"], package_dir={"": "src"}))
+"""
+HEADER = "namespace arm {\nclass Driver {\n};\n}\n"
+FILES = {
+    "a/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+    "a/CMakeLists.txt": CMAKE,
+    "a/include/arm/driver.hpp": HEADER,
+    "a/include/arm/motor.hpp": "#define MOTORS 6\n",
+    "a/scripts/home.sh": "#!/bin/sh\necho home\n",
+    "a/scripts/rest.sh": "#!/bin/sh\necho rest\n",
+    "a/arm/__init__.py": "",
+    "a/arm/tools.py": "RATE = 10\n",
+    "a/arm/driver.py": "def main():\n    print('driver')\n",
+    "a/src/motor.cpp": "int motors = 6;\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected", "is_breaking"),
+    [
+        ({"a/include/arm/motor.hpp": None}, ["not installed any more: 'include/arm/motor.hpp'"], True),
+        ({"a/include/arm/motor.hpp": None, "a/include/arm/motors.hpp": "#define MOTORS 6\n"},
+         ["not installed any more: 'include/arm/motor.hpp'"], True),
+        ({"a/scripts/home.sh": None}, ["not installed any more: 'lib/arm/home.sh'"], True),
+        ({"a/arm/tools.py": None}, ["installed Python modules removed: 'arm.tools'"], True),
+        ({"a/arm/tools.py": None, "a/arm/helpers.py": "RATE = 10\n"},
+         ["Python module 'arm.tools' renamed to 'arm.helpers'"], True),
+        ({"a/arm/driver.py": None}, ["installed Python modules removed: 'arm.driver'"], False),
+        ({"a/src/motor.cpp": None}, [], False),
+    ],
+)  # fmt: skip
+def test_files_that_are_not_installed_any_more_are_reported(repository, compare, changes, expected, is_breaking):
+    repository.commit(FILES)
+    repository.commit(changes)
+    result = compare(repository, "HEAD~1..HEAD")
+    assert [sentence for found in result.subjects for sentence in sentences(found)] == expected
+    assert bool(breaking(result)) is is_breaking
+
+
+@pytest.mark.parametrize(("setup", "folder"), [(SETUP, "arm"), (CATKIN_SETUP, "src/arm")])
+def test_modules_that_setup_installs_are_compared(repository, compare, setup, folder):
+    modules = {f"a/{folder}/__init__.py": "", f"a/{folder}/tools.py": "RATE = 10\n"}
+    repository.commit({"a/package.xml": FILES["a/package.xml"], "a/setup.py": setup, **modules})
+    repository.commit({f"a/{folder}/tools.py": None})
+    found = subject(compare(repository, "HEAD~1..HEAD"), "a/setup.py")
+    assert sentences(found) == ["installed Python modules removed: 'arm.tools'"]
+
+
+def test_class_of_a_header_that_is_not_installed_is_no_interface(repository, compare):
+    repository.commit(
+        {**FILES, "a/CMakeLists.txt": CMAKE.replace("install(DIRECTORY include/ DESTINATION include)", "")}
+    )
+    repository.write({"a/include/arm/driver.hpp": HEADER.replace("Driver", "Motor")})
+    assert breaking(compare(repository)) == []
+
+
+def test_renamed_class_of_a_header_in_a_folder_that_catkin_exports_is_breaking(repository, compare):
+    cmake = "project(arm)\nfind_package(catkin REQUIRED)\ncatkin_package(INCLUDE_DIRS include)\n"
+    repository.commit({**FILES, "a/CMakeLists.txt": cmake})
+    repository.write({"a/include/arm/driver.hpp": HEADER.replace("Driver", "ArmDriver")})
+    assert breaking(compare(repository)) == ["class 'Driver' renamed to 'ArmDriver'"]
+
+
+def test_removed_class_of_an_installed_header_is_breaking(repository, compare):
+    repository.commit(FILES)
+    repository.write({"a/include/arm/driver.hpp": HEADER.replace("class Driver {\n};\n", "")})
+    assert breaking(compare(repository)) == ["classes removed: 'Driver'"]
