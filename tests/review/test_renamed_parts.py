@@ -69,6 +69,45 @@ def test_parts_outside_their_group_are_moved(changes_of):
     assert found.changes[0].other_names == ("bluetooth.joy -> joy",)
 
 
+POSES = """poses:
+  ros__parameters:
+    group:
+    home:
+      joints: [lift, pan, tilt]
+      points: [{positions: [1, 2, 3], time: 1.0}]
+      meta: {name: Home, usage: demo, text: go home}
+    tour:
+      joints: [pan, tilt]
+      points: [{positions: [1, 2], time: 1.0}, {positions: [3, 4], time: 5.0}, {positions: [5, 6], time: 6.0}]
+      meta: {name: Tour, usage: demo, text: look around}
+"""
+GROUPED_POSES = """poses:
+  ros__parameters:
+    group:
+      home:
+        joints: [lift, pan, tilt]
+        positions: [1, 2, 3]
+        meta: {name: Home, usage: demo, text: go home}
+      tour:
+        joints: [pan, tilt]
+        positions: [1, 2, 3, 4, 5, 6]
+        meta: {name: Tour, usage: demo, text: look around}
+"""
+
+
+def test_parts_that_move_together_are_paired_with_their_own_new_places(changes_of):
+    found, _ = changes_of(POSES, GROUPED_POSES)
+    part = "poses.ros__parameters"
+    assert sentences(found)[0] == f"{part}.home moved to {part}.group.home"
+    assert found.changes[0].other_names == (f"{part}.tour -> {part}.group.tour",)
+    assert not [text for text in sentences(found) if ".meta" in text or f"{part}.group removed" in text]
+
+
+def test_empty_key_that_gets_or_loses_children_is_neither_removed_nor_added(changes_of):
+    found, _ = changes_of("limits:\nrate: 1\n", "limits: {speed: 2}\nrate: 1\n")
+    assert sentences(found) == ["limits.speed 2 added"]
+
+
 NODE = "{ros__parameters: {rate: 1, size: 2, base: x}}"
 
 

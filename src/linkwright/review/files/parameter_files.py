@@ -153,7 +153,7 @@ def _lone_parts(
     other_parts = {part for name in others for part in part_names(name)}
     parts: dict[str, dict[str, YamlValue]] = {}
     for name, value in values.items():
-        if name not in others:
+        if name not in others and (value.text or name not in other_parts):  # an empty key can get children
             part = next((part for part in part_names(name) if part not in other_parts), name)
             parts.setdefault(part, {})[name] = value
     for part, values_below in parts.items():
