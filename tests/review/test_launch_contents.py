@@ -183,3 +183,15 @@ def test_name_that_a_known_program_has_anyway_is_not_lost(changes_of, name, is_b
     node = '<node pkg="robot_localization" exec="ekf_node"{}/>'
     _, found_breaking = changes_of(node.format(f' name="{name}"'), node.format(""))
     assert bool(found_breaking) is is_breaking
+
+
+def test_deleted_parameters_of_ros_1_are_called_deleted(repository, compare):
+    path, node = "arm/launch/arm.launch", '<launch>{}<node pkg="arm" type="d" name="d">{}</node></launch>'
+    old = node.format("", '<rosparam command="delete" param="old"/>')
+    new = node.format('<rosparam command="delete" param="cal"/>', '<rosparam command="delete" param="a"/>')
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: old})
+    repository.write({path: new})
+    assert sentences(subject(compare(repository), path)) == [
+        "node 'arm/d': deleted parameters [old] -> [a]",
+        "deletion of the parameters 'cal' added",
+    ]
