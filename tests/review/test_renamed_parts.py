@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+import textwrap
+
 import pytest
 
 from tests.repositories import PACKAGE_XML
@@ -112,6 +115,14 @@ def test_removed_group_of_parameters_of_a_node_is_breaking_and_a_single_value_is
     text = "poses:\n  ros__parameters:\n    rate: 5\n    open: {x: 1}\n    close: {x: 0, y: 1}\n"
     _, found_breaking = changes_of(text, "poses:\n  ros__parameters:\n    close: {x: 0}\n")
     assert found_breaking == ["poses.ros__parameters.open.x 1 removed"]
+
+
+def test_values_of_the_same_name_that_many_parts_lose_are_one_line(changes_of):
+    text = "".join(f"joint{number}: {{gain: {number}.5, limit: 1}}\n" for number in range(5))
+    text = f"joints:\n{textwrap.indent(text, '  ')}"
+    found, _ = changes_of(text, re.sub(r"gain: \S+ ", "", text))
+    assert sentences(found) == ["joints.joint0.gain removed"]
+    assert found.changes[0].other_names == tuple(f"joints.joint{number}.gain" for number in range(1, 5))
 
 
 ROS_1_CONTROLLERS = """torso_controller:

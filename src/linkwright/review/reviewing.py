@@ -41,6 +41,7 @@ from linkwright.review.kinds import (
 )
 from linkwright.review.launches.formats import is_launch_yaml, with_other_formats
 from linkwright.review.launches.helpers import makes_actions
+from linkwright.review.lost_controllers import lost_controllers
 from linkwright.review.lost_files import lost_files
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
 from linkwright.review.other_files import file_states
@@ -165,6 +166,7 @@ class _Reviewer:
         result += rosbuild_subjects(self._versions, self._changed_files)
         paths = {subject.path for subject in result}
         result += (found for found in source_subjects(self._versions, self._changed_files) if found.path not in paths)
+        result = _with_changes(result, lost_controllers(self._versions, self._changed_files))
         return sorted(result, key=lambda subject: subject.path)
 
     def _removed_submodules(self) -> Iterator[Subject]:
@@ -393,10 +395,11 @@ def _is_only_moved(subject: Subject) -> bool:
 
 
 def _with_changes(subjects: Sequence[Subject], changes: Iterator[tuple[str, Change]]) -> list[Subject]:
-    """Return subjects with more changes of build files, which need not have changed themselves."""
+    """Return subjects with more changes of files that need not have changed themselves."""
     result = {subject.path: subject for subject in subjects}
     for path, change in changes:
-        subject = result.get(path, Subject(SubjectKind.BUILD, path, path, path))
+        rule = rule_of(path)
+        subject = result.get(path, Subject(SubjectKind.SOURCE if rule is None else rule.kind, path, path, path))
         result[path] = replace(subject, changes=[*subject.changes, change])
     return list(result.values())
 

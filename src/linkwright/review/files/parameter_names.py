@@ -180,6 +180,12 @@ def controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
             yield match["controller"]
 
 
+def all_controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
+    """Yield the names of the controllers of ROS 2 and ROS 1 that a file gives a type."""
+    yield from controllers(values)
+    yield from map(_slashed, _ros1_controllers({name: value.text for name, value in values.items()}))
+
+
 def _items(text: str) -> set[str]:
     """Return the items of a value that is a list, or the value itself, without numbers and truth values."""
     return {item for item in list_items(text) if item not in ("", EMPTY) and not _NUMBER_OR_TRUTH.fullmatch(item)}
