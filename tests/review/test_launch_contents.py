@@ -195,3 +195,21 @@ def test_deleted_parameters_of_ros_1_are_called_deleted(repository, compare):
         "node 'arm/d': deleted parameters [old] -> [a]",
         "deletion of the parameters 'cal' added",
     ]
+
+
+def test_added_launch_file_names_environment_variables_that_must_be_set(repository, compare):
+    repository.commit({"arm/package.xml": PACKAGE_XML})
+    text = """import os
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+
+MODEL, WORLD = os.environ["ARM_MODEL"], os.environ.get("ARM_WORLD", "")
+
+
+def generate_launch_description():
+    return LaunchDescription([DeclareLaunchArgument("gui", default_value="false")])
+"""
+    repository.write({"arm/launch/arm.launch.py": text})
+    assert sentences(subject(compare(repository), "arm/launch/arm.launch.py")) == [
+        "launch file added: use of environment variable 'ARM_MODEL' (required), argument 'gui' (default false)"
+    ]

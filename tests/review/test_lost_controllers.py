@@ -13,7 +13,8 @@ MANAGER = """controller_manager:
     hand_controller: {type: a/Hand}
 """
 WITHOUT_HAND = MANAGER.replace("    hand_controller: {type: a/Hand}\n", "")
-START = """from launch import LaunchDescription
+START = """# The start of the arm.
+from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 
 

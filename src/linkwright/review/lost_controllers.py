@@ -19,7 +19,7 @@ from linkwright.review.versions import Version, Versions
 _SETTINGS = (".yaml", ".yml")
 _READERS = (".py", ".sh", ".launch", ".launch.xml")
 _MAX_BYTES = 1 << 20
-_COMMENT = re.compile(r"^\s*#.*|<!--.*?-->", re.MULTILINE | re.DOTALL)
+_COMMENT = re.compile(r"^[ \t]*#[^\n]*|<!--.*?-->", re.MULTILINE | re.DOTALL)
 _CONTROLLER = re.compile(r"controller|broadcaster|spawner")
 """A word in the line or the name that tells that the name is that of a controller."""
 
