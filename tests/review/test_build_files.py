@@ -294,7 +294,7 @@ EXPORTS = PACKAGE_XML.replace(
         ("<exec_depend>", '<exec_depend condition="$ROS_VERSION == 2">',
          ["exec_depend xacro: always -> if $ROS_VERSION == 2"], False),
         ("ann@example.org", "ann@example.com", ["email of maintainer: ann@example.org -> ann@example.com"], False),
-        ("An arm.", "Two arms.", ["description changed"], False),
+        ("An arm.", "Two arms.", ["description: An arm. -> Two arms."], False),
         ("1.0.0", "1.0.1", ["version: 1.0.0 -> 1.0.1"], False),
     ],
 )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import breaking, sentences
+from tests.review.conftest import breaking, sentences, subject
 
 MANIFEST = {"a/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
 
@@ -113,7 +113,8 @@ def test_facts_of_cmake_files_are_compared(repository, compare, text, old, new, 
 def test_new_executable_under_a_condition_is_shown_with_it(repository, compare):
     repository.commit({**MANIFEST, "a/CMakeLists.txt": AMENT})
     install = "install(TARGETS tuner DESTINATION lib/arm)"
-    more = f"if(WITH_TUNER AND UNIX)\n  {install}\nelse()\n  message(FATAL_ERROR no)\nendif()\n"
+    target = "add_executable(tuner src/tuner.cpp)"
+    more = f"{target}\nif(WITH_TUNER AND UNIX)\n  {install}\nelse()\n  message(FATAL_ERROR no)\nendif()\n"
     repository.write({"a/CMakeLists.txt": AMENT.replace("ament_package", more + "ament_package")})
     (found,) = compare(repository).subjects
     assert sentences(found) == [
@@ -152,3 +153,22 @@ def test_contents_of_a_removed_build_file_have_what_was_built(repository, compar
     repository.commit({"a/CMakeLists.txt": None})
     (found,) = compare(repository, "HEAD~1..HEAD").subjects
     assert sentences(found) == ["build file removed: built executables 'driver'; built libraries 'core'"]
+
+
+def test_installed_target_that_nothing_built_is_not_removed(repository, compare):
+    text = CATKIN_NODES.format("servre")
+    repository.commit({**MANIFEST, "a/CMakeLists.txt": text})
+    repository.write({"a/CMakeLists.txt": CATKIN_NODES.format("server")})
+    result = compare(repository)
+    assert breaking(result) == []
+    assert sentences(subject(result, "a/CMakeLists.txt")) == ["installed executables added: 'server'"]
+
+
+CATKIN_NODES = """cmake_minimum_required(VERSION 3.0)
+project(arm)
+find_package(catkin REQUIRED COMPONENTS roscpp)
+catkin_package()
+add_executable(server src/server.cpp)
+target_link_libraries(server ${{catkin_LIBRARIES}})
+install(TARGETS {} RUNTIME DESTINATION ${{CATKIN_PACKAGE_BIN_DESTINATION}})
+"""

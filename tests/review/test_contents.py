@@ -74,6 +74,19 @@ def test_files_of_a_renamed_folder_are_one_change(repository, compare):
     assert sentences(subject(result, "arm/settings/robots/left.yaml")) == ["left.a 1 -> 2"]
 
 
+def test_files_that_leave_a_folder_with_other_files_are_moved(repository, compare):
+    sides = ("left", "right", "rear")
+    files = {f"{name}.yaml": f"{name}:\n  a: 1\n  b: {name}\n  c: 2\n  d: 3\n  e: 4\n" for name in sides}
+    old = {f"arm/config/{name}": text for name, text in files.items()}
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/config/other.yaml": "a: 1\n", **old})
+    moved = {f"arm/config/sides/{name}": text for name, text in files.items()}
+    repository.write({**dict.fromkeys(old), **moved})
+    repository.git("add", "-A")
+    assert breaking(compare(repository)) == [
+        "3 compared files moved from arm/config/: left.yaml, rear.yaml, right.yaml"
+    ]
+
+
 TEMPLATE = """<?xml version="1.0"?>
 {# a model #}
 <sdf version="1.6">

@@ -183,3 +183,33 @@ def test_name_that_a_known_program_has_anyway_is_not_lost(changes_of, name, is_b
     node = '<node pkg="robot_localization" exec="ekf_node"{}/>'
     _, found_breaking = changes_of(node.format(f' name="{name}"'), node.format(""))
     assert bool(found_breaking) is is_breaking
+
+
+def test_deleted_parameters_of_ros_1_are_called_deleted(repository, compare):
+    path, node = "arm/launch/arm.launch", '<launch>{}<node pkg="arm" type="d" name="d">{}</node></launch>'
+    old = node.format("", '<rosparam command="delete" param="old"/>')
+    new = node.format('<rosparam command="delete" param="cal"/>', '<rosparam command="delete" param="a"/>')
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: old})
+    repository.write({path: new})
+    assert sentences(subject(compare(repository), path)) == [
+        "node 'arm/d': deleted parameters [old] -> [a]",
+        "deletion of the parameters 'cal' added",
+    ]
+
+
+def test_added_launch_file_names_environment_variables_that_must_be_set(repository, compare):
+    repository.commit({"arm/package.xml": PACKAGE_XML})
+    text = """import os
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+
+MODEL, WORLD = os.environ["ARM_MODEL"], os.environ.get("ARM_WORLD", "")
+
+
+def generate_launch_description():
+    return LaunchDescription([DeclareLaunchArgument("gui", default_value="false")])
+"""
+    repository.write({"arm/launch/arm.launch.py": text})
+    assert sentences(subject(compare(repository), "arm/launch/arm.launch.py")) == [
+        "launch file added: use of environment variable 'ARM_MODEL' (required), argument 'gui' (default false)"
+    ]

@@ -142,3 +142,11 @@ def test_default_name_of_a_node_that_is_written_out_is_not_a_change(repository, 
     text = LAUNCH.replace('plugin="arm::Camera"', f'plugin="arm::Camera", name="{name}"')
     repository.write({"arm/launch/arm.launch.py": text})
     assert len(compare(repository).subjects) == count
+
+
+def test_topics_of_a_new_node_are_listed_although_another_node_has_them(repository, compare):
+    repository.commit({"a/package.xml": PACKAGE_XML, "a/scripts/driver.py": PYTHON})
+    repository.write({"a/scripts/second.py": PYTHON.replace('"driver"', '"second"')})
+    found = sentences(subject(compare(repository), "a/scripts/second.py"))
+    assert "publishers added: 'state' (String)" in found
+    assert "subscriptions added: 'enable' (Bool)" in found

@@ -494,15 +494,25 @@ BRIDGE = "- {ros_topic_name: /scan, gz_topic_name: /lidar, ros_type_name: a/msg/
 CUBE = "v 0 0 0\nv 2 0 0\nv 0 3 0\nf 1 2 3\n"
 
 
+BOX = "<geometry><box><size>1 1 1</size></box></geometry>"
+MODEL = f"""<sdf version="1.7"><model name="cube"><link name="body">
+  <inertial><mass>3</mass></inertial>
+  <visual name="a">{BOX}</visual><collision name="b">{BOX}</collision><collision name="c">{BOX}</collision>
+</link></model></sdf>
+"""
+
+
 @pytest.mark.parametrize(
     ("name", "text", "expected"),
     [
-        ("worlds/yard.sdf", YARD, "world added: models box, sun, gate, plugin 'p'"),
-        ("models/car/model.sdf", CAR, "world added: links body, wheel, joints axle"),
+        ("worlds/yard.sdf", YARD, "world added: models box, sun, gate, plugin 'p' (filename=gz-sim-physics-system)"),
+        ("models/car/model.sdf", CAR, "model added: links body, wheel, joints axle"),
         ("msg/Count.msg", "uint8 MAX=3\nint32 count\nstring[] names\n",
          "interface added: int32 count, string[] names, MAX = 3"),
         ("msg/Mode.msg", "uint8 SLOW=0\nuint8 FAST=1\n", "interface added: SLOW = 0, FAST = 1"),
         ("srv/Ask.srv", "int32 a\n---\nbool b\n", "interface added: int32 request a, bool response b"),
+        ("models/cube/model.sdf", MODEL,
+         "model added: links body, visual box size 1 1 1, collision box size 1 1 1 (2 times), mass 3 kg"),
         ("config/nav.yaml", "amcl:\n  ros__parameters: {alpha1: 0.1, alpha2: 0.2}\n",
          "parameter file added: parameters of amcl (alpha1 0.1, alpha2 0.2)"),
         ("config/settings.yaml", "speed: 1\nnames: [a, b]\n", "parameter file added: speed 1, names [a, b]"),

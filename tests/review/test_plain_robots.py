@@ -86,6 +86,14 @@ def test_added_link_is_one_line_with_its_place(repository):
     )
 
 
+def test_added_link_has_its_rotation_and_the_number_of_its_equal_shapes(repository):
+    visual = '<visual><geometry><sphere radius="0.1"/></geometry></visual>'
+    link = LINK.format("tip").replace("<visual>", f"{visual}{visual}<visual>", 1)
+    link = link.replace('xyz="0 0 0.5"', 'xyz="0 0 0.5" rpy="-1.5708 0 0.5"')
+    (text,) = sentences(subject(reviewed(repository, ("</robot>", f"{link}</robot>")), PATH))
+    assert "xyz 0 0 0.5 m, rpy -90 0 28.65°, visual sphere 0.1 (2 times), visual box 0.1 0.2 0.3," in text
+
+
 def test_many_added_links_are_named_only(repository):
     links = "".join(map(LINK.format, ("one", "two", "three", "four", "five")))
     (links_change, joints_change) = subject(reviewed(repository, ("</robot>", f"{links}</robot>")), PATH).changes

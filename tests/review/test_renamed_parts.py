@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+import textwrap
+
 import pytest
 
 from tests.repositories import PACKAGE_XML
@@ -67,6 +70,90 @@ def test_parts_outside_their_group_are_moved(changes_of):
     found, _ = changes_of(TELEOP, "teleop: {axis: 1, scale: 0.5, turbo: 2}\njoy: {deadzone: 0.1}\n")
     assert sentences(found) == ["bluetooth.teleop moved to teleop", "teleop.scale 0.4 -> 0.5"]
     assert found.changes[0].other_names == ("bluetooth.joy -> joy",)
+
+
+POSES = """poses:
+  ros__parameters:
+    group:
+    home:
+      joints: [lift, pan, tilt]
+      points: [{positions: [1, 2, 3], time: 1.0}]
+      meta: {name: Home, usage: demo, text: go home}
+    tour:
+      joints: [pan, tilt]
+      points: [{positions: [1, 2], time: 1.0}, {positions: [3, 4], time: 5.0}, {positions: [5, 6], time: 6.0}]
+      meta: {name: Tour, usage: demo, text: look around}
+"""
+GROUPED_POSES = """poses:
+  ros__parameters:
+    group:
+      home:
+        joints: [lift, pan, tilt]
+        positions: [1, 2, 3]
+        meta: {name: Home, usage: demo, text: go home}
+      tour:
+        joints: [pan, tilt]
+        positions: [1, 2, 3, 4, 5, 6]
+        meta: {name: Tour, usage: demo, text: look around}
+"""
+
+
+def test_parts_that_move_together_are_paired_with_their_own_new_places(changes_of):
+    found, found_breaking = changes_of(POSES, GROUPED_POSES)
+    part = "poses.ros__parameters"
+    assert sentences(found)[0] == f"{part}.home moved to {part}.group.home"
+    assert found.changes[0].other_names == (f"{part}.tour -> {part}.group.tour",)
+    assert not [text for text in sentences(found) if ".meta" in text or f"{part}.group removed" in text]
+    assert found_breaking[0] == sentences(found)[0]
+    assert [text.split(" removed: ")[0] for text in found_breaking[1:]] == [
+        f"{part}.group.home.points",
+        f"{part}.group.tour.points",
+    ]
+
+
+def test_removed_group_of_parameters_of_a_node_is_breaking_and_a_single_value_is_not(changes_of):
+    text = "poses:\n  ros__parameters:\n    rate: 5\n    open: {x: 1}\n    close: {x: 0, y: 1}\n"
+    _, found_breaking = changes_of(text, "poses:\n  ros__parameters:\n    close: {x: 0}\n")
+    assert found_breaking == ["poses.ros__parameters.open.x 1 removed"]
+
+
+def test_values_of_the_same_name_that_many_parts_lose_are_one_line(changes_of):
+    text = "".join(f"joint{number}: {{gain: {number}.5, limit: 1}}\n" for number in range(5))
+    text = f"joints:\n{textwrap.indent(text, '  ')}"
+    found, _ = changes_of(text, re.sub(r"gain: \S+ ", "", text))
+    assert sentences(found) == ["joints.joint0.gain removed"]
+    assert found.changes[0].other_names == tuple(f"joints.joint{number}.gain" for number in range(1, 5))
+
+
+ROS_1_CONTROLLERS = """torso_controller:
+  trajectory: {type: robot_controllers/Trajectory, joints: [lift]}
+  balance: {type: robot_controllers/Balance, root: base, tip: hand, autostart: true}
+arm_controller:
+  trajectory: {type: robot_controllers/Trajectory, joints: [arm]}
+driver:
+  default_controllers: [torso_controller/trajectory, torso_controller/balance]
+"""
+
+
+def test_controller_of_ros_1_with_another_name_is_breaking(changes_of):
+    balance = "  balance: {type: robot_controllers/Balance, root: base, tip: hand, autostart: true}\n"
+    text = ROS_1_CONTROLLERS.replace(balance, "").replace("arm_controller:\n", f"arm_controller:\n{balance}")
+    text = text.replace("[torso_controller/trajectory, torso_controller/balance]", "[torso_controller/trajectory]")
+    _, found_breaking = changes_of(ROS_1_CONTROLLERS, text)
+    assert found_breaking[0] == "torso_controller.balance moved to arm_controller.balance"
+    assert found_breaking[1].startswith("driver.default_controllers")
+
+
+def test_removed_controller_of_ros_1_is_breaking(changes_of):
+    part = "  balance: {type: robot_controllers/Balance, root: base, tip: hand, autostart: true}\n"
+    found, found_breaking = changes_of(ROS_1_CONTROLLERS, ROS_1_CONTROLLERS.replace(part, ""))
+    assert found_breaking == sentences(found)
+    assert found_breaking[0].startswith("torso_controller.balance removed: type robot_controllers/Balance")
+
+
+def test_empty_key_that_gets_or_loses_children_is_neither_removed_nor_added(changes_of):
+    found, _ = changes_of("limits:\nrate: 1\n", "limits: {speed: 2}\nrate: 1\n")
+    assert sentences(found) == ["limits.speed 2 added"]
 
 
 NODE = "{ros__parameters: {rate: 1, size: 2, base: x}}"

@@ -13,7 +13,7 @@ from linkwright.cli import main
 from linkwright.diagnostics import LinkwrightError
 from linkwright.review import open_versions
 from tests.repositories import ARM, MACRO, Repository
-from tests.review.conftest import sentences, subject
+from tests.review.conftest import breaking, sentences, subject
 
 PATH = "arm_description/urdf/arm.urdf.xacro"
 
@@ -184,7 +184,12 @@ def test_submodule_change_is_a_note(package, compare, tmp_path):
     package.git("submodule", "--quiet", "add", other.root.as_uri(), "vendor")
     package.commit({})
     result = compare(package, "HEAD~1..HEAD")
-    assert [str(note) for note in result.notes] == ["submodule 'vendor' changed; its files are not compared"]
+    assert [str(note) for note in result.notes] == ["submodule 'vendor' added; its files are not compared"]
+    package.git("rm", "--quiet", "vendor")
+    package.commit({})
+    result = compare(package, "HEAD~1..HEAD")
+    assert breaking(result) == ["submodule removed"]
+    assert result.notes == []
 
 
 def test_missing_file_of_partial_clone_is_a_problem_of_that_file_only(package, compare, tmp_path):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import PurePosixPath
 
@@ -32,7 +32,7 @@ from linkwright.review.files.rviz_files import compare_rviz_files, rviz_contents
 from linkwright.review.files.semantics import compare_semantics, semantic_contents
 from linkwright.review.files.setup_files import SETUP_FILE, compare_setup_files, read_setup_facts
 from linkwright.review.files.templates import TEMPLATE_SUFFIXES
-from linkwright.review.files.worlds import compare_worlds, world_contents
+from linkwright.review.files.worlds import compare_worlds, is_model, world_contents
 from linkwright.review.launches.contents import launch_contents
 from linkwright.review.launches.files import compare_launch_files
 from linkwright.review.robots.descriptions import compare_descriptions
@@ -205,6 +205,20 @@ _RULES = (
         contents=mesh_contents,
     ),
 )
+
+
+_MODEL_SENTENCES = {"added": phrase("model added"), "removed": phrase("model removed")}
+
+
+def rule_of_contents(rule: KindRule, version: Version, path: str) -> KindRule:
+    """Return the rule for an added or removed file, with the sentences for a model if a file of SDF has no world.
+
+    Args:
+        rule: the rule for the name of the file.
+        version: the version that has the file.
+        path: the path relative to the root of the repository.
+    """
+    return replace(rule, **_MODEL_SENTENCES) if rule.kind is SubjectKind.WORLD and is_model(version, path) else rule
 
 
 LAUNCH_HELPER = KindRule(

@@ -8,6 +8,7 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import counted, joined_first, phrase
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
+from linkwright.review.versions import Versions
 
 _MIN_FILES = 3
 """The number of files of a folder from which they are one line."""
@@ -18,8 +19,13 @@ _Folders = tuple[str, str]
 """The old and the new path of a folder."""
 
 
-def with_renamed_folders(subjects: Sequence[Subject]) -> list[Subject]:
-    """Return subjects with one for several files that are renamed because a folder above them is another one."""
+def with_renamed_folders(versions: Versions, subjects: Sequence[Subject]) -> list[Subject]:
+    """Return subjects with one for several files that are renamed because a folder above them is another one.
+
+    Args:
+        versions: the versions.
+        subjects: all compared files.
+    """
     groups: dict[_Folders, list[Subject]] = {}
     for subject in subjects:
         folders = _folders(subject)
@@ -32,7 +38,7 @@ def with_renamed_folders(subjects: Sequence[Subject]) -> list[Subject]:
         for subject in group:
             others = [change for change in subject.changes if change.sentence.template != _RENAMED]
             result[next(i for i, each in enumerate(result) if each is subject)] = replace(subject, changes=others)
-        result.append(_folder(folders, group))
+        result.append(_folder(versions, folders, group))
     return sorted(result, key=lambda subject: subject.path)
 
 
@@ -50,7 +56,7 @@ def _folders(subject: Subject) -> _Folders | None:
     return "/".join(old[: len(old) - common]), "/".join(new[: len(new) - common])
 
 
-def _folder(folders: _Folders, group: Sequence[Subject]) -> Subject:
+def _folder(versions: Versions, folders: _Folders, group: Sequence[Subject]) -> Subject:
     old, new = (f"{folder or '.'}/" for folder in folders)
     is_breaking = any(
         change.effect is Effect.BREAKING
@@ -58,13 +64,23 @@ def _folder(folders: _Folders, group: Sequence[Subject]) -> Subject:
         for change in subject.changes
         if change.sentence.template == _RENAMED
     )
-    text = counted(
-        "folder renamed from {path} with {count} compared file: {names}",
-        "folder renamed from {path} with {count} compared files: {names}",
-        len(group),
-        path=old,
-        names=joined_first((subject.path.removeprefix(new) for subject in group), _MAX_NAMES),
-    )
+    names = joined_first((subject.path.removeprefix(new) for subject in group), _MAX_NAMES)
+    if any(path.is_file() for path in versions.new.file(folders[0]).rglob("*")):
+        text = counted(
+            "{count} compared file moved from {path}: {names}",
+            "{count} compared files moved from {path}: {names}",
+            len(group),
+            path=old,
+            names=names,
+        )
+    else:
+        text = counted(
+            "folder renamed from {path} with {count} compared file: {names}",
+            "folder renamed from {path} with {count} compared files: {names}",
+            len(group),
+            path=old,
+            names=names,
+        )
     reason = phrase("launch files, descriptions and users that name the files do not find them")
     effect = Effect.BREAKING if is_breaking else Effect.CHANGED
     change = Change(text, effect, reason if is_breaking else None)

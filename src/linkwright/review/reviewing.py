@@ -37,9 +37,11 @@ from linkwright.review.kinds import (
     KindRule,
     may_help_launch_files,
     rule_of,
+    rule_of_contents,
 )
 from linkwright.review.launches.formats import is_launch_yaml, with_other_formats
 from linkwright.review.launches.helpers import makes_actions
+from linkwright.review.lost_controllers import lost_controllers
 from linkwright.review.lost_files import lost_files
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
 from linkwright.review.other_files import file_states
@@ -133,7 +135,7 @@ class _Reviewer:
         reported = _reported_paths(all_subjects)
         all_subjects, notes = without_consequences(self._versions, all_subjects)
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
-        all_subjects = with_renamed_folders(all_subjects)
+        all_subjects = with_renamed_folders(self._versions, all_subjects)
         untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
         reported |= {path for rule, *paths in pairs if rule.kind not in _LISTED for path in paths if path}
         reported |= self._maps.keys()
@@ -160,10 +162,24 @@ class _Reviewer:
         for path, changes in lost.items():
             result.append(Subject(SubjectKind.LAUNCH_FILE, path, self._old_path(path), path, changes))
         result += plugin_subjects(self._versions, self._changed_files)
+        result += self._removed_submodules()
         result += rosbuild_subjects(self._versions, self._changed_files)
         paths = {subject.path for subject in result}
         result += (found for found in source_subjects(self._versions, self._changed_files) if found.path not in paths)
+        result = _with_changes(result, lost_controllers(self._versions, self._changed_files))
         return sorted(result, key=lambda subject: subject.path)
+
+    def _removed_submodules(self) -> Iterator[Subject]:
+        """Yield the submodules that the new version does not have, with their packages."""
+        reason = phrase("packages that depend on the packages in it do not build or start")
+        for file in self._changed_files:
+            if self._is_removed_submodule(file):
+                change = Change(phrase("submodule removed"), Effect.BREAKING, reason)
+                yield Subject(SubjectKind.MANIFEST, file.path, file.old_path, None, [change])
+
+    def _is_removed_submodule(self, file: ChangedFile) -> bool:
+        """Return whether the new version has neither a submodule nor files at its path."""
+        return file.is_submodule and file.new_path is None and not self._versions.new.file(file.path).is_dir()
 
     def _is_complete(self, path: str) -> bool:
         """Return whether a path is that of a complete description or world in one of the versions."""
@@ -270,7 +286,10 @@ class _Reviewer:
         """Yield what the review could not look at."""
         for file in self._changed_files:
             if file.is_submodule:
-                yield phrase("submodule '{path}' changed; its files are not compared", path=file.path)
+                if file.old_path is None:
+                    yield phrase("submodule '{path}' added; its files are not compared", path=file.path)
+                elif not self._is_removed_submodule(file):
+                    yield phrase("submodule '{path}' changed; its files are not compared", path=file.path)
         for version in (self._versions.old, self._versions.new):
             if version.commit is None:
                 continue
@@ -301,6 +320,7 @@ def _compare(
     kind, path = rule.kind, new_path or old_path or ""
     effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
     if old_path is None or new_path is None:
+        rule = rule_of_contents(rule, versions.old if new_path is None else versions.new, path)
         if new_path is None:
             text = _text_with_contents(rule, rule.removed, versions.old, path) if rule.shows_removed else rule.removed
             version, change = versions.old, Change(text, effect, rule.removal_reason)
@@ -375,10 +395,11 @@ def _is_only_moved(subject: Subject) -> bool:
 
 
 def _with_changes(subjects: Sequence[Subject], changes: Iterator[tuple[str, Change]]) -> list[Subject]:
-    """Return subjects with more changes of build files, which need not have changed themselves."""
+    """Return subjects with more changes of files that need not have changed themselves."""
     result = {subject.path: subject for subject in subjects}
     for path, change in changes:
-        subject = result.get(path, Subject(SubjectKind.BUILD, path, path, path))
+        rule = rule_of(path)
+        subject = result.get(path, Subject(SubjectKind.SOURCE if rule is None else rule.kind, path, path, path))
         result[path] = replace(subject, changes=[*subject.changes, change])
     return list(result.values())
 

@@ -27,6 +27,11 @@ from linkwright.review.files.cmake_targets import compare_targets, read_targets
 from linkwright.review.versions import Version
 
 CMAKE_FILE = "CMakeLists.txt"
+_COMMANDS_AFTER_TARGETS = (
+    *("install", "target_", "set_target_properties", "add_dependencies", "ament_target_dependencies"),
+    *("ament_export_", "catkin_package", "project"),
+)
+"""The beginnings of the names of commands that name targets and make none."""
 _EXECUTABLES = ("add_executable", "ament_auto_add_executable", "rosbuild_add_executable", "cuda_add_executable")
 _LIBRARIES = ("add_library", "ament_auto_add_library", "rosbuild_add_library", "cuda_add_library")
 _LIBRARY_TYPES = ("SHARED", "STATIC", "MODULE", "INTERFACE", "OBJECT")
@@ -164,6 +169,7 @@ def _conditions(source: SourceText) -> dict[int, str]:
 def _targets(commands: Sequence[Command]) -> Iterator[Fact]:
     """Yield the targets that are installed and exported, and the executables of components."""
     libraries = {command.words[0] for command in commands if command.name in _LIBRARIES and command.words}
+    built = _BuiltNames(commands)
     for command in commands:
         arguments = command.arguments
         if command.name.startswith("ament_auto_add_") and arguments:
@@ -172,6 +178,8 @@ def _targets(commands: Sequence[Command]) -> Iterator[Fact]:
         if command.name == "install" and command.words[:1] == ["TARGETS"]:
             targets = takewhile(lambda argument: argument.text not in _INSTALL_KEYWORDS, arguments[1:])
             for target in (target for target in targets if not is_open(target.text)):
+                if target.text not in built:
+                    continue
                 if target.text in libraries:
                     yield _fact(FactKind.LIBRARY, target)
                 else:
@@ -183,6 +191,18 @@ def _targets(commands: Sequence[Command]) -> Iterator[Fact]:
             yield from _after(command, "PLUGIN", FactKind.COMPONENT)
         if command.name == "rclcpp_components_register_nodes":
             yield from (_fact(FactKind.COMPONENT, argument) for argument in arguments[1:])
+
+
+class _BuiltNames:
+    """The names that can be those of built targets: CMake stops at an installed target that nothing builds."""
+
+    def __init__(self, commands: Sequence[Command]) -> None:
+        makers = [each for each in commands if not each.name.startswith(_COMMANDS_AFTER_TARGETS) and each.words]
+        self._names = {word for command in makers for word in command.words}
+        self._may_be_any = any(is_open(each.words[0]) for each in makers if each.name in _EXECUTABLES + _LIBRARIES)
+
+    def __contains__(self, name: str) -> bool:
+        return self._may_be_any or name in self._names
 
 
 def _built_targets(commands: Sequence[Command]) -> Iterator[Fact]:

@@ -18,7 +18,7 @@ from linkwright.review.files.parameter_names import (
     is_parameter,
     node_of_parameter,
     part_names,
-    renamed_node_reason,
+    renaming_reason,
 )
 from linkwright.review.files.renamed_parts import edit_of, parent_of, renamed_parts, with_new_parts
 from linkwright.review.files.value_changes import ValueChange, merged_values
@@ -153,7 +153,7 @@ def _lone_parts(
     other_parts = {part for name in others for part in part_names(name)}
     parts: dict[str, dict[str, YamlValue]] = {}
     for name, value in values.items():
-        if name not in others:
+        if name not in others and (value.text or name not in other_parts):  # an empty key can get children
             part = next((part for part in part_names(name) if part not in other_parts), name)
             parts.setdefault(part, {})[name] = value
     for part, values_below in parts.items():
@@ -175,7 +175,7 @@ def _with_new_names(
         text = phrase("{old} moved to {name}", old=old_part, name=new_part)
         if parent_of(old_part) == parent_of(new_part):
             text = phrase("{old} renamed to {name}", old=old_part, name=new_part)
-        reason = renamed_node_reason(old_part, new_part, old)
+        reason = renaming_reason(old_part, new_part, old)
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         change = Change(text, effect, reason, Location(pair.new_path, inside.line, inside.column))
         groups.setdefault((edit_of(old_part, new_part), str(reason)), []).append(change)

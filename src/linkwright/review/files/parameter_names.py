@@ -22,6 +22,10 @@ _JOINTS = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
 """The parameters with joints that a controller offers. Other nodes only use them."""
 _CONTROLLER_TYPE = re.compile(r"(?:[^.]+\.)?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
 _OWN_TYPE = re.compile(r"(?:.+\.)?(?P<controller>[^.]+)\.ros__parameters\.type")
+_CONTROLLER_LIST = re.compile(r"(^|[._])(\w*controllers|controller_names|controller_list)$")
+"""The parameters with the names of controllers that a program loads or commands."""
+_CLASS = re.compile(r"\w+/\w+")
+"""The class of a plugin as ROS 1 writes it."""
 _NODE = re.compile(r"(?P<node>.*)\.ros__parameters\.")
 _STAMPED = re.compile(r"stamped", re.IGNORECASE)
 """The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
@@ -50,6 +54,7 @@ class NameRules:
         self._new_nodes = {node for name in new if (node := node_of_parameter(name)) is not None}
         self._controllers = {*controllers(old), *controllers(new)}
         self._new_controllers = set(controllers(new))
+        self._new_parts = {part for name in new for part in part_names(name)}
         self._new_frames = {value.text for name, value in new.items() if offers_frame(name)}
 
     def change_reason(self, parameter: str, old_value: YamlValue, new_value: YamlValue) -> Phrase | None:
@@ -73,6 +78,8 @@ class NameRules:
             return name_reason(", ".join(sorted(gone)))
         if gone and _PLUGINS.search(parameter):
             return _plugin_reason(gone)
+        if gone and old_value.is_list and _CONTROLLER_LIST.search(parameter):
+            return _controller_reason(", ".join(sorted(gone)))
         return type_reason(old_value, new_value) if is_parameter(parameter) else None
 
     def removal_reason(self, parameter: str, old: str) -> Phrase | None:
@@ -84,14 +91,21 @@ class NameRules:
             return phrase("the message type of a topic changes between one with and one without a header")
         controller = _CONTROLLER_TYPE.fullmatch(parameter)
         if controller is not None and controller["controller"] not in self._new_controllers:
-            name = controller["controller"]
-            return phrase("programs that load or command the controller '{name}' do not find it", name=name)
+            return _controller_reason(controller["controller"])
         node = _NODE.match(parameter)
         if node is not None and not self._has_node(parameter):
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
         if _PLUGINS.search(parameter) and _items(old):
             return _plugin_reason(_items(old))
-        return None
+        if node is not None and controller is None and self._is_in_lost_group(parameter, node[0].rstrip(".")):
+            return phrase("the node '{name}' starts without these parameters", name=node["node"])
+        own = next(_ros1_controllers({parameter: old}), None)
+        return None if own is None else _controller_reason(_slashed(own))
+
+    def _is_in_lost_group(self, parameter: str, root: str) -> bool:
+        """Return whether the group of a parameter is gone. A single value falls back to the default of the node."""
+        group = part_names(parameter)[-2]
+        return root in self._new_parts and group not in self._new_parts
 
     def _is_controllers(self, parameter: str) -> bool:
         """Return whether a parameter belongs to a controller."""
@@ -137,6 +151,23 @@ def type_reason(old: YamlValue, new: YamlValue) -> Phrase | None:
     )
 
 
+def _controller_reason(name: str) -> Phrase:
+    return phrase("programs that load or command the controller '{name}' do not find it", name=name)
+
+
+def _ros1_controllers(values: Mapping[str, str]) -> Iterator[str]:
+    """Yield the paths of the controllers of ROS 1 among values: parts with a class, not inside those of a node."""
+    for name, text in values.items():
+        part, _, key = name.rpartition(".")
+        is_controller = "controller" in f"{part} {text}".lower() and "[" not in part
+        if key == "type" and part and is_controller and _CLASS.fullmatch(text) and not _NODE.match(name):
+            yield part
+
+
+def _slashed(part: str) -> str:
+    return part.replace(".", "/")
+
+
 def _plugin_reason(names: Collection[str]) -> Phrase:
     return phrase("programs that name the plugins {names} do not find them", names=quoted_names(sorted(names)))
 
@@ -149,12 +180,42 @@ def controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
             yield match["controller"]
 
 
+def all_controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
+    """Yield the names of the controllers of ROS 2 and ROS 1 that a file gives a type."""
+    yield from controllers(values)
+    yield from map(_slashed, _ros1_controllers({name: value.text for name, value in values.items()}))
+
+
 def _items(text: str) -> set[str]:
     """Return the items of a value that is a list, or the value itself, without numbers and truth values."""
     return {item for item in list_items(text) if item not in ("", EMPTY) and not _NUMBER_OR_TRUTH.fullmatch(item)}
 
 
-def renamed_node_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
+def renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
+    """Return why it is breaking to rename or move a part of the old file, or None if it is not.
+
+    Args:
+        part: the old path: a node, parameters of a node, or a controller of ROS 1.
+        new_part: the new path.
+        values: the old values by path.
+    """
+    names = [
+        name
+        for name in _ros1_controllers({name: value.text for name, value in values.items()})
+        if name == part or name.startswith(f"{part}.")
+    ]
+    names = [name for name in names if not _may_be(f"{new_part}{name.removeprefix(part)}", name)]
+    if names:
+        return _controller_reason(", ".join(map(_slashed, names)))
+    node, new_node = node_of_parameter(f"{part}."), node_of_parameter(f"{new_part}.")
+    if node is None or part_names(part)[:-1] == part_names(new_part)[:-1]:
+        return _renamed_node_reason(part, new_part, values)
+    if new_node is not None and matches_node(new_node, node):
+        return phrase("values that are set under the old names have no effect any more")
+    return phrase("the node '{name}' starts without these parameters", name=node)
+
+
+def _renamed_node_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
     """Return why it is breaking to rename or move a part of the old file, or None if it has no parameters of a node.
 
     It is not if the new name matches the old node, too, or if the old name matches any node.

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Collection, Hashable, Iterator, Mapping
+from itertools import product
 
 from linkwright.review.files.parameter_names import part_names
 from linkwright.review.files.yaml_values import YamlValue
@@ -98,24 +99,65 @@ def _moved(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tup
 
     A small part is moved if another one was beside it in both versions.
     """
+    moved = dict(_moved_together(old, new))
+    old = {name: facts for name, facts in old.items() if not _is_inside(name, moved)}
+    new = {name: facts for name, facts in new.items() if not _is_inside(name, moved.values())}
     if max(len(old), len(new)) > _MAX_PARTS:
+        yield from moved.items()
         return
-    moved: dict[str, str] = {}
-    parents: set[tuple[str, str]] = set()
+    parents = {(parent_of(old_name), parent_of(new_name)) for old_name, new_name in moved.items()}
     for is_first in (True, False):
         for old_name, first in old.items():
-            if any(old_name == name or old_name.startswith(f"{name}.") for name in moved):
+            if _is_inside(old_name, moved):
                 continue
             for new_name, second in new.items():
                 places = parent_of(old_name), parent_of(new_name)
-                if _last_name(new_name) != _last_name(old_name) or new_name in moved.values():
+                if _last_name(new_name) != _last_name(old_name) or _is_inside(new_name, moved.values()):
                     continue
                 is_like = first.total() >= _MIN_FACTS and _similarity(first, second) >= _MIN_SIMILARITY
                 if is_like if is_first else places in parents:
                     moved[old_name] = new_name
                     parents.add(places)
                     break
+    for name, new_name in moved.items():
+        outer = next((part for part in part_names(name)[:-1] if part in moved), None)
+        if outer is None or f"{moved[outer]}{name.removeprefix(outer)}" != new_name:
+            yield name, new_name
+
+
+def _moved_together(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:
+    """Yield the parts of which several keep their names and move from one part to another, such as all poses."""
+    groups: dict[tuple[str, str], list[tuple[str, str]]] = {}
+    names_in_new = _by_last_name(new)
+    for last_name, old_names in _by_last_name(old).items():
+        new_names = names_in_new.get(last_name, [])
+        if max(len(old_names), len(new_names)) > _MAX_PARTS:
+            continue
+        for old_name, new_name in product(old_names, new_names):
+            size = min(old[old_name].total(), new[new_name].total())
+            if size >= _MIN_FACTS and (old[old_name] & new[new_name]).total() >= _MIN_SIMILARITY * size:
+                groups.setdefault((parent_of(old_name), parent_of(new_name)), []).append((old_name, new_name))
+    moved: dict[str, str] = {}
+    for pairs in sorted(groups.values(), key=len, reverse=True):
+        if len(pairs) < _MIN_ALIKE:
+            break
+        for old_name, new_name in pairs:
+            if not _is_inside(old_name, moved) and not _is_inside(new_name, moved.values()):
+                moved[old_name] = new_name
     yield from moved.items()
+
+
+def _by_last_name(parts: Mapping[str, _Facts]) -> dict[str, list[str]]:
+    names: dict[str, list[str]] = {}
+    for name in parts:
+        if not _ITEM.search(name):
+            names.setdefault(_last_name(name), []).append(name)
+    return names
+
+
+def _is_inside(name: str, parts: Collection[str]) -> bool:
+    """Return whether a part is one of others, or inside one of them."""
+    return any(part in parts for part in part_names(name))
 
 
 def _last_name(part: str) -> str:
@@ -143,8 +185,8 @@ def _lone_parts(values: Mapping[str, YamlValue], others: Mapping[str, YamlValue]
     other_parts = {part for name in others for part in part_names(name)}
     parts: dict[str, _Facts] = {}
     for name, value in values.items():
-        part = next((part for part in part_names(name) if part not in other_parts), name)
-        if name not in others:
+        part = next((part for part in part_names(name) if part not in other_parts), None)
+        if part is not None:
             parts.setdefault(part, Counter()).update(_facts(name.removeprefix(part), value))
     return parts
 

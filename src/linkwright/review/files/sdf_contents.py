@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase
-from linkwright.review.element_values import own_content
+from linkwright.review.element_values import own_content, values_text
 from linkwright.review.plugins import contents_text, plugin_parts
 from linkwright.xmltree import Element
 
@@ -28,6 +29,29 @@ def names_in(element: Element) -> Iterator[Phrase]:
     if names["joint"]:
         yield phrase("joints {names}", names=joined_first(names["joint"], _MAX_NAMES))
     yield from plugin_parts(element, _MAX_VALUES_OF_PLUGIN)
+
+
+def shapes_and_mass(model: Element) -> Iterator[Phrase]:
+    """Yield the shapes of a model, and the mass of its links that have one."""
+    shapes: Counter[tuple[str, str]] = Counter()
+    for element in model.walk():
+        geometry = element.first("geometry") if element.tag in ("visual", "collision") else None
+        for shape in () if geometry is None else geometry.elements():
+            values = values_text(shape, _MAX_VALUES_OF_PLUGIN) or ""
+            shapes[element.tag, f"{shape.tag} {values}".strip()] += 1
+    texts = []
+    for (tag, shape), count in shapes.items():
+        text = phrase("visual {shape}", shape=shape) if tag == "visual" else phrase("collision {shape}", shape=shape)
+        texts.append(text if count == 1 else phrase("{part} ({count} times)", part=text, count=count))
+    if texts:
+        yield joined_first(texts, _MAX_NAMES)
+    masses = [element.text() for each in model.walk() if each.tag == "inertial" for element in each.elements("mass")]
+    try:
+        mass = sum(float(text) for text in masses)
+    except ValueError:
+        return  # a template
+    if masses:
+        yield phrase("mass {mass:.4g} kg", mass=mass)
 
 
 def _name(element: Element) -> str:

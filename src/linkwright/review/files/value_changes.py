@@ -18,6 +18,8 @@ _NAME = re.compile(r"[~/]?[A-Za-z_][\w./:-]*")
 """A value that is a name, such as that of a topic, a frame or a file."""
 _MAX_VALUES = 12
 """The number of values of a part that a line shows."""
+_MIN_ALIKE = 4
+"""The number of parts beside each other that gain or lose a value of the same name, from which they are one line."""
 _MAX_ITEM_CHANGES = 6
 """The number of changes of the items of a list up to which all are shown."""
 
@@ -66,6 +68,14 @@ class ValueChange:
         return leaf, self.kind, self.values, None if self.reason is None else str(self.reason)
 
     @property
+    def place(self) -> Hashable | None:
+        """A key that is equal for values of the same name that parts beside each other gain or lose; or None."""
+        outer, *rest = self.name.rsplit(".", 2)
+        if self.kind == "changed" or len(rest) < 2:
+            return None
+        return self.kind, outer, rest[1], None if self.reason is None else str(self.reason)
+
+    @property
     def _edit(self) -> Hashable | None:
         """The part of a changed name that is replaced and its replacement; None for other values."""
         if self.kind != "changed" or not all(map(_NAME.fullmatch, self.values)):
@@ -85,8 +95,15 @@ def merged_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
             lists.setdefault(item["list"], []).append(change)
         else:
             groups.setdefault(change.key, []).append(change)
+    alike: dict[Hashable, list[ValueChange]] = {}
     for group in groups.values():
-        yield _as_one(group)
+        alike.setdefault(group[0].place, []).extend(group)
+    for group in groups.values():
+        others = alike[group[0].place]
+        if group[0].place is None or len({change.key for change in others}) < _MIN_ALIKE:
+            yield _as_one(group)
+        elif group[0] is others[0]:
+            yield _without_values(others)
     for name, group in lists.items():
         yield from (
             [_as_one([change]) for change in group] if len(group) <= _MAX_ITEM_CHANGES else [_summary(name, group)]
@@ -101,6 +118,16 @@ def _as_one(group: Sequence[ValueChange]) -> Change:
     names = tuple(change.name if is_equal else str(change.sentence) for change in group[1:])
     locations = tuple(change.location for change in group[1:])
     return Change(first.sentence, effect, reason, first.location, (), names, locations)
+
+
+def _without_values(group: Sequence[ValueChange]) -> Change:
+    first = group[0]
+    text = phrase("{parameter} removed", parameter=first.name)
+    if first.kind == "added":
+        text = phrase("{parameter} added", parameter=first.name)
+    names, locations = tuple(change.name for change in group[1:]), tuple(change.location for change in group[1:])
+    effect = Effect.CHANGED if first.reason is None else Effect.BREAKING
+    return Change(text, effect, first.reason, first.location, (), names, locations)
 
 
 def _summary(name: str, group: Sequence[ValueChange]) -> Change:

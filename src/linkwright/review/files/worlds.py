@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.descriptions.comparison import Difference, ElementComparison
-from linkwright.diagnostics import Phrase, joined, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, joined, phrase
 from linkwright.review.breaking import plugin_name_reason
 from linkwright.review.changes import Change, Location
 from linkwright.review.drawings.scene_images import read_worlds, world_images, world_scenes
 from linkwright.review.element_values import own_content
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.merged_paths import MergedPaths, differing_parts, path_pattern
-from linkwright.review.files.sdf_contents import added_text, all_content, names_in
+from linkwright.review.files.sdf_contents import added_text, all_content, names_in, shapes_and_mass
 from linkwright.review.files.sdf_figures import model_figures
 from linkwright.review.files.sdf_numbers import InertialDifference, with_inertials, without_rounding
 from linkwright.review.files.templates import is_template, template_elements
@@ -85,8 +85,23 @@ def _may_be_visible(difference: Difference) -> bool:
 
 def world_contents(version: Version, path: str) -> Phrase | None:
     """Return the models of a world, or the links and joints of a model, and the plugins and sensors, or None."""
-    parts = [part for element in _elements(version.file(path)) for part in names_in(element)]
+    elements = _elements(version.file(path))
+    parts = [part for element in elements for part in names_in(element)]
+    if _is_model(elements):
+        parts += [part for element in elements for part in shapes_and_mass(element)]
     return joined(parts) if parts else None
+
+
+def is_model(version: Version, path: str) -> bool:
+    """Return whether a file in SDF has models and no world; not for a file that cannot be read."""
+    try:
+        return _is_model(_elements(version.file(path)))
+    except (LinkwrightError, OSError, ValueError, RecursionError):
+        return False
+
+
+def _is_model(elements: Sequence[Element]) -> bool:
+    return {"model"} == {element.tag for element in elements} & {"model", "world"}
 
 
 @dataclass(frozen=True)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.review.launches.outlines import SERVER_PARAMETER, Entry
+from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, Entry
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.titles import settings_text, title
 from linkwright.review.versions import Version
 
 _KINDS = (
-    "node", "process", "include", "parameters", "parameter", SERVER_PARAMETER, "remapping", "environment", "argument",
+    "node", "process", "include", "parameters", "parameter", SERVER_PARAMETER, "remapping", "environment", READING,
+    "argument",
 )  # fmt: skip
 _MAX_TITLES = 16
 _MAX_SETTINGS = 8
@@ -27,7 +28,8 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
         LinkwrightError: the file cannot be read; also as `UnreadableFileError`, `OSError` and `ValueError`.
     """
     entries = read_outline(version.file(path), version.root).entries
-    shown = sorted((entry for entry in entries if entry.kind in _KINDS), key=lambda entry: _KINDS.index(entry.kind))
+    entries = [entry for entry in entries if entry.kind in _KINDS and not (entry.kind == READING and entry.settings)]
+    shown = sorted(entries, key=lambda entry: _KINDS.index(entry.kind))
     titles = list(dict.fromkeys(map(_with_settings, shown)))
     return joined_first(titles, _MAX_TITLES) if titles else None
 
@@ -35,6 +37,8 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
 def _with_settings(entry: Entry) -> Phrase:
     """Return the title of an action with its settings, such as the default of an argument."""
     items = settings_text(entry, _MAX_SETTINGS)
+    if entry.kind == READING:
+        return phrase("{entry} (required)", entry=title(entry))
     if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
         if items is None:
             return phrase("{entry} (required)", entry=title(entry))

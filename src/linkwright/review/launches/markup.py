@@ -15,6 +15,7 @@ from linkwright.review.files.yaml_values import composed
 from linkwright.review.launches.environment import markup_readings
 from linkwright.review.launches.outlines import (
     CONDITION,
+    DELETION,
     ENVIRONMENT,
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
@@ -27,7 +28,12 @@ from linkwright.review.launches.outlines import (
     Scope,
     with_condition,
 )
-from linkwright.review.launches.ros1_parameters import file_settings, written_parameters
+from linkwright.review.launches.ros1_parameters import (
+    deleted_name,
+    deletes_parameters,
+    file_settings,
+    written_parameters,
+)
 from linkwright.xmltree import Element
 
 _NODE_TAGS = ("node", "lifecycle_node", "composable_node", "node_container")
@@ -227,6 +233,8 @@ def _entry(tag: LaunchTag) -> Entry | None:
         kind, name, settings = "remapping", attributes.get("from", ""), {"to": attributes.get("to", "")}
     elif tag.name in ("param", "set_parameter"):
         kind, settings = "parameter", {"value": _parameter_value(tag)}
+    elif tag.name == _ROSPARAM and deletes_parameters(attributes):
+        kind, name = DELETION, deleted_name(attributes)
     elif tag.name == _ROSPARAM:
         name = attributes.get("file") or attributes.get("param", "")
         kind, settings = "parameters", file_settings(attributes)
@@ -258,6 +266,7 @@ def _node_name(attributes: Mapping[str, str]) -> str:
 def _node_settings(tag: LaunchTag) -> dict[str, str]:
     settings = _others(tag.attributes)
     files: list[str] = []
+    deleted: list[str] = []
     for child in tag.children:
         attributes, condition = child.attributes, _condition(child)
         found: dict[str, str] = {}
@@ -268,6 +277,8 @@ def _node_settings(tag: LaunchTag) -> dict[str, str]:
             files.append(f"{file} ({', '.join(items)})" if items else file)
         elif child.name == "param":
             found = _parameters(child, "")
+        elif child.name == _ROSPARAM and deletes_parameters(attributes):
+            deleted.append(" ".join(filter(None, [deleted_name(attributes) or "~", condition and f"({condition})"])))
         elif child.name == _ROSPARAM:
             parameters = written_parameters(attributes, child.text)
             found = {f"{PARAMETER}{name}": value for name, value in parameters.items()}
@@ -280,6 +291,8 @@ def _node_settings(tag: LaunchTag) -> dict[str, str]:
             found = {f"extra argument {attributes.get('name', '')}": attributes.get("value", "")}
         settings |= {with_condition(name, condition): value for name, value in found.items()}
     settings |= _environment(tag)
+    if deleted:
+        settings["deleted parameters"] = f"[{', '.join(deleted)}]"
     return {**settings, "parameters": f"[{', '.join(files)}]"} if files else settings
 
 

@@ -15,6 +15,16 @@ WRITTEN_TEXT = "YAML text"
 """The name of parameters whose text is not YAML before substitution."""
 
 
+def deletes_parameters(attributes: Mapping[str, str]) -> bool:
+    """Return whether an element deletes parameters instead of setting them."""
+    return attributes.get("command") == "delete"
+
+
+def deleted_name(attributes: Mapping[str, str]) -> str:
+    """Return the name of the parameters that an element deletes; empty for all in its namespace."""
+    return "/".join(filter(None, (attributes.get("ns", "").rstrip("/"), attributes.get("param", ""))))
+
+
 def written_parameters(attributes: Mapping[str, str], text: str) -> dict[str, str]:
     """Return the parameters that are written in the element, by name, or the whole text if it is not YAML.
 

@@ -9,6 +9,7 @@ from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.launches.outlines import (
     CONDITION,
+    DELETION,
     ENVIRONMENT,
     NAMESPACE,
     READING,
@@ -60,6 +61,8 @@ def title(entry: Entry) -> Phrase:
         return phrase("parameter '{name}' of the nodes that follow", name=name)
     if entry.kind == "parameters":
         return phrase("parameters of '{file}'", file=name)
+    if entry.kind == DELETION:
+        return _deletion_title(name)
     if entry.kind == "handler":
         return phrase("event handler {name}", name=name)
     if entry.kind == READING:
@@ -67,6 +70,12 @@ def title(entry: Entry) -> Phrase:
     if entry.kind == "environment":
         return phrase("environment variable '{name}'", name=name)
     return phrase("action '{name}'", name=name)
+
+
+def _deletion_title(name: str) -> Phrase:
+    if not name:
+        return phrase("deletion of all parameters in the namespace")
+    return phrase("deletion of the parameters '{name}'", name=name)
 
 
 def _node_title(entry: Entry, name: str) -> Phrase:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, joined, phrase, term
-from linkwright.urdf import Box, Cylinder, Geometry, Link, Mesh, Robot, Sphere
+from linkwright.urdf import Box, Geometry, Link, Mesh, Robot, Sphere
 
 _MAX_LINKS = 4
 """The number of added links up to which each has a line of its own."""
@@ -54,16 +56,28 @@ class AddedLinks:
                 parent=joint.parent,
                 xyz=" ".join(f"{number:.6g}" for number in joint.origin.xyz),
             )
+            if any(joint.origin.rpy):
+                angles = " ".join(f"{_degrees(angle):g}" for angle in joint.origin.rpy)
+                yield phrase("rpy {angles}°", angles=angles)
 
 
 def _contents(link: Link) -> Iterator[Phrase]:
     """Yield the shapes and the mass of a link."""
-    for shape in dict.fromkeys(_shape_text(visual.geometry) for visual in link.visuals):
-        yield phrase("visual {shape}", shape=shape)
-    for shape in dict.fromkeys(_shape_text(collision.geometry) for collision in link.collisions):
-        yield phrase("collision {shape}", shape=shape)
+    for shape, count in Counter(_shape_text(visual.geometry) for visual in link.visuals).items():
+        yield _counted(phrase("visual {shape}", shape=shape), count)
+    for shape, count in Counter(_shape_text(collision.geometry) for collision in link.collisions).items():
+        yield _counted(phrase("collision {shape}", shape=shape), count)
     if link.inertial is not None and link.inertial.has_mass:
         yield phrase("mass {mass:.4g} kg", mass=link.inertial.properties.mass)
+
+
+def _degrees(angle: float) -> float:
+    """Return an angle in degrees; angles that are written with a rounded pi have none behind the point."""
+    return round(math.degrees(angle), 2) + 0.0
+
+
+def _counted(part: Phrase, count: int) -> Phrase:
+    return part if count == 1 else phrase("{part} ({count} times)", part=part, count=count)
 
 
 def _shape_text(geometry: Geometry) -> str:

@@ -40,6 +40,11 @@ _UNITS = re.compile(
 )
 _SIMILAR = 0.6
 """The ratio of equal characters from which two names of the same kind are similar."""
+_USED = (
+    *(NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT),
+    *(NameKind.ACTION, NameKind.ACTION_CLIENT),
+)
+"""The kinds of names by which a node communicates."""
 _LOCAL = (NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION)
 """The kinds of which another source may have the same name for another thing."""
 
@@ -104,6 +109,11 @@ class _Side:
     def count(self, item: SourceName) -> int:
         """Return how many names in changed sources are expressions for the same kind and type."""
         return self._expressions.count((item.kind, item.type))
+
+    def lacks_in_changed(self, item: SourceName, path: str) -> bool:
+        """Return whether no changed source but one has a name, so that it has not moved from another to this one."""
+        others = (names for other, names in self._names.items() if other != path)
+        return not any((each.kind, _key(each)) == (item.kind, _key(item)) for names in others for each in names.names)
 
     def lacks(self, item: SourceName, path: str) -> bool:
         """Return whether neither a changed source nor another source of the same package has a name.
@@ -189,7 +199,10 @@ class _Pair:
         path = self.file.path
         removed = [item for name, item in before.items() if name not in after and self.new.lacks(item, path)]
         old_path = self.file.old_path or path
-        added = [item for name, item in after.items() if name not in before and self.old.lacks(item, old_path)]
+        is_lacking = self.old.lacks
+        if self.file.old_path is None and kind in _USED and any(new_names.of(NameKind.NODE)):
+            is_lacking = self.old.lacks_in_changed  # what a new node uses matters although another one uses it, too
+        added = [item for name, item in after.items() if name not in before and is_lacking(item, old_path)]
         if kind in (NameKind.CLASS, NameKind.FUNCTION) and not self._is_interface(old_path):
             return
         if kind is NameKind.FUNCTION and not path.endswith(PYTHON_SUFFIX):

@@ -1,0 +1,89 @@
+"""Launch files and scripts that still name controllers that only the old version has."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path, PurePosixPath
+
+from linkwright.diagnostics import phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.packages.manifest import SKIPPED_FOLDERS
+from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.files.parameter_names import all_controllers
+from linkwright.review.files.yaml_values import read_yaml_values
+from linkwright.review.versions import Version, Versions
+
+_SETTINGS = (".yaml", ".yml")
+_READERS = (".py", ".sh", ".launch", ".launch.xml")
+_MAX_BYTES = 1 << 20
+_COMMENT = re.compile(r"^[ \t]*#[^\n]*|<!--.*?-->", re.MULTILINE | re.DOTALL)
+_CONTROLLER = re.compile(r"controller|broadcaster|spawner")
+"""A word in the line or the name that tells that the name is that of a controller."""
+
+
+def lost_controllers(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the files of the new version that name a controller that changed files do not have any more."""
+    old, new = _controllers(versions.old, changed_files), _controllers(versions.new, changed_files)
+    lost = {name: path for name, path in old.items() if name not in new}
+    if not lost:
+        return
+    files = list(_files(versions.new.root))
+    for path in files:
+        if path.endswith(_SETTINGS):
+            for name in _names(versions.new, path):
+                lost.pop(name, None)
+    for path in files:
+        text = _text(versions.new.file(path)) if path.endswith(_READERS) else ""
+        text = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
+        for name, source in lost.items():
+            yield from ((path, change) for change in _uses(path, text, name, source))
+
+
+def _uses(path: str, text: str, name: str, source: str) -> Iterator[Change]:
+    """Yield the change about the first place where a file names a lost controller."""
+    pattern = re.compile(rf"(?<=[\"'\s])/?{re.escape(name)}(?=[\"'\s/])")
+    for match in pattern.finditer(text):
+        start = text.rfind("\n", 0, match.start()) + 1
+        line = text[start:].partition("\n")[0]
+        if _CONTROLLER.search(line):
+            sentence = phrase("names the controller '{name}', which '{file}' has no more", name=name, file=source)
+            reason = phrase("the controller '{name}' is not found", name=name)
+            location = Location(path, text.count("\n", 0, start) + 1, match.start() - start + 1)
+            yield Change(sentence, Effect.BREAKING, reason, location)
+            return
+
+
+def _controllers(version: Version, changed_files: Sequence[ChangedFile]) -> dict[str, str]:
+    """Return the controllers in the changed parameter files of a version, with the paths of the files."""
+    paths = (file.old_path if version.is_old else file.new_path for file in changed_files if not file.is_submodule)
+    return {name: path for path in paths if path and path.endswith(_SETTINGS) for name in _names(version, path)}
+
+
+def _names(version: Version, path: str) -> set[str]:
+    try:
+        return set(all_controllers(read_yaml_values(_text(version.file(path)))))
+    except UnreadableFileError:
+        return set()
+
+
+def _text(file: Path) -> str:
+    try:
+        is_small = file.stat().st_size <= _MAX_BYTES
+        return file.read_bytes().decode("utf-8", errors="replace") if is_small else ""
+    except OSError:
+        return ""
+
+
+def _files(root: Path) -> Iterator[str]:
+    """Yield the parameter files, launch files and scripts of a version; no tests."""
+    for folder, folders, names in os.walk(root):
+        folders[:] = sorted(
+            name for name in folders if not name.startswith(".") and name not in {*SKIPPED_FOLDERS, "test", "tests"}
+        )
+        for name in sorted(names):
+            file = Path(folder, name)
+            if name.endswith((*_SETTINGS, *_READERS)) and not file.is_symlink():
+                yield PurePosixPath(file.relative_to(root)).as_posix()

@@ -1,0 +1,57 @@
+"""Launch files and scripts that name controllers that a commit removes."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking
+
+MANAGER = """controller_manager:
+  ros__parameters:
+    arm_controller: {type: a/Arm}
+    hand_controller: {type: a/Hand}
+"""
+WITHOUT_HAND = MANAGER.replace("    hand_controller: {type: a/Hand}\n", "")
+START = """# The start of the arm.
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+
+
+def generate_launch_description():
+    return LaunchDescription([DeclareLaunchArgument("hand", default_value="hand_controller")])
+"""
+LOST = "names the controller 'hand_controller', which 'arm/config/c.yaml' has no more"
+
+
+@pytest.fixture
+def lines_of(repository, compare):
+    """Return the breaking lines about a removed controller beside files that stay as they are."""
+
+    def run(files: dict[str, str]):
+        repository.commit({"arm/package.xml": PACKAGE_XML, "arm/config/c.yaml": MANAGER, **files})
+        repository.write({"arm/config/c.yaml": WITHOUT_HAND})
+        return [line for line in breaking(compare(repository)) if line.startswith("names")]
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "is_lost"),
+    [
+        ("arm/launch/arm.launch.py", START, True),
+        ("arm/launch/arm.launch.py", START.replace("hand_controller", "arm_controller"), False),
+        ("arm/launch/arm.launch.py", START.replace("    return", '    # "hand_controller" \n    return')
+         .replace('"hand_controller")', '"arm")'), False),
+        ("arm/launch/arm.launch",
+         '<launch><node pkg="controller_manager" type="spawner" name="s" args="hand_controller"/></launch>', True),
+        ("arm/scripts/grip.py", 'node.create_publisher(Float64, "/hand_controller/commands", 10)\n', True),
+        ("arm/test/grip.py", 'node.create_publisher(Float64, "/hand_controller/commands", 10)\n', False),
+    ],
+)  # fmt: skip
+def test_file_that_names_a_removed_controller_is_breaking(lines_of, path, text, is_lost):
+    assert lines_of({path: text}) == [LOST] * is_lost
+
+
+def test_controller_that_another_file_still_has_is_not_lost(lines_of):
+    assert lines_of({"arm/launch/arm.launch.py": START, "arm/config/other.yaml": MANAGER}) == []
