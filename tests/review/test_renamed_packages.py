@@ -73,7 +73,7 @@ def test_what_follows_from_the_new_name_of_a_package_is_one_change(repository, c
         ("rate: 10", "rate: 20", "arm_gear/config/arm.yaml", "driver.ros__parameters.rate 10 -> 20"),
         ("arm_tools/cmd", "arm_gear/cmd", "arm_gear/launch/arm.launch.xml",
          "node 'arm_gear/driver': remapping cmd arm_tools/cmd -> arm_gear/cmd"),
-        ("arm_gear_core", "gear_core", "arm_gear/CMakeLists.txt", "installed libraries removed: 'arm_tools_core'"),
+        ("arm_gear_core", "gear_core", "arm_gear/CMakeLists.txt", "installed libraries: 'arm_tools_core' renamed to 'gear_core'"),
         ("arm_gear/Grip", "arm_gear/Grasp", "arm_gear/plugins.xml",
          "plugin class 'arm_tools/Grip' renamed to 'arm_gear/Grasp'"),
     ],

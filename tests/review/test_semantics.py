@@ -74,7 +74,9 @@ def test_group_in_a_macro_that_is_removed_is_breaking(package, compare):
     package.commit({path: text})
     package.write({path: text.replace(group, "")})
     (change,) = subject(compare(package), path).changes
-    assert str(change.sentence) == "macro 'arm_srdf': group ${prefix}arm removed"
+    assert (
+        str(change.sentence) == "macro 'arm_srdf': group ${prefix}arm removed: chain base_link=base_link tip_link=lower"
+    )
     assert str(change.reason) == "programs that plan for the group '${prefix}arm' do not find it"
 
 
