@@ -10,7 +10,7 @@ from linkwright.review.element_values import own_content, values_text
 from linkwright.review.plugins import contents_text, plugin_parts
 from linkwright.xmltree import Element
 
-_MAX_NAMES = 8
+_MAX_NAMES = 40
 """The number of models, links or joints that the line about an added world names."""
 _MAX_VALUES_OF_PLUGIN = 4
 """The number of values of each plugin or sensor that the line about an added world or model shows."""
