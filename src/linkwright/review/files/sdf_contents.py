@@ -40,8 +40,8 @@ def shapes_and_mass(model: Element) -> Iterator[Phrase]:
             values = values_text(shape, _MAX_VALUES_OF_PLUGIN) or ""
             shapes[element.tag, f"{shape.tag} {values}".strip()] += 1
     texts = []
-    for (tag, shape), count in shapes.items():
-        text = phrase("visual {shape}", shape=shape) if tag == "visual" else phrase("collision {shape}", shape=shape)
+    for (tag, name), count in shapes.items():
+        text = phrase("visual {shape}", shape=name) if tag == "visual" else phrase("collision {shape}", shape=name)
         texts.append(text if count == 1 else phrase("{part} ({count} times)", part=text, count=count))
     if texts:
         yield joined_first(texts, _MAX_NAMES)
