@@ -172,3 +172,11 @@ add_executable(server src/server.cpp)
 target_link_libraries(server ${{catkin_LIBRARIES}})
 install(TARGETS {} RUNTIME DESTINATION ${{CATKIN_PACKAGE_BIN_DESTINATION}})
 """
+
+
+def test_version_of_a_downloaded_project_is_compared_by_its_keyword(repository, compare):
+    project = "ExternalProject_Add(core GIT_REPOSITORY https://example.org/core.git GIT_TAG {} PREFIX core)\n"
+    repository.commit({**MANIFEST, "a/CMakeLists.txt": AMENT + project.format("1.0.0")})
+    repository.write({"a/CMakeLists.txt": AMENT + project.format("devel")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["externalproject_add GIT_TAG 1.0.0 -> devel"]

@@ -213,3 +213,9 @@ def generate_launch_description():
     assert sentences(subject(compare(repository), "arm/launch/arm.launch.py")) == [
         "launch file added: use of environment variable 'ARM_MODEL' (required), argument 'gui' (default false)"
     ]
+
+
+def test_parameter_from_a_command_is_called_one(changes_of):
+    text = '<param name="robot_description" command="xacro {}.xacro"/>'
+    changes, _ = changes_of(text.format("a"), text.format("b"))
+    assert "$(command xacro a.xacro) -> $(command xacro b.xacro)" in changes[0]

@@ -202,3 +202,10 @@ def test_frame_that_others_still_offer_and_transform_that_is_switched_off(change
     changes, found_breaking = changes_of(FRAMES, text.replace("send: true", "send: false"))
     assert "odometry.ros__parameters.frame_id map -> odom" in changes
     assert found_breaking == ["odometry.ros__parameters.tf.send true -> false"]
+
+
+def test_long_list_of_names_has_the_added_and_removed_ones(changes_of):
+    names = [f"left_gripper_inner_finger_joint_{number}" for number in range(8)]
+    text = "hand: {joints: [finger_joint, old_joint]}\n"
+    found, _ = changes_of(text, text.replace("old_joint", ", ".join(names)))
+    assert found == [f"hand.joints: {', '.join(names)} added, old_joint removed"]

@@ -207,9 +207,6 @@ _RULES = (
 )
 
 
-_MODEL_SENTENCES = {"added": phrase("model added"), "removed": phrase("model removed")}
-
-
 def rule_of_contents(rule: KindRule, version: Version, path: str) -> KindRule:
     """Return the rule for an added or removed file, with the sentences for a model if a file of SDF has no world.
 
@@ -218,7 +215,9 @@ def rule_of_contents(rule: KindRule, version: Version, path: str) -> KindRule:
         version: the version that has the file.
         path: the path relative to the root of the repository.
     """
-    return replace(rule, **_MODEL_SENTENCES) if rule.kind is SubjectKind.WORLD and is_model(version, path) else rule
+    if rule.kind is not SubjectKind.WORLD or not is_model(version, path):
+        return rule
+    return replace(rule, added=phrase("model added"), removed=phrase("model removed"))
 
 
 LAUNCH_HELPER = KindRule(

@@ -7,9 +7,11 @@ from linkwright.diagnostics import Phrase, phrase
 EMPTY = "''"
 """An empty value as users write it."""
 _LONG_LIST = 4
-"""The number of items up to which both versions of a list are shown."""
+"""The number of items up to which both versions of a list are shown, unless they are too long to be whole."""
 _LONG_VALUE = 200
 """The number of characters up to which a value is shown as a whole."""
+_LONG_NAME = 120
+"""The number of characters up to which an item of a list is shown as a whole."""
 _CONTEXT = 20
 """The number of characters that are shown on both sides of a difference."""
 
@@ -23,10 +25,14 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
         new: the new value.
     """
     old_items, new_items = list_items(old), list_items(new)
+    are_lists = all(value.startswith("[") and items != [value] for value, items in ((old, old_items), (new, new_items)))
+    are_names = are_lists and all(len(item) <= _LONG_NAME for item in (*old_items, *new_items))
+    is_cut = are_names and max(len(old), len(new)) > _LONG_VALUE
     old, new = excerpts(old, new)
     added, removed = set(new_items) - set(old_items), set(old_items) - set(new_items)
     is_set = len(set(old_items)) == len(old_items) and len(set(new_items)) == len(new_items)
-    if min(len(old_items), len(new_items)) <= _LONG_LIST or not is_set or not (added or removed):
+    is_short = min(len(old_items), len(new_items)) <= _LONG_LIST and not is_cut
+    if is_short or not is_set or not (added or removed):
         return phrase("{parameter} {old} -> {new}", parameter=name, old=old, new=new)
     added_text = ", ".join(item for item in new_items if item in added)
     removed_text = ", ".join(item for item in old_items if item in removed)

@@ -12,7 +12,7 @@ from linkwright.review.versions import Versions
 
 _MIN_FILES = 3
 """The number of files of a folder from which they are one line."""
-_MAX_NAMES = 12
+_MAX_NAMES = 40
 """The number of files that the line names."""
 _RENAMED = "renamed from {path}"
 _Folders = tuple[str, str]

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, joined, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
-from linkwright.review.list_changes import change_text, shortened
+from linkwright.review.list_changes import EMPTY, change_text, shortened
 from linkwright.review.renamed_packages import PackageNames, renamed_packages
 from linkwright.review.versions import Version
 
@@ -20,7 +21,10 @@ _MIN_FOLDER = 3
 """The number of parts from which a folder is named instead of its files; paths in packages have fewer."""
 _LONG_LIST = 5
 """The number of words of a command from which only the different ones are shown."""
-_MAX_NAMES = 8
+_DOWNLOADS = ("externalproject_add", "fetchcontent_declare")
+"""The commands that get the sources of other projects, from the address and version after their keywords."""
+_KEYWORD = re.compile(r"[A-Z][A-Z_]{2,}")
+_MAX_NAMES = 40
 """The number of names that a line lists."""
 
 
@@ -457,7 +461,10 @@ def _compare_rest(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     for name in names:
         old_texts, new_texts = ([text for other, text in items if other == name] for items in (gone, come))
         old_text, new_text = ("; ".join(filter(None, texts)) for texts in (old_texts, new_texts))
-        if old_texts and new_texts:
+        if name in _DOWNLOADS and len(old_texts) == len(new_texts) == 1:
+            for text in _keyword_changes(name, old_text.split(), new_text.split()):
+                pair.add(text, None)
+        elif old_texts and new_texts:
             pair.add(_words_text(name, old_text, new_text), None)
         elif new_texts:
             text = phrase("{parameter} added: {items}", parameter=name, items=shortened(new_text, _MAX_TEXT))
@@ -465,6 +472,28 @@ def _compare_rest(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         else:
             text = phrase("{parameter} removed: {items}", parameter=name, items=shortened(old_text, _MAX_TEXT))
             pair.add(text if old_text else phrase("{parameter} removed", parameter=name), None)
+
+
+def _keyword_changes(name: str, old_words: Sequence[str], new_words: Sequence[str]) -> Iterator[Phrase]:
+    """Yield the changes of the arguments of a command after each keyword, such as ``GIT_TAG``."""
+    old, new = _by_keyword(old_words), _by_keyword(new_words)
+    for keyword in dict.fromkeys([*old, *new]):
+        before, after = old.get(keyword), new.get(keyword)
+        if before != after:
+            yield change_text(f"{name} {keyword}".strip(), before or EMPTY, after or EMPTY)
+
+
+def _by_keyword(words: Sequence[str]) -> dict[str, str]:
+    """Return the arguments after each keyword; those before the first one under its name, which is empty."""
+    values: dict[str, list[str]] = {}
+    keyword = ""
+    for word in words:
+        if _KEYWORD.fullmatch(word):
+            keyword = word
+            values.setdefault(keyword, [])
+        else:
+            values.setdefault(keyword, []).append(word)
+    return {key: " ".join(items) for key, items in values.items()}
 
 
 def _words_text(name: str, old: str, new: str) -> Phrase:

@@ -10,7 +10,7 @@ from linkwright.review.element_values import own_content, values_text
 from linkwright.review.plugins import contents_text, plugin_parts
 from linkwright.xmltree import Element
 
-_MAX_NAMES = 8
+_MAX_NAMES = 40
 """The number of models, links or joints that the line about an added world names."""
 _MAX_VALUES_OF_PLUGIN = 4
 """The number of values of each plugin or sensor that the line about an added world or model shows."""
@@ -40,8 +40,8 @@ def shapes_and_mass(model: Element) -> Iterator[Phrase]:
             values = values_text(shape, _MAX_VALUES_OF_PLUGIN) or ""
             shapes[element.tag, f"{shape.tag} {values}".strip()] += 1
     texts = []
-    for (tag, shape), count in shapes.items():
-        text = phrase("visual {shape}", shape=shape) if tag == "visual" else phrase("collision {shape}", shape=shape)
+    for (tag, name), count in shapes.items():
+        text = phrase("visual {shape}", shape=name) if tag == "visual" else phrase("collision {shape}", shape=name)
         texts.append(text if count == 1 else phrase("{part} ({count} times)", part=text, count=count))
     if texts:
         yield joined_first(texts, _MAX_NAMES)

@@ -323,6 +323,8 @@ def _parameter_value(tag: LaunchTag) -> str:
     """Return the value of a parameter, or the file or command that it comes from."""
     keys = ("value", "textfile", "binfile", "command")
     text = next((tag.attributes[key] for key in keys if key in tag.attributes), tag.text)
+    if not {"value", "textfile", "binfile"} & tag.attributes.keys() and "command" in tag.attributes:
+        return f"$(command {text})"
     return _QUOTED_COMMAND.sub(r"$(command \2\3)", text)
 
 

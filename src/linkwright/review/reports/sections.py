@@ -12,7 +12,7 @@ from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.changes import Change, Effect, Review, Subject
 from linkwright.review.other_files import grouped_files
 
-_MAX_NAMES = 3
+_MAX_NAMES = 24
 """The number of other links or joints that a line names."""
 _MAX_BREAKING_NAMES = 12
 """The number of other links or joints that a line about a breaking change names, which users may look for."""

@@ -13,7 +13,7 @@ from linkwright.review.plugins import plugin_name, plugins_of
 from linkwright.review.versions import Version
 from linkwright.urdf import Robot
 
-_MAX_NAMES = 8
+_MAX_NAMES = 40
 """The number of links, joints or plugins that the line about a robot names."""
 
 

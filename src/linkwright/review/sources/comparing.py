@@ -32,7 +32,7 @@ from linkwright.review.versions import Version, Versions
 
 _TEST_FOLDERS = frozenset({"test", "tests"})
 _SKIPPED = frozenset({"setup.py", "conf.py"})
-_MAX_NAMES = 12
+_MAX_NAMES = 40
 _MAX_FUNCTIONS = 3
 """The number of functions of a file with other arguments up to which each has a line."""
 _UNITS = re.compile(
