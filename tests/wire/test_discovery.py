@@ -49,7 +49,7 @@ def test_endpoints_of_nodes_are_discovered(processes):
     a, b = processes("a"), processes("b")
     b.node.create_publisher(String, "said", 10)
     b.node.create_subscription(String, "heard", print, 10)
-    a.spin_until(lambda: a.node.count_subscribers("heard") == 1)
+    a.spin_until(lambda: a.node.count_publishers("said") == a.node.count_subscribers("heard") == 1)
     assert ("/said", ["std_msgs/msg/String"]) in a.node.get_publisher_names_and_types_by_node("b", "/")
     assert ("/heard", ["std_msgs/msg/String"]) in a.node.get_subscriber_names_and_types_by_node("b", "/")
     services = dict(a.node.get_service_names_and_types_by_node("b", "/"))
