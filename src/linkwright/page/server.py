@@ -68,7 +68,7 @@ In a checkout of Linkwright run
 
     make page
 
-and reload. An installed wheel carries the page; if you see this there, the wheel was built without it.
+and reload. If Linkwright was installed from a wheel, the wheel was built without the page.
 """
 _PAGE_TYPES = {
     ".html": "text/html; charset=utf-8",
@@ -87,7 +87,7 @@ _PAGE_TYPES = {
 }
 
 MAX_UNSENT_BYTES = 16 * 1024
-"""The number of unsent bytes, in the program and again in the operating system, above which writers wait."""
+"""The maximum number of unsent bytes, in the program and again in the operating system, before writers wait."""
 
 _NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 
@@ -215,7 +215,7 @@ class WebServer:
             await self._runner.cleanup()
             self._runner = None
 
-    # --- every request -----------------------------------------------------------------------------------------
+    # --- access control ----------------------------------------------------------------------------------------
 
     @web.middleware
     async def _check_access(
@@ -355,7 +355,7 @@ class WebServer:
         except asyncio.CancelledError:
             if not self._services.cancelled():
                 raise  # the client has disconnected
-            raise web.HTTPServiceUnavailable(text="The program ends.\n") from None
+            raise web.HTTPServiceUnavailable(text="The program is shutting down.\n") from None
 
     async def _show_own_recording(self, uploads: Uploads, request: web.Request) -> web.Response:
         """Show a recording that this program made, without an upload."""
