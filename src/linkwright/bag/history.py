@@ -397,7 +397,7 @@ class History:
         self._shrinker.close()
 
     def _comparable_clock(self, content: Content, clock_ns: int) -> Content:
-        """Return the content with which a clock message is compared with earlier clock messages.
+        """Return the content of a clock message, with the state that decides whether it repeats an earlier one.
 
         Clock messages count as repeated while no other message arrives and the clock is not reset.
         """

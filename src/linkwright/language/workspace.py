@@ -38,7 +38,7 @@ _CHECK_INPUTS = (
 
 
 MAX_CHARACTERS = 1_000_000
-"""The number of characters above which a file is large. A large file is checked, but has no other editor functions. The
+"""The maximum number of characters of a file that is not large. A large file is checked, but has no other features. The
 largest known public description has 300,000 characters."""
 _MAX_ROBOTS = 16
 """The number of descriptions whose robots are stored."""
@@ -55,7 +55,7 @@ _NOTHING = _Result((), {})
 
 
 def versions_of(texts: Mapping[Path, str]) -> dict[Path, int]:
-    """Return the hash of each text, as a replacement for a copy of the texts."""
+    """Return the hash of each text, to detect changes without a copy of the texts."""
     return {file: hash(text) for file, text in texts.items()}
 
 

@@ -1,4 +1,4 @@
-"""The language server: open texts, checks in the background, and the requests of an editor."""
+"""The language server: open documents, background checks, and the requests of an editor."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _IDLE_SECONDS = 1.0
 
 
 class FormatContext(NamedTuple):
-    """A document whose format has its own editor functions."""
+    """A document whose format has its own language features."""
 
     format: Format
     document: Document

@@ -23,7 +23,7 @@ ROUND_SIDES = 72
 DEFAULT_COLOR: Color = (1.0, 0.0, 0.0)
 """The color of a shape without a material, as in RViz."""
 _MAX_TEXTURE = 768
-"""The maximum width and height of textures in pixels. Larger textures are reduced."""
+"""The maximum width and height of textures in pixels. Larger textures are downsampled."""
 _MISSING_EXTRA = "INR104"
 
 
@@ -32,7 +32,7 @@ class MeshSurface:
     """A part of a mesh file with one material.
 
     Attributes:
-        surface: the part in m, in white.
+        surface: the white surface of the part, in meters.
         file_material: the material in the file; None to use that of the description.
         names: the names of the part in the file.
     """
@@ -43,7 +43,7 @@ class MeshSurface:
 
 
 class SurfaceLibrary:
-    """A reader that reads each mesh file once, for one or several scenes.
+    """A cache of the surfaces of mesh files, which reads each file once for one or several scenes.
 
     Attributes:
         colorless: the files that were read without their colors, because a library is not installed, each with the
@@ -137,7 +137,7 @@ def surface_color(
     """Return the color of a surface by RViz's rules.
 
     Args:
-        file_material: the material in the mesh file, which precedes the description's.
+        file_material: the material in the mesh file, which takes precedence over the description's.
         described: the color in the description, or None.
         is_textured: whether the description sets a texture.
         is_gray: whether the surface is that of a mesh file whose format has colors.

@@ -244,7 +244,7 @@ def _common_commit(repository: GitRepository, old_commit: str, old_name: str, ne
 def _is_checked_out(repository: GitRepository, commit: str) -> bool:
     """Return whether the working tree contains the files of a commit, so that they need not be written.
 
-    A working tree with links that lead out of it is not used: the files of others could appear in the report.
+    A working tree with links that point outside it is not used: the files of others could appear in the report.
     """
     if repository.resolve("HEAD") != commit or repository.changed_files(commit):
         return False

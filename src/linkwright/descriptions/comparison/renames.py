@@ -27,7 +27,7 @@ _SHAPES, _INERTIAL, _PARENT = 1, 1, 1
 _ENOUGH = 4
 """The minimum sum of weights for a rename. No single fact is sufficient."""
 _MAX_CANDIDATES = 40
-"""The number of links with the same fact, such as the same mesh, above which the fact is ignored."""
+"""The maximum number of links that share a fact, such as a mesh. A fact of more links is ignored."""
 _MAX_PASSES = 20
 _WORD = lazy_pattern(r"[a-z]+|\d+")
 _CAMEL = lazy_pattern(r"(?<=[a-z0-9])(?=[A-Z])")

@@ -201,7 +201,7 @@ class NodeParameters:
         If a parameter is set to no value and its descriptor allows dynamic typing, the parameter is undeclared.
 
         Raises:
-            ParameterNotDeclaredException: a parameter is not declared. Those before it stay set.
+            ParameterNotDeclaredException: a parameter is not declared. The parameters before it stay set.
         """
         return [self.set_parameters_atomically([parameter]) for parameter in parameter_list]
 

@@ -183,7 +183,7 @@ class _PathReader(ast.NodeVisitor):
     def visit_Assign(self, node: ast.Assign) -> None:
         names = [target.id for target in node.targets if isinstance(target, ast.Name)]
         if any(name in self._names_in_paths for name in names):
-            self._path_depth += 1  # other paths begin with this name
+            self._path_depth += 1  # the value is only the beginning of other paths
             self.generic_visit(node)
             self._path_depth -= 1
         else:

@@ -13,7 +13,7 @@ _FEW = 64
 _EQUAL = 1e-9
 """The difference in m up to which distances are equal."""
 _STARTS = 8
-"""The number of sampled configurations from which a search starts."""
+"""The number of sampled configurations that are the starting points of a search."""
 _MAX_SWEEPS = 20
 _MIN_GAIN = 1e-7
 """The increase of the distance in m, over all joints, below which a search ends."""

@@ -47,7 +47,7 @@ class ForceTorqueSensor:
         self._offset = offset
 
     def measure(self) -> tuple[Array, Array]:
-        """Return the force in N and the torque in N m, in the configured axes.
+        """Return the force in N and the torque in N m, in the configured measurement frame.
 
         With ``parent_to_child``, the parent exerts the force and torque on the child; otherwise the child exerts them
         on the parent.

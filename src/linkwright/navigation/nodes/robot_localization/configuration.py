@@ -50,7 +50,7 @@ class SensorSettings:
         name: the name, such as ``odom0``.
         kind: one of `KINDS`.
         topic: the topic of the sensor's messages.
-        used: whether the sensor provides each of the 15 values of the state.
+        used: whether the filter uses each of the 15 state values from this sensor.
         differential: whether the sensor's poses are used as velocities.
         relative: whether the sensor's poses are relative to the first pose.
         queue_size: the depth of the subscription.
