@@ -54,7 +54,7 @@ def test_folder_of_killed_process_is_removed_by_next_one(place: Path) -> None:
         assert process.stdout is not None
         name = Path(process.stdout.readline().strip())
         with ScratchFolder("test"):
-            assert (name / "file").is_file()  # it is in use
+            assert (name / "file").is_file()  # the folder is in use
         process.communicate("\n")
     assert (name / "file").is_file()
     with ScratchFolder("other"):
@@ -77,10 +77,8 @@ def test_folders_in_use_or_of_others_are_kept(place: Path) -> None:
 
 def test_temporary_folders_are_scratch_folders() -> None:
     creation = re.compile(r"\bTemporaryDirectory\(|\bmkdtemp\(")
-    kept_on_exit, inside_scratch_folder = (
-        {"link_folder.py"},
-        {"contents.py", "run.py", "running.py"},
-    )  # of a sandbox's run
+    kept_on_exit = {"link_folder.py"}
+    inside_scratch_folder = {"contents.py", "run.py", "running.py"}  # the scratch folder of a sandbox's run
     allowed = {"scratch_folders.py"} | kept_on_exit | inside_scratch_folder
     found = {
         path.name for path in (REPOSITORY / "src").rglob("*.py") if creation.search(path.read_text(encoding="utf-8"))

@@ -43,7 +43,7 @@ def _surroundings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[N
     """Keep log files in the folder of the test, and restore the environment after a launch."""
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setenv("LINKWRIGHT_DDS", "0")  # tests that need it say so
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")  # tests that need DDS enable it
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     for name in ("PROCESS_OUTPUT", "SCREEN_FORMAT", "LOG_FORMAT"):
         monkeypatch.delenv(f"OVERRIDE_LAUNCH_{name}", raising=False)
@@ -55,7 +55,7 @@ def _surroundings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[N
 
 @pytest.fixture
 def launch(tmp_path: Path) -> Callable[..., object]:
-    """Launch entities until the end, and return the output."""
+    """Return a function that launches entities, waits for the end, and returns the result."""
 
     async def run(
         *entities: LaunchDescriptionEntity,
@@ -77,7 +77,7 @@ def launch(tmp_path: Path) -> Callable[..., object]:
 
 @pytest.fixture
 def write(tmp_path: Path) -> Callable[[str, str], Path]:
-    """Write a file below the folder of the test."""
+    """Return a function that writes a file below the folder of the test."""
 
     def written(name: str, text: str) -> Path:
         path = tmp_path / name

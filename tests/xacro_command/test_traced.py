@@ -1,4 +1,4 @@
-"""Watching an expansion changes nothing of it, whatever the description does."""
+"""Traced attributes have locations, and tracing raises no other errors than those of Linkwright."""
 
 from __future__ import annotations
 

@@ -2,8 +2,8 @@
 export type Proof = "known" | "unknown" | "silent";
 
 /**
- * Asks the server of a socket's address to prove that it knows a token, without sending the token. Otherwise, after a
- * program has ended, the next program at its port would receive the token, and could open the page of a later one.
+ * Asks the server of a socket's address to prove that it knows a token, without sending the token. Without this
+ * check, another program that later listens on the port would receive the token, and could use it.
  *
  * Browsers offer cryptography only to pages of this machine or over HTTPS. Elsewhere the server is trusted without
  * proof: a program there does not reuse its token.

@@ -1,4 +1,4 @@
-"""Displays as pages add, arrange, remove and set them."""
+"""Pages add, arrange, remove and change displays."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ async def test_fade_time_is_shortest_of_tf_displays():
         assert stream.fade_time is None
 
 
-# --- which displays there are --------------------------------------------------------------------------------------
+# --- adding and choosing displays ----------------------------------------------------------------------------------
 
 
 async def test_display_choices_are_sent():
@@ -172,7 +172,7 @@ async def test_removed_displays_unsubscribe_and_undo_restores_them():
         assert names(world) == ["Grid", "Marks", "Clicks", "Radar"]
         assert publisher.get_subscription_count() == 1
         assert world.viewer.config.text() == text
-        await undo(client)  # the edit before, of a display that is another object now
+        await undo(client)  # undo the earlier edit of the display, which is a new object since it was restored
         assert world.viewer.displays[2].properties.number("Alpha") == 0.5
         assert world.viewer.config.text() == TEXT
 
@@ -310,7 +310,7 @@ async def test_group_nesting_depth_is_limited():
 async def test_number_of_displays_is_limited(monkeypatch):
     monkeypatch.setattr(display_tree, "MAXIMUM_DISPLAYS", 6)
     async with opened() as (world, client):
-        await edit(client, "duplicate_displays", displays=["display-2"])  # a group and what it holds
+        await edit(client, "duplicate_displays", displays=["display-2"])  # a group with its display
         for kind, fields in (
             ("duplicate_displays", {"displays": ["display-1"]}),
             ("group_displays", {"displays": ["display-1"], "name": "All"}),
