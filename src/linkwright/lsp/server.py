@@ -95,7 +95,7 @@ class LinkwrightServer(LanguageServer):
         previous = self.project
         self.project = Workspace(folders)
         if previous is not None:
-            self._publish(previous.without_findings(), {})
+            self._publish(previous.cleared_findings(), {})
             for uri in self.workspace.text_documents:
                 self.file_changed(uri)
         self._check_loop = asyncio.get_running_loop().create_task(self._check_changes(self.project))

@@ -173,7 +173,7 @@ class Gate:
             return f"requests from pages of '{origin[:200]}' are refused"
         return None
 
-    def is_shown_token(self, query: Mapping[str, str]) -> bool:
+    def has_token(self, query: Mapping[str, str]) -> bool:
         """Return whether the query of a request contains the token."""
         query_token = query.get(TOKEN_PARAMETER)
         return query_token is not None and hmac.compare_digest(

@@ -41,21 +41,23 @@ async def test_disabled_group_disables_its_displays():
         assert world.viewer.config.text() == TEXT
 
 
-@pytest.mark.parametrize("box", ["", "Enabled: true", "Value: true", "Enabled: true, Value: false", "Enabled: no"])
-async def test_undo_of_checkbox_restores_file(box):
-    text = f"Visualization Manager:\n  Displays:\n    - {{Class: rviz_default_plugins/Axes, {box}}}\n"
+@pytest.mark.parametrize(
+    "checkbox_yaml", ["", "Enabled: true", "Value: true", "Enabled: true, Value: false", "Enabled: no"]
+)
+async def test_undo_of_checkbox_restores_file(checkbox_yaml):
+    text = f"Visualization Manager:\n  Displays:\n    - {{Class: rviz_default_plugins/Axes, {checkbox_yaml}}}\n"
     async with open_world(RvizConfig.parse(text)) as world:
         manager = world.viewer.manager
         (display,) = manager.displays
-        was = display.config.checked
-        manager.tree.check(display, not was)
+        was_checked = display.config.checked
+        manager.tree.check(display, not was_checked)
         changed = manager.config.text()
-        assert display.config.checked is not was
+        assert display.config.checked is not was_checked
         for _ in range(2):
             manager.history.undo()
-            assert (manager.config.text(), display.config.checked) == (text, was)
+            assert (manager.config.text(), display.config.checked) == (text, was_checked)
             manager.history.redo()
-            assert (manager.config.text(), display.config.checked) == (changed, not was)
+            assert (manager.config.text(), display.config.checked) == (changed, not was_checked)
 
 
 FRAMES = """Visualization Manager:
@@ -244,10 +246,10 @@ async def test_displays_are_moved(displays, group, before, expected):
         await client.send("move_displays", displays=displays, group=group, before=before)
         await client.until("tree")
 
-        def holder(display) -> str | None:
+        def group_name(display) -> str | None:
             return display.config.group.name if display.config.group else None
 
-        assert [(display.config.name, holder(display)) for display in world.viewer.displays] == expected
+        assert [(display.config.name, group_name(display)) for display in world.viewer.displays] == expected
         await undo(client)
         assert world.viewer.config.text() == TEXT
 
