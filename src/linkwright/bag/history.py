@@ -31,7 +31,7 @@ _MIN_BYTES = 16_384
 """The minimum size of a message to compress."""
 
 _MAX_RATIO = 0.8
-"""The maximum size of a compressed message, as a share of its size: decompression takes time, too."""
+"""The maximum size of a compressed message, as a share of its size: decompression also takes time."""
 
 _MAX_QUEUED_BYTES = 64_000_000
 """The maximum number of bytes that wait for compression. Messages beyond that stay uncompressed."""
@@ -267,7 +267,7 @@ class _Track:
         return index if index < len(self.entries) and self.entries[index][1] == number else None
 
     def repeated_after(self, start_ns: int, end_ns: int) -> list[_Entry]:
-        """Return the messages in a time interval that represent equal later messages, too."""
+        """Return the messages in a time interval that also represent equal later messages."""
         return [item for item in self.between(start_ns, end_ns) if item[1] in self._repeated_numbers]
 
     def repeated_until(self, at_ns: int) -> list[_Entry]:

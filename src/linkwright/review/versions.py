@@ -70,7 +70,7 @@ class Version:
         return self._nearest(folder).get(package) or self.shares.get(package)
 
     def checker(self) -> Checker:
-        """Return a checker that finds the packages of this version, also where the working tree has them, too."""
+        """Return a checker that finds the packages of this version, even if the working tree also has them."""
         return Checker(folders=(self.root,), shares=self.shares)
 
     def model(self, path: str, values: Mapping[str, str]) -> Model:

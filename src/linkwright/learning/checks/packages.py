@@ -142,7 +142,7 @@ class FileFolder:
         )
 
     def simulate(self, name: str) -> AbstractContextManager[SteppedSimulation]:
-        """Return a simulation of a file's robot in an empty world, completed as by ``linkwright drive``.
+        """Return a simulation of a file's robot in an empty world, completed as ``linkwright drive`` does.
 
         Args:
             name: the path in the folder.

@@ -16,7 +16,7 @@ _MIN_SIMILARITY = 0.6
 _MIN_ALIKE = 2
 """The minimum number of neighboring parts, renamed in the same way, that need not have many values."""
 _MAX_PARTS = 60
-"""The number of parts of either version up to which moved parts are searched."""
+"""The maximum number of parts of either version for which moved parts are searched."""
 _ITEM = re.compile(r"\[(old )?\d+\]$")
 """The end of the path of an item of a list that has no name."""
 _Facts = Counter[str]

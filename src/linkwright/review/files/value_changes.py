@@ -19,7 +19,7 @@ _NAME = re.compile(r"[~/]?[A-Za-z_][\w./:-]*")
 _MAX_VALUES = 12
 """The number of values of a part that a line shows."""
 _MAX_ITEM_CHANGES = 6
-"""The number of changes of the items of a list up to which all are shown."""
+"""The maximum number of changes of the items of a list that are all shown."""
 
 
 @dataclass(frozen=True)
