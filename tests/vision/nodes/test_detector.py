@@ -370,7 +370,7 @@ async def test_missing_images_are_not_reported_without_subscribers(test, start, 
     assert warnings() == []
 
 
-# --- while the detector is loaded -----------------------------------------------------------------------------------
+# --- loading of the detector ----------------------------------------------------------------------------------------
 
 
 class Slow:
