@@ -118,7 +118,7 @@ _MAX_REPEAT_NS = 10_000_000_000
 """The time after which an unchanged state is stored again, so that a search need not look further back."""
 
 _LARGE_MEAN_BYTES = 6000
-"""The mean size of a topic's messages above which they are thinned before any message is dropped."""
+"""The minimum mean size of a topic's messages for which they are thinned before any message is dropped."""
 
 _MAX_THINNED_NS = 600_000_000_000
 """The maximum time span of a topic's messages for which they are thinned."""

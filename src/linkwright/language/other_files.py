@@ -183,7 +183,7 @@ def _robots_of_package(project: Workspace, texts: Mapping[Path, str], folder: Pa
 
 
 def _named_together(project: Workspace, texts: Mapping[Path, str], file: Path, robots: Sequence[Path]) -> list[Path]:
-    """Return the robots that mention a file, or that a launch file mentions together with it."""
+    """Return the robots that mention a file, or are mentioned together with it in a launch file."""
     name = re.compile(rf"(?<![\w.-]){re.escape(file.name)}(?![\w-])")
     text = project.text(file, texts) or ""
     if ".srdf" in file.name:

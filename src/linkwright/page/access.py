@@ -284,7 +284,7 @@ class Admission:
             connection.cancel_deadline()
 
     def admit(self, inner_protocol: object) -> None:
-        """Record that a connection has sent the token, so that no other connection replaces it."""
+        """Record that a connection has sent the token. No other connection replaces it."""
         connection = self._unadmitted_connections.pop(inner_protocol, None)  # type: ignore[call-overload]
         if connection is not None:
             connection.cancel_deadline()

@@ -419,7 +419,7 @@ def _maps_of_images(versions: Versions, files: Sequence[ChangedFile]) -> Iterato
 def _targets(version: Version) -> set[str]:
     """Return the paths of the complete descriptions, semantic descriptions in xacro, and worlds of a version.
 
-    A robot that another description includes is complete if a launch file starts it, too.
+    A robot that another description includes is complete if a launch file also starts it.
     """
     checker = version.checker()
     started = [file for file in included_robots(version.root) if checker.calls(file, ())]

@@ -172,7 +172,7 @@ def _place_of(python: PythonFile, node: ast.expr | None) -> EvaluatedText | None
 
 
 class _PathReader(ast.NodeVisitor):
-    """A visitor that finds the paths in share folders that are not part of longer paths."""
+    """A visitor that finds the complete paths in share folders, without the beginnings of longer paths."""
 
     def __init__(self, python: PythonFile, facts: LaunchFile) -> None:
         self._python = python
