@@ -31,12 +31,12 @@ class Lights:
     Attributes:
         key: the direction to the strongest light, from the upper left of the camera.
         fill: the direction to a weak light from the right.
-        toward: the direction to the camera.
+        to_camera: the direction to the camera.
     """
 
     key: Vector3
     fill: Vector3
-    toward: Vector3
+    to_camera: Vector3
 
     @classmethod
     def of(cls, camera: Camera) -> Lights:
@@ -138,13 +138,13 @@ class Shader:
 
     def _lit(self, albedo: Floats, normals: Floats) -> Floats:
         lights = self._lights
-        facing_camera = np.maximum(along(normals, lights.toward), 0.0)
+        facing_camera = np.maximum(along(normals, lights.to_camera), 0.0)
         key = np.maximum((along(normals, lights.key) + _WRAP) / (1.0 + _WRAP), 0.0)
         key = (key + key * key) * 0.5  # smooths the border between light and shade
         fill = along(normals, lights.fill) * 0.5 + 0.5
         sky = (normals[:, 2] + 1.0) * 0.5
         diffuse = _KEY * key + _FILL * fill * fill + (_GROUND + (_SKY - _GROUND) * sky)
-        specular = np.maximum(along(normals, unit_vector(add_vectors(lights.key, lights.toward))), 0.0)
+        specular = np.maximum(along(normals, unit_vector(add_vectors(lights.key, lights.to_camera))), 0.0)
         for _ in range(5):
             specular = specular * specular
         away = 1.0 - facing_camera
