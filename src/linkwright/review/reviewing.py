@@ -378,7 +378,7 @@ def _is_only_moved(subject: Subject) -> bool:
 
 
 def _with_changes(subjects: Sequence[Subject], changes: Iterator[tuple[str, Change]]) -> list[Subject]:
-    """Return the subjects with more changes of build files, and a new subject for each file that has none."""
+    """Return subjects with more changes of build files, which need not have changed themselves."""
     result = {subject.path: subject for subject in subjects}
     for path, change in changes:
         subject = result.get(path, Subject(SubjectKind.BUILD, path, path, path))
