@@ -267,7 +267,7 @@ async def test_simulated_time_is_sent_to_clients():
         assert struct.unpack("<BQ", await client.frame(2)) == (2, 12_000_000_000)
 
 
-# --- what must not be ----------------------------------------------------------------------------------------------
+# --- access control ------------------------------------------------------------------------------------------------
 
 
 async def fetched(client: Foxglove, uri: str) -> tuple[int, bytes]:

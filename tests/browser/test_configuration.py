@@ -30,7 +30,7 @@ def row(page, identity: str):
 def test_configuration_file_is_saved_and_opened(grouped_displays, tmp_path: Path):
     _, page = grouped_displays
     path = tmp_path / "mine.rviz"
-    page.keyboard.press("Control+s")  # it has no file yet
+    page.keyboard.press("Control+s")  # the configuration has no file yet
     page.get_by_label("File name").fill(str(path))
     page.keyboard.press("Enter")
     page.wait_for_function("() => document.querySelector('.file-name').textContent === 'mine.rviz'")

@@ -113,7 +113,7 @@ def test_graph_names_are_completed_from_cache(monkeypatch: pytest.MonkeyPatch) -
     assert after("ros2 node info ") == ["/talker"]
     assert after("ros2 service call ") == ["/go"]
     assert after("ros2 action info ") == ["/turn"]
-    assert len(begun) == 1  # it is fresh
+    assert len(begun) == 1  # the file is fresh
     os.utime(path, (1.0, 1.0))
     path.with_suffix(".begun").unlink()
     assert after("ros2 topic echo /t") == []

@@ -31,12 +31,12 @@ def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "logs"))
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
 
-    def written(*entities: str) -> Path:
+    def write_launch_file(*entities: str) -> Path:
         path = tmp_path / "a.launch.py"
         path.write_text(HEAD.format(", ".join(entities)))
         return path
 
-    return written
+    return write_launch_file
 
 
 def launched(*words: object) -> subprocess.CompletedProcess[str]:

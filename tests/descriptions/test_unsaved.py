@@ -58,5 +58,5 @@ async def test_store_returns_outcome_of_listeners(tmp_path: Path) -> None:
     assert await unsaved.store(UnsavedText(ONE, path, 2, "")) == "shown"
     listener("errors")
     assert await unsaved.remove(ONE, path) == "errors"
-    assert await unsaved.remove(ONE, path) == "elsewhere"  # it was removed before
+    assert await unsaved.remove(ONE, path) == "elsewhere"  # the text was removed before
     assert paths == [real_path(path)] * 5

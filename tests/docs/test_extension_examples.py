@@ -1,4 +1,4 @@
-"""The example classes for packages of users: hardware, laser filters, detectors, substitutions."""
+"""The example classes for user packages: hardware, laser filters, detectors, substitutions."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def test_the_substitution_converts_to_capital_letters(
 
     from launch import LaunchContext
 
-    monkeypatch.setitem(substitution_parse_methods, "upper", None)  # restored to the absence of the name
+    monkeypatch.setitem(substitution_parse_methods, "upper", None)  # the name is removed again after the test
     del substitution_parse_methods["upper"]
     substitution = shown_class(docs / "launch.md", "Upper")([TextSubstitution(text="left")])
     assert substitution.perform(LaunchContext()) == "LEFT"

@@ -22,14 +22,14 @@ def identifier(page: Path) -> str:
     return str(page.relative_to(REPOSITORY))
 
 
-def leaves(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+def leaf_parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
     """Return the parser, or the parsers of its subcommands."""
-    below = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
-    if not below:
+    subparser_actions = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
+    if not subparser_actions:
         yield parser
-    for action in below:
+    for action in subparser_actions:
         for subparser in action.choices.values():
-            yield from leaves(subparser)
+            yield from leaf_parsers(subparser)
 
 
 def test_command_reference_is_current() -> None:
@@ -50,7 +50,7 @@ def test_stale_command_reference_is_found_and_fixed(tmp_path: Path, monkeypatch:
 @pytest.mark.parametrize("verb", help_texts())
 def test_all_options_are_documented(page: Path, verb: str) -> None:
     sections = dict(re.findall(r"^## (.+?)\n(.*?)(?=^## |\Z)", page.read_text("utf-8"), re.MULTILINE | re.DOTALL))
-    for parser in leaves(parser_for(verb)):
+    for parser in leaf_parsers(parser_for(verb)):
         section = sections[parser.prog]
         for action in parser._actions:
             if action.dest != "help":
@@ -75,9 +75,9 @@ def test_links_have_existing_targets(page: Path) -> None:
 
 @pytest.mark.parametrize("name", ENGLISH)
 def test_pages_have_chinese_translation_with_same_blocks(name: str) -> None:
-    ours, theirs = blocks(DOCS / name), blocks(DOCS / "zh" / name)
+    english, chinese = blocks(DOCS / name), blocks(DOCS / "zh" / name)
     if name != "commands.md":
-        assert list(map(_common_text, theirs)) == list(map(_common_text, ours))
+        assert list(map(_common_text, chinese)) == list(map(_common_text, english))
 
 
 def test_readmes_show_same_commands() -> None:

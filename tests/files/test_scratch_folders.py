@@ -14,12 +14,12 @@ import pytest
 from linkwright.files.scratch_folders import ScratchFolder, remove_abandoned
 from tests.places import REPOSITORY
 
-KILLED = """
+KILLED_PROGRAM = """
 import os, pathlib, signal
 from linkwright.files.scratch_folders import ScratchFolder
-made = ScratchFolder("test")
-pathlib.Path(made.name, "file").write_text("text")
-print(made.name, flush=True)
+folder = ScratchFolder("test")
+pathlib.Path(folder.name, "file").write_text("text")
+print(folder.name, flush=True)
 input()
 os.kill(os.getpid(), signal.SIGKILL)
 """
@@ -27,60 +27,58 @@ needs_locks = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no
 
 
 @pytest.fixture
-def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def temp_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The system's folder for temporary files."""
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr(tempfile, "tempdir", None)
     return tmp_path
 
 
-def names(place: Path) -> list[str]:
-    return sorted(path.name for path in place.iterdir())
+def names(temp_folder: Path) -> list[str]:
+    return sorted(path.name for path in temp_folder.iterdir())
 
 
-def test_scratch_folder_is_removed_when_closed(place: Path) -> None:
+def test_scratch_folder_is_removed_when_closed(temp_folder: Path) -> None:
     with ScratchFolder("test") as name:
         assert Path(name).name.startswith("linkwright_test_")
         Path(name, "file").touch()
-    assert names(place) == []
+    assert names(temp_folder) == []
 
 
 @needs_locks
-def test_folder_of_killed_process_is_removed_by_next_one(place: Path) -> None:
+def test_folder_of_killed_process_is_removed_by_next_one(temp_folder: Path) -> None:
     with subprocess.Popen(
-        [sys.executable, "-c", KILLED], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        [sys.executable, "-c", KILLED_PROGRAM], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     ) as process:
         assert process.stdin is not None
         assert process.stdout is not None
         name = Path(process.stdout.readline().strip())
         with ScratchFolder("test"):
-            assert (name / "file").is_file()  # it is in use
+            assert (name / "file").is_file()  # the folder is in use
         process.communicate("\n")
     assert (name / "file").is_file()
     with ScratchFolder("other"):
         assert not name.exists()
-    assert names(place) == []
+    assert names(temp_folder) == []
 
 
 @needs_locks
-def test_folders_in_use_or_of_others_are_kept(place: Path) -> None:
-    (place / "linkwright_test_new").mkdir()  # its process has not locked it yet
-    (place / "linkwright_of_nobody").write_text("a file")
-    (place / "linkwright_link").symlink_to(place / "another")
+def test_folders_in_use_or_of_others_are_kept(temp_folder: Path) -> None:
+    (temp_folder / "linkwright_test_new").mkdir()  # its process has not locked it yet
+    (temp_folder / "linkwright_of_nobody").write_text("a file")
+    (temp_folder / "linkwright_link").symlink_to(temp_folder / "another")
     for name in ("another", "linkwright_test_old"):
-        (place / name).mkdir()
-    (place / "another" / "file").touch()
-    os.utime(place / "linkwright_test_old", (1, 1))
-    remove_abandoned(place)
-    assert names(place) == ["another", "linkwright_link", "linkwright_of_nobody", "linkwright_test_new"]
+        (temp_folder / name).mkdir()
+    (temp_folder / "another" / "file").touch()
+    os.utime(temp_folder / "linkwright_test_old", (1, 1))
+    remove_abandoned(temp_folder)
+    assert names(temp_folder) == ["another", "linkwright_link", "linkwright_of_nobody", "linkwright_test_new"]
 
 
 def test_temporary_folders_are_scratch_folders() -> None:
     creation = re.compile(r"\bTemporaryDirectory\(|\bmkdtemp\(")
-    kept_on_exit, inside_scratch_folder = (
-        {"link_folder.py"},
-        {"contents.py", "run.py", "running.py"},
-    )  # of a sandbox's run
+    kept_on_exit = {"link_folder.py"}
+    inside_scratch_folder = {"contents.py", "run.py", "running.py"}  # the scratch folder of a sandbox's run
     allowed = {"scratch_folders.py"} | kept_on_exit | inside_scratch_folder
     found = {
         path.name for path in (REPOSITORY / "src").rglob("*.py") if creation.search(path.read_text(encoding="utf-8"))

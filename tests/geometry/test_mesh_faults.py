@@ -53,7 +53,7 @@ def stl(triangles: list[list[list[float]]]) -> bytes:
     return bytes(80) + struct.pack("<I", len(triangles)) + rows.tobytes()
 
 
-def document() -> dict[str, Any]:
+def gltf_document() -> dict[str, Any]:
     return {
         "asset": {"version": "2.0"},
         "scene": 0,
@@ -73,13 +73,13 @@ def document() -> dict[str, Any]:
 
 
 def glb(
-    change: Callable[[dict[str, Any]], object] = lambda document: None,
+    modify: Callable[[dict[str, Any]], object] = lambda contents: None,
     corners: list[list[float]] = CORNERS,
     indices: tuple[int, int, int] = (0, 1, 2),
     text: bytes | None = None,
 ) -> bytes:
-    contents = document()
-    change(contents)
+    contents = gltf_document()
+    modify(contents)
     text = json.dumps(contents).encode() if text is None else text
     text += b" " * (-len(text) % 4)
     binary = np.array(corners, dtype="<f4").tobytes() + struct.pack("<3H", *indices) + bytes(2)
@@ -87,7 +87,7 @@ def glb(
     return b"glTF" + struct.pack("<II", 2, 12 + len(body)) + body
 
 
-def position(value: dict[str, Any]) -> dict[str, Any]:
+def attributes_of(value: dict[str, Any]) -> dict[str, Any]:
     attributes: dict[str, Any] = value["meshes"][0]["primitives"][0]["attributes"]
     return attributes
 
@@ -137,10 +137,13 @@ CASES = {
     "nan.glb": (glb(corners=[[0, 0, NAN], *CORNERS[1:]]), "a coordinate is not a finite number"),
     "corner.glb": (glb(indices=(0, 1, 70)), "a triangle refers to vertex 70, but there are 3"),
     "accessor.glb": (
-        glb(lambda contents: position(contents).update(POSITION=9)),
+        glb(lambda contents: attributes_of(contents).update(POSITION=9)),
         "attributes.POSITION is 9, but the number of",
     ),
-    "position.glb": (glb(lambda contents: position(contents).clear()), "primitives[0] has no attribute 'POSITION'"),
+    "position.glb": (
+        glb(lambda contents: attributes_of(contents).clear()),
+        "primitives[0] has no attribute 'POSITION'",
+    ),
     "type.glb": (
         glb(lambda contents: contents["accessors"][0].update(componentType=1)),
         "accessors[0].componentType is 1, which glTF does not have",
@@ -150,7 +153,7 @@ CASES = {
         "bufferViews[0] reaches beyond the 44 bytes of its buffer",
     ),
     "beside.gltf": (
-        json.dumps(document() | {"buffers": [{"byteLength": 42, "uri": "none.bin"}]}),
+        json.dumps(gltf_document() | {"buffers": [{"byteLength": 42, "uri": "none.bin"}]}),
         "it refers to the file 'none.bin', which does not exist",
     ),
 }

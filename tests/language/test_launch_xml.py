@@ -31,7 +31,7 @@ def test_table_contains_all_action_tags():
 VALUES = {"true or false": "true", "number": "1.0", "integer": "1", "level of a log": "info"}
 
 
-def written(rule: ElementRule) -> str:
+def element_text(rule: ElementRule) -> str:
     """Return an element with the attributes that it needs."""
     needed = [attribute for attribute in rule.attributes if attribute.required]
     attributes = "".join(f' {attribute.name}="{VALUES.get(attribute.type.name, "a")}"' for attribute in needed)
@@ -51,8 +51,8 @@ def test_table_contains_attributes_read_by_actions(tag, monkeypatch):
     monkeypatch.setattr(Entity, "get_attr", recording)
     assert list(load(ACTIONS))
     rule = LAUNCH.child_rules[tag]
-    children = "".join(map(written, rule.children)) if tag in ("load_composable_node", "rep_env") else ""
-    text = written(rule).replace("/>", f">{children}</{tag}>")
+    children = "".join(map(element_text, rule.children)) if tag in ("load_composable_node", "rep_env") else ""
+    text = element_text(rule).replace("/>", f">{children}</{tag}>")
     Parser().parse_action(Entity(parse(text, "a.launch.xml").root))
     of_python_or_yaml = {"choices", "level"} if tag in ("arg", "bool_arg") or tag.startswith("log_") else set()
     assert requested <= {*rule.attribute_rules, *rule.child_rules, "choice"} | of_python_or_yaml

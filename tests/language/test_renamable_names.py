@@ -194,7 +194,7 @@ def test_file_belongs_to_robot_named_in_same_launch_file(make: Make):
     renaming, texts = files.rename("bringup/config/rover.yaml", "frame_id: camera", "lidar_link")
     assert "frame_id: lidar_link" in texts["bringup/config/rover.yaml"]
     assert "description/urdf/other.urdf" not in texts
-    assert "bringup/config/rover.rviz" not in texts  # it may be about the other robot
+    assert "bringup/config/rover.rviz" not in texts  # the file may be about the other robot
     assert "rover.rviz" in {mention.file.name for mention in renaming.unchanged}
 
 

@@ -49,11 +49,11 @@ def test_fix_is_offered_only_for_checked_text(workspace, folder):
     file = folder / "r.urdf"
     texts = {file: LONG_AXIS}
     assert codes(workspace, file, texts) == {"r.urdf": ["LW221"]}
-    (finding,) = workspace.fixable(file, texts)
+    (finding,) = workspace.fixable_findings(file, texts)
     (edit,) = finding.fix.edits
     assert LONG_AXIS[edit.start : edit.end] == "0 0 2"
-    assert workspace.fixable(file, {file: "<!-- typed -->\n" + LONG_AXIS}) == []
-    assert workspace.fixable(file, {}) == []
+    assert workspace.fixable_findings(file, {file: "<!-- typed -->\n" + LONG_AXIS}) == []
+    assert workspace.fixable_findings(file, {}) == []
 
 
 def test_empty_manifest_findings_are_cleared_once_filled(workspace, folder):

@@ -39,11 +39,11 @@ class Launched:
 
 
 @pytest.fixture(autouse=True)
-def _surroundings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def _isolated_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Keep log files in the folder of the test, and restore the environment after a launch."""
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setenv("LINKWRIGHT_DDS", "0")  # tests that need it say so
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")  # tests that need DDS enable it
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     for name in ("PROCESS_OUTPUT", "SCREEN_FORMAT", "LOG_FORMAT"):
         monkeypatch.delenv(f"OVERRIDE_LAUNCH_{name}", raising=False)
@@ -55,9 +55,9 @@ def _surroundings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[N
 
 @pytest.fixture
 def launch(tmp_path: Path) -> Callable[..., object]:
-    """Launch entities until the end, and return the output."""
+    """Return a function that launches entities, waits for the end, and returns the result."""
 
-    async def run(
+    async def run_launch(
         *entities: LaunchDescriptionEntity,
         finder: PackageFinder | None = None,
         session_options: Mapping[str, Any] = MappingProxyType({}),
@@ -72,31 +72,31 @@ def launch(tmp_path: Path) -> Callable[..., object]:
             succeeded = await session.run(LaunchDescription(entities))
         return Launched(out.getvalue(), err.getvalue(), succeeded, session)
 
-    return run
+    return run_launch
 
 
 @pytest.fixture
 def write(tmp_path: Path) -> Callable[[str, str], Path]:
-    """Write a file below the folder of the test."""
+    """Return a function that writes a file below the folder of the test."""
 
-    def written(name: str, text: str) -> Path:
+    def write_file(name: str, text: str) -> Path:
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
         return path
 
-    return written
+    return write_file
 
 
 @pytest.fixture
 def start(tmp_path: Path) -> Iterator[Callable[..., Running]]:
     running: list[Running] = []
 
-    def begin(*words: object, cwd: Path = tmp_path) -> Running:
+    def start_launcher(*words: object, cwd: Path = tmp_path) -> Running:
         running.append(Running(tmp_path, [str(word) for word in words], cwd))
         return running[-1]
 
-    yield begin
+    yield start_launcher
     for launcher in running:
         if launcher.process.poll() is None:
             launcher.process.kill()

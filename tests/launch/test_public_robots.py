@@ -37,11 +37,11 @@ def file(write: Any) -> Any:
     """Write a launch file of package ``bot``."""
     write("src/bot/package.xml", MANIFEST.format("bot"))
 
-    def written(text: str, name: str = "a.launch.py", head: str = HEAD) -> Path:
+    def write_launch_file(text: str, name: str = "a.launch.py", head: str = HEAD) -> Path:
         body = dedent(text)
         return write(f"src/bot/launch/{name}", head + body if name.endswith(".py") else body)
 
-    return written
+    return write_launch_file
 
 
 @pytest.fixture

@@ -17,12 +17,12 @@ def joint(name: str, limit: str = LIMITS) -> str:
 
 @pytest.fixture
 def codes(tmp_path):
-    def found(body: str) -> list[str]:
+    def check_body(body: str) -> list[str]:
         path = tmp_path / "robot.xacro"
         path.write_text(f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n{body}\n</robot>')
         return [finding.code for finding in check(path)]
 
-    return found
+    return check_body
 
 
 def test_rule_findings_are_reported_beside_xacro_error(codes):

@@ -52,7 +52,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def write(tmp_path: Path) -> Callable[..., Path]:
-    def written(files: dict[str, str]) -> Path:
+    def write_package(files: dict[str, str]) -> Path:
         folder = tmp_path / "src" / "arm"
         for name, text in {"package.xml": MANIFEST, **files}.items():
             path = folder / name
@@ -60,7 +60,7 @@ def write(tmp_path: Path) -> Callable[..., Path]:
             path.write_text(text)
         return folder
 
-    return written
+    return write_package
 
 
 @pytest.fixture

@@ -550,7 +550,7 @@ async def test_page_that_reads_nothing_uses_little_memory(served):
     writer.close()
 
 
-# --- what pages save -----------------------------------------------------------------------------------------------
+# --- files from pages ----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

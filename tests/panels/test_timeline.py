@@ -36,7 +36,7 @@ def recorded(folder: Path) -> Path:
 
 
 @asynccontextmanager
-async def shown(folder: Path, **other: str) -> AsyncIterator[World]:
+async def open_recording(folder: Path, **other: str) -> AsyncIterator[World]:
     """Show the recording in a viewer, in the recording's time, optionally with words of its files replaced."""
     path = recorded(folder)
     for file in path.iterdir():
@@ -55,7 +55,7 @@ async def shown(folder: Path, **other: str) -> AsyncIterator[World]:
 
 @skipping
 async def test_page_receives_timeline_and_playback_starts(tmp_path):
-    async with shown(tmp_path) as world, page(world.viewer) as client:
+    async with open_recording(tmp_path) as world, page(world.viewer) as client:
         timeline = await client.until("timeline")
         assert (timeline["name"], timeline["start"], timeline["end"]) == ("drive", START, START + 10)
         assert {topic["name"]: sum(topic["counts"]) for topic in timeline["topics"]} == {"/p": 11, "/tf": 11}
@@ -66,7 +66,7 @@ async def test_page_receives_timeline_and_playback_starts(tmp_path):
 
 @skipping
 async def test_seek_shows_data_of_that_time(tmp_path):
-    async with shown(tmp_path) as world, page(world.viewer) as client:
+    async with open_recording(tmp_path) as world, page(world.viewer) as client:
         await client.until("playhead", playing=True)
         await client.send("play", playing=False)
         await client.until("playhead", playing=False)
@@ -81,7 +81,7 @@ async def test_seek_shows_data_of_that_time(tmp_path):
 
 @skipping
 async def test_playback_speed_and_loop_are_set(tmp_path):
-    async with shown(tmp_path) as world, page(world.viewer) as client:
+    async with open_recording(tmp_path) as world, page(world.viewer) as client:
         await client.until("playhead", playing=True)
         await client.send("set_playback", speed=5, loop=True)
         await client.until("playhead", speed=5, loop=True)
@@ -93,7 +93,7 @@ async def test_playback_speed_and_loop_are_set(tmp_path):
 
 @skipping
 async def test_recorded_simulation_has_no_simulation_bar(tmp_path):
-    async with shown(tmp_path) as world:
+    async with open_recording(tmp_path) as world:
         node = world.graph.create_node("recorded_simulation")
         state = node.create_publisher("simulation_interfaces/msg/SimulationState", "/simulation_state", 1)
         async with page(world.viewer) as client:
@@ -111,7 +111,7 @@ async def test_recorded_simulation_has_no_simulation_bar(tmp_path):
 @skipping
 async def test_topics_of_unknown_type_are_reported(tmp_path):
     # What the recording carries for the type that nobody has is of no use either.
-    async with shown(tmp_path, Point="Paint", float64="flaot64") as world, page(world.viewer) as client:
+    async with open_recording(tmp_path, Point="Paint", float64="flaot64") as world, page(world.viewer) as client:
         message = await client.until("playhead", playing=True)
         assert message["problem"] == (
             "topics of 'drive' are left out because the definitions of their types are missing or invalid: "

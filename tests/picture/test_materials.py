@@ -69,10 +69,10 @@ def test_file_color_precedes_description_color() -> None:
     from linkwright.geometry.mesh_parts import FileMaterial
 
     blue = FileMaterial((0.0, 0.0, 1.0))
-    assert surface_color(blue, (1.0, 0.0, 0.0), is_textured=False, is_gray=True) == (0.0, 0.0, 1.0)
-    assert surface_color(None, (0.0, 1.0, 0.0), is_textured=False, is_gray=True) == (0.0, 1.0, 0.0)
-    assert surface_color(None, None, is_textured=False, is_gray=False) == DEFAULT_COLOR
-    assert surface_color(None, None, is_textured=False, is_gray=True) == (0.6, 0.6, 0.6)
+    assert surface_color(blue, (1.0, 0.0, 0.0), is_textured=False, format_has_colors=True) == (0.0, 0.0, 1.0)
+    assert surface_color(None, (0.0, 1.0, 0.0), is_textured=False, format_has_colors=True) == (0.0, 1.0, 0.0)
+    assert surface_color(None, None, is_textured=False, format_has_colors=False) == DEFAULT_COLOR
+    assert surface_color(None, None, is_textured=False, format_has_colors=True) == (0.6, 0.6, 0.6)
 
 
 def test_mesh_uses_color_and_scale_of_description(tmp_path: Path) -> None:

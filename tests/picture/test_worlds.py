@@ -24,7 +24,7 @@ def world(path: Path) -> Scene:
     return world_scene(sdf, ResourceFinder(finder))
 
 
-def written(folder: Path, visual: str, pose: str = "1 2 3 0 0 1.5707963267948966") -> Scene:
+def world_with_visual(folder: Path, visual: str, pose: str = "1 2 3 0 0 1.5707963267948966") -> Scene:
     path = folder / "a.world"
     path.write_text(
         f'<sdf version="1.9"><world name="w"><model name="m"><pose>{pose}</pose>'
@@ -52,25 +52,25 @@ def test_course_worlds_are_drawn_completely(name: str) -> None:
     ],
 )
 def test_shapes_are_placed_as_in_file(shape: str, extent: tuple[float, ...], tmp_path: Path) -> None:
-    points = written(tmp_path, f"<geometry>{shape}</geometry>").points - (1, 2, 3)
+    points = world_with_visual(tmp_path, f"<geometry>{shape}</geometry>").points - (1, 2, 3)
     np.testing.assert_allclose(points.max(axis=0), extent, atol=1e-8)
     np.testing.assert_allclose(points.min(axis=0), np.negative(extent), atol=1e-8)
 
 
 def test_color_and_transparency_match_visual(tmp_path: Path) -> None:
     material = "<material><diffuse>0.2 0.4 0.6 0.5</diffuse></material><transparency>0.5</transparency>"
-    scene = written(tmp_path, f"<geometry><sphere><radius>1</radius></sphere></geometry>{material}")
+    scene = world_with_visual(tmp_path, f"<geometry><sphere><radius>1</radius></sphere></geometry>{material}")
     (surface,) = scene.mesh.surfaces
     assert surface.color == (0.2, 0.4, 0.6)
     assert surface.alpha == 0.25
 
 
 def test_planes_are_omitted_and_unsupported_shapes_reported(tmp_path: Path) -> None:
-    plane = written(tmp_path, "<geometry><plane><normal>0 0 1</normal></plane></geometry>")
+    plane = world_with_visual(tmp_path, "<geometry><plane><normal>0 0 1</normal></plane></geometry>")
     assert len(plane.mesh.faces) == 0
     assert plane.problems == ()
     polyline = "<polyline><point>0 0</point><point>1 0</point><point>0 1</point><height>1</height></polyline>"
-    (problem,) = written(tmp_path, f"<geometry>{polyline}</geometry>").problems
+    (problem,) = world_with_visual(tmp_path, f"<geometry>{polyline}</geometry>").problems
     assert problem.code == "PIC101"
-    (problem,) = written(tmp_path, "<geometry><mesh><uri>no.dae</uri></mesh></geometry>").problems
+    (problem,) = world_with_visual(tmp_path, "<geometry><mesh><uri>no.dae</uri></mesh></geometry>").problems
     assert problem.code == "PIC101"

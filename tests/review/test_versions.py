@@ -125,7 +125,7 @@ def test_symlinks_out_of_repository_are_not_followed(package, compare, tmp_path,
     result = compare(package, "main~1..main")
     assert "77" not in str(result)
     assert [str(note) for note in result.notes] == [
-        "symbolic link 'arm_description/urdf/segment.xacro' leads out of the repository and is ignored"
+        "symbolic link 'arm_description/urdf/segment.xacro' points outside the repository and is ignored"
     ]
 
 
@@ -174,7 +174,7 @@ def test_links_whose_names_are_not_utf8_are_not_followed(package, compare, tmp_p
     result = compare(package, "main~1..main")
     assert "77" not in str(result)
     assert [str(note) for note in result.notes] == [
-        f"symbolic link '{name}' leads out of the repository and is ignored"
+        f"symbolic link '{name}' points outside the repository and is ignored"
     ]
 
 
@@ -200,7 +200,7 @@ def test_missing_file_of_partial_clone_is_a_problem_of_that_file_only(package, c
     (package.root / "arm_description/meshes/a.stl").write_bytes(b"")
     result = compare(package, "HEAD~1..HEAD")
     assert masses(result) == ["link 'upper': inertial mass 2 -> 3 kg"]
-    assert "git cannot write one file of 'HEAD~1', such as 'arm_description/meshes/a.stl'" in map(str, result.notes)
+    assert "git cannot check out one file of 'HEAD~1', such as 'arm_description/meshes/a.stl'" in map(str, result.notes)
 
 
 def test_new_and_fixed_findings_are_reported(package, compare):

@@ -184,7 +184,7 @@ async def test_services_change_link_and_joint_properties():
             False,
             (
                 "this mass or inertia is not physically possible; give a positive mass and moments that "
-                "fulfill the triangle inequality"
+                "satisfy the triangle inequality"
             ),
         )
 

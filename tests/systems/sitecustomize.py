@@ -119,7 +119,7 @@ def macos() -> None:
 
 def remove(module, names) -> None:
     """Take names from a module, where it has them."""
-    if module is os and hasattr(os, "process_cpu_count"):  # it is made of what is taken away
+    if module is os and hasattr(os, "process_cpu_count"):  # `process_cpu_count` is built on the removed function
         os.process_cpu_count = os.cpu_count
     for name in names:
         if hasattr(module, name):

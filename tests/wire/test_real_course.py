@@ -87,7 +87,7 @@ def interrupt(process: subprocess.Popen[str]) -> str:
 
     In the middle of taking a message, rclpy turns Ctrl-C into a RuntimeError.
     """
-    time.sleep(0.3)  # it has taken all messages
+    time.sleep(0.3)  # the subscriber has taken all messages
     process.send_signal(signal.SIGINT)
     return process.communicate(timeout=SECONDS)[1]
 

@@ -185,7 +185,7 @@ def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_nod
         while number not in came and time.monotonic() < until:
             process.executor.spin_once(timeout_sec=0.01)
             came = real.ask("received_images", "frames_to_ros")
-    assert len([number for number in came if number >= FRAMES // 2]) >= 0.9 * FRAMES / 2  # it was known by then
+    assert len([number for number in came if number >= FRAMES // 2]) >= 0.9 * FRAMES / 2  # discovered by then
 
 
 def test_late_subscriber_gets_latched_message(processes, real_node):

@@ -1,4 +1,4 @@
-"""Watching an expansion changes nothing of it, whatever the description does."""
+"""Traced attributes have locations, and tracing raises no other errors than those of Linkwright."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ def inputs(write: Write, tmp_path, monkeypatch):
     monkeypatch.setenv("LINKWRIGHT_TEST", "env value")
     monkeypatch.delenv("LINKWRIGHT_UNSET", raising=False)
 
-    def of(case: Case) -> Inputs:
+    def inputs_of(case: Case) -> Inputs:
         case.write(tmp_path)
         monkeypatch.chdir(tmp_path)
         return Inputs("main.xacro", case.arguments, PACKAGES)
 
-    return of
+    return inputs_of
 
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
@@ -52,11 +52,11 @@ def test_traced_attributes_have_locations(case: Case, inputs) -> None:
 
 @pytest.mark.parametrize("case", [*CASES.values(), *ERRORS.values()], ids=[*CASES, *ERRORS])
 def test_tracing_raises_only_linkwright_errors(case: Case, inputs) -> None:
-    given = inputs(case)
-    for ask in (
+    case_inputs = inputs(case)
+    for trace in (
         lambda: arguments_of("main.xacro", case.arguments, packages=PACKAGES),
         lambda: explain("main.xacro", "no such name", case.arguments, packages=PACKAGES),
-        lambda: log_properties(given, str, everywhere=True),
+        lambda: log_properties(case_inputs, str, everywhere=True),
     ):
         with suppress(LinkwrightError):
-            ask()
+            trace()

@@ -1,14 +1,14 @@
 /** Whether a server knows a token: "silent" if no server answers. */
-export type Proof = "known" | "unknown" | "silent";
+export type ServerIdentity = "known" | "unknown" | "silent";
 
 /**
- * Asks the server of a socket's address to prove that it knows a token, without sending the token. Otherwise, after a
- * program has ended, the next program at its port would receive the token, and could open the page of a later one.
+ * Asks the server of a socket's address to prove that it knows a token, without sending the token. Without this
+ * check, another program that later listens on the port would receive the token, and could use it.
  *
  * Browsers offer cryptography only to pages of this machine or over HTTPS. Elsewhere the server is trusted without
  * proof: a program there does not reuse its token.
  */
-export async function askForProof(socketUrl: string, token: string): Promise<Proof> {
+export async function askForProof(socketUrl: string, token: string): Promise<ServerIdentity> {
   const { subtle } = globalThis.crypto as Partial<Crypto>;
   if (!subtle) return "known";
   const nonce = formatHex(crypto.getRandomValues(new Uint8Array(16)));

@@ -121,7 +121,7 @@ export interface Configuration {
   type: "configuration";
 }
 
-/** A display class that can be added, and the message types that it shows. */
+/** An available display class, and the message types that it shows. */
 export interface DisplayClass {
   cls: string;
   messages: string[];
@@ -224,7 +224,7 @@ export interface Redo {
   type: "redo";
 }
 
-/** A request for the classes that can be added and the topics that they can show. */
+/** A request for the available display classes and the topics that they can show. */
 export interface RequestDisplayChoices {
   type: "request_display_choices";
 }

@@ -61,7 +61,7 @@ export interface PlotField {
   kind: string;
 }
 
-/** A series that a page plots, with an ID that the page has chosen. */
+/** A series that a page plots, with an ID chosen by the page. */
 export interface PlotSeries {
   id: number;
   topic: string;
@@ -95,7 +95,7 @@ export interface RequestFields {
   type: "request_fields";
 }
 
-/** All series that the page plots from now on, and the duration that it shows, in seconds. */
+/** All series that the page plots from now on, and the shown duration in seconds. */
 export interface WatchSeries {
   series: PlotSeries[];
   seconds: number;

@@ -131,7 +131,7 @@ export interface Clock {
   type: "clock";
 }
 
-/** The notice that time was reset and that displays have discarded their messages. */
+/** The notice that time was reset and displays have discarded their messages. */
 export interface TimeReset {
   type: "time_reset";
 }

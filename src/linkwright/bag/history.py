@@ -31,7 +31,7 @@ _MIN_BYTES = 16_384
 """The minimum size of a message to compress."""
 
 _MAX_RATIO = 0.8
-"""The maximum size of a compressed message, as a share of its size: decompression takes time, too."""
+"""The maximum size of a compressed message, as a share of its size: decompression also takes time."""
 
 _MAX_QUEUED_BYTES = 64_000_000
 """The maximum number of bytes that wait for compression. Messages beyond that stay uncompressed."""
@@ -118,7 +118,7 @@ _MAX_REPEAT_NS = 10_000_000_000
 """The time after which an unchanged state is stored again, so that a search need not look further back."""
 
 _LARGE_MEAN_BYTES = 6000
-"""The mean size of a topic's messages above which they are thinned before any message is dropped."""
+"""The minimum mean size of a topic's messages for which they are thinned before any message is dropped."""
 
 _MAX_THINNED_NS = 600_000_000_000
 """The maximum time span of a topic's messages for which they are thinned."""
@@ -267,7 +267,7 @@ class _Track:
         return index if index < len(self.entries) and self.entries[index][1] == number else None
 
     def repeated_after(self, start_ns: int, end_ns: int) -> list[_Entry]:
-        """Return the messages in a time interval that represent equal later messages, too."""
+        """Return the messages in a time interval that also represent equal later messages."""
         return [item for item in self.between(start_ns, end_ns) if item[1] in self._repeated_numbers]
 
     def repeated_until(self, at_ns: int) -> list[_Entry]:
@@ -397,7 +397,7 @@ class History:
         self._shrinker.close()
 
     def _comparable_clock(self, content: Content, clock_ns: int) -> Content:
-        """Return the content with which a clock message is compared with earlier clock messages.
+        """Return the content of a clock message, with the state that decides whether it repeats an earlier one.
 
         Clock messages count as repeated while no other message arrives and the clock is not reset.
         """

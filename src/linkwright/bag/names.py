@@ -26,7 +26,7 @@ ROS1_SUFFIX = ".bag"
 """The suffix of ROS 1 recordings. They are rejected with a hint on how to convert them."""
 
 PACKED = ".zstd"
-"""The suffix that follows the name of a file that is compressed as a whole."""
+"""The suffix of a file that is compressed as a whole."""
 
 _NUMBERED_NAME = re.compile(r"(.+)_(0|[1-9][0-9]*)(\.mcap|\.db3)((?:\.zstd)?)")
 """The pattern of the names that rosbag2 gives to files: a base name, a number, a suffix, and a compression suffix."""

@@ -147,7 +147,7 @@ class BagWriter:
         Raises:
             LinkwrightError: BAG108, the file cannot be written; the messages written before can still be played.
         """
-        if self._is_ending:  # let the ending thread acquire the lock, which a continuous writer might always get first
+        if self._is_ending:  # a continuous writer could starve the thread that closes the recording
             return
         with self._lock:
             if self._part is None:

@@ -84,7 +84,7 @@ class Direction:
         """The steady time, in seconds, at which each new presence is announced at the latest."""
         self._warned_names: set[str] = set()
 
-    # --- after changes -----------------------------------------------------------------------------------------------
+    # --- change handlers ---------------------------------------------------------------------------------------------
 
     def remove_mirrors(self) -> None:
         """Decide which endpoints to mirror now, and remove the mirrors of endpoints that have left."""

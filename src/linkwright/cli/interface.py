@@ -36,7 +36,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the names of the types by kind, as ros2 does."""
+    """Print the type names by kind, as ros2 does."""
     from linkwright.messages import interface_names
 
     for kind in _requested_kinds(arguments):

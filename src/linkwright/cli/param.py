@@ -71,7 +71,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the names of parameters, grouped by node."""
+    """Print the parameter names, grouped by node."""
     try:
         pattern = re.compile(arguments.filter or "")
     except re.error as error:

@@ -76,7 +76,7 @@ def _make_formatter(prog: str) -> argparse.HelpFormatter:
 
 # Replace the function with which argparse translates its own messages, such as "the following arguments are required".
 # argparse uses gettext by default, which searches for catalogs that do not exist and imports `locale` to do so.
-argparse._ = translate_help  # type: ignore[attr-defined]  # argparse imports it so
+argparse._ = translate_help  # type: ignore[attr-defined]  # argparse imports gettext under this name
 
 
 def _translate_help(parser: argparse.ArgumentParser) -> None:

@@ -21,8 +21,8 @@ class CommitFiles:
     """All files of a commit in a temporary folder, including included files and meshes.
 
     Neither the repository nor its working tree is changed. Packages that are not in the commit are found from the
-    working tree. Symbolic links that lead out of the folder are removed, because a commit must not show other files of
-    the computer.
+    working tree. Symbolic links that point outside the folder are removed, because a commit must not show other
+    files of the computer.
 
     Args:
         repository: the repository.
@@ -111,7 +111,7 @@ class CommitFiles:
 
 
 def leads_outside(path: Path, root: Path) -> bool:
-    """Return whether a symbolic link leads out of the files of a commit, or into git's own folder.
+    """Return whether a symbolic link points outside the files of a commit, or into git's own folder.
 
     Args:
         path: a path below the root.

@@ -115,12 +115,12 @@ def is_misspelled(name: str, names: Iterable[str]) -> bool:
     return any(_is_within(name, other, 1 + len(name) // 10) for other in names)
 
 
-def _is_within(first: str, second: str, max_errors: int) -> bool:
-    """Return whether two texts differ by at most `max_errors` errors.
+def _is_within(first: str, second: str, max_edits: int) -> bool:
+    """Return whether two texts differ by at most `max_edits` edits.
 
-    Errors are counted by the optimal string alignment distance.
+    Edits are counted by the optimal string alignment distance.
     """
-    if abs(len(first) - len(second)) > max_errors:
+    if abs(len(first) - len(second)) > max_edits:
         return False
     previous_row: list[int] = []
     row = list(range(len(second) + 1))
@@ -131,9 +131,9 @@ def _is_within(first: str, second: str, max_errors: int) -> bool:
             if i and j and letter == second[j - 1] and first[i - 1] == other_letter:
                 cost = min(cost, row_before_previous[j - 1] + 1)
             row.append(cost)
-        if min(row) > max_errors:
+        if min(row) > max_edits:
             return False
-    return row[-1] <= max_errors
+    return row[-1] <= max_edits
 
 
 def did_you_mean(name: str, candidates: Iterable[str]) -> Phrase | None:

@@ -30,9 +30,8 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
     simulated_nodes = sorted(node for node, value in observation.sim_time.items() if value)
     other_nodes = sorted(node for node, value in observation.sim_time.items() if not value)
     senders = nodes_of(observation.publishers_of(_CLOCK_TOPIC))
-    other_nodes = [
-        node for node in other_nodes if node not in senders and not _is_hidden(node)
-    ]  # publishers of /clock need not use it
+    # a node that publishes /clock may itself use system time
+    other_nodes = [node for node in other_nodes if node not in senders and not _is_hidden(node)]
     if simulated_nodes and not senders:
         yield Diagnostic(
             "DOC602",

@@ -13,7 +13,7 @@ from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
 
 _HOOK_VARIABLES = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
-"""Variables that git sets for hooks, and that would override the repository of a folder."""
+"""Variables that git sets for hooks. They would override the repository of a folder."""
 
 _SUBMODULE_MODE = "160000"
 _LFS_POINTER_SIZE = 1024

@@ -1,4 +1,4 @@
-"""Reads files that may be pipes or devices, without waiting for a writer that is absent.
+"""Read files that may be pipes or devices, without waiting for an absent writer.
 
 Opening a named pipe (FIFO) normally blocks until a program opens its other end, which may never happen. The functions
 of this module always return. The module imports little, because short commands load it.

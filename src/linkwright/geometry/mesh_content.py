@@ -1,4 +1,4 @@
-"""Keys for the contents of mesh files, so that a file that exists twice is read once."""
+"""Keys for the contents of mesh files, so that copies of a file are read once."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.tinyxml import parse_as_tinyxml
 
 MESH_ENDINGS = (".stl", ".dae", ".obj", ".glb", ".gltf")
-"""The extensions of the supported formats, which RViz and Gazebo read, too."""
+"""The extensions of the supported formats, which RViz and Gazebo also read."""
 _FACE_LINES = {".stl": b"facet normal", ".obj": b"\nf "}
 """The beginning of the line that occurs once for each triangle, or polygon, in text files."""
 

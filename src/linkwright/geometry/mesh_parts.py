@@ -1,6 +1,6 @@
 """Read mesh files with their materials, as triangles grouped by material.
 
-The rules for materials are those of RViz, which the page follows, too.
+The rules for materials are those of RViz, which the page also follows.
 """
 
 from __future__ import annotations

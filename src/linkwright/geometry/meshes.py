@@ -83,7 +83,7 @@ class TriangleMesh:
         return MassProperties(0.0) if hull is None else polyhedron_properties(vertices, hull)
 
     def scaled(self, scale: Vector3) -> TriangleMesh:
-        """Return the mesh scaled along its axes, as by the ``scale`` of a URDF mesh.
+        """Return the mesh scaled along its axes, like the ``scale`` of a URDF mesh.
 
         A negative factor mirrors the mesh.
         """

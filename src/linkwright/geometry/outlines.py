@@ -30,7 +30,7 @@ CORNERS = (8, 9, 10, 12, 13, 14, 16, 17, 18)
 """The indices of the corner coordinates among these tokens."""
 
 COLLADA_PADDING = b" \t\r\n\0"
-"""The bytes that exporters leave around the XML of a COLLADA file, and that other readers skip."""
+"""The bytes that exporters leave around the XML of a COLLADA file. Other readers skip them."""
 _MAX_TRIANGLES = 20_000
 """The maximum number of triangles, because a small COLLADA file may place its meshes any number of times."""
 

@@ -29,7 +29,7 @@ def read_stl(data: bytes, *, is_plain: bool = False) -> PlainMesh | None:
 
     Args:
         data: the content of the file.
-        is_plain: whether to ignore colors; otherwise None is returned for a file with colors, too.
+        is_plain: whether to ignore colors; otherwise None is also returned for a file with colors.
     """
     return _binary(data, is_plain=is_plain) or _text(data)
 

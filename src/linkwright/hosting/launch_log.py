@@ -197,7 +197,7 @@ class LaunchLog:
         if self._closed:
             return
         if name not in self._files:
-            folder = self.folder  # This may log a line, and logging may fail, too.
+            folder = self.folder  # This may log a line, and logging may also fail.
             if name not in self._files:
                 self._files[name] = self._open(folder / name)
         file = self._files[name]

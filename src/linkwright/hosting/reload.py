@@ -127,7 +127,7 @@ class LiveReload:
         for task in self._running.values():
             task.cancel()
 
-    # --- which files ----------------------------------------------------------------------------------------
+    # --- watched files --------------------------------------------------------------------------------------
 
     def _files_of_interest(self, call: XacroCall) -> set[Path]:
         """Return the files of a description, and the files that its findings mention."""

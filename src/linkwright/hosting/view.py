@@ -186,7 +186,7 @@ class ModelView:
                 self.log.write_diagnostics(error.diagnostics)
                 self.fail(recorder)
 
-    # --- what is shown ----------------------------------------------------------------------------------------
+    # --- the description --------------------------------------------------------------------------------------
 
     def _plan_description(self) -> bool:
         """Plan the publication of the description.

@@ -1,7 +1,7 @@
 """Convert sensor_msgs/msg/Image to 8-bit gray, RGB or RGBA pixels.
 
 Luma and chroma of video cameras are converted (ITU-R BT.601, studio range), and images of a Bayer filter demosaiced.
-Gray values of more than 8 bits are scaled by a range, as by RViz's Normalize Range.
+Gray values of more than 8 bits are scaled by a range, as RViz's Normalize Range does.
 """
 
 from __future__ import annotations

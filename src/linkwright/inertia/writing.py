@@ -55,7 +55,7 @@ def edits_of_link(robot: Robot, name: str, properties: MassProperties) -> tuple[
         properties: the mass properties in the link frame.
 
     Raises:
-        NotWritableError: as for `edits_for`, or the text of the link defines other links, too.
+        NotWritableError: as for `edits_for`, or the text of the link also defines other links.
     """
     position = _source_position(robot.links[name])
     if any(_source_position(other) == position for other in robot.links.values() if other.name != name):

@@ -176,7 +176,10 @@ def _missing_body_mass(members: list[Link], densities: Mapping[str, float], mesh
         yield _inertial_finding("DRIVE102", message, link, limited)
     if not has_mass_source and members[0].element is not None:
         name = members[0].name
-        message = phrase("no link that moves with link '{link}' has a shape or a mass: the link gets 10 g", link=name)
+        message = phrase(
+            "no link rigidly attached to link '{link}' has a shape or a mass: the link is given a mass of 10 g",
+            link=name,
+        )
         yield _inertial_finding("DRIVE103", message, members[0], _SHAPELESS_BODY)
 
 

@@ -69,7 +69,7 @@ class Drive:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A fact that was inferred about a robot, or a fact that could not be inferred.
+    """A fact about a robot that was inferred or could not be inferred.
 
     Attributes:
         diagnostic: the inference and its reason, at the position of its subject in the user's file.

@@ -130,7 +130,7 @@ class _Writer:
 
 
 def _possible_names(elements: Iterable[Element]) -> set[str]:
-    """Return the texts in elements that may be names of links and joints."""
+    """Return the texts in elements that may be link and joint names."""
     names: set[str] = set()
     for element in elements:
         for descendant in element.walk():

@@ -1,4 +1,4 @@
-"""Editor functions for ``CMakeLists.txt``: packages, targets, paths and commands."""
+"""Language features for ``CMakeLists.txt``: packages, targets, paths and commands."""
 
 from __future__ import annotations
 

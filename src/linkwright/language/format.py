@@ -110,7 +110,7 @@ def _no_explanation(*_: object) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """A file format with its editor functions.
+    """A file format with its language features.
 
     The functions accept any text and any character offset in it, and raise no exceptions.
 

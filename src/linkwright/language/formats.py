@@ -1,4 +1,4 @@
-"""The file formats with their own editor functions.
+"""The file formats with their own language features.
 
 Other XML files are treated as descriptions.
 """

@@ -1,4 +1,4 @@
-"""Editor functions for interface files: ``.msg``, ``.srv`` and ``.action``."""
+"""Language features for interface files: ``.msg``, ``.srv`` and ``.action``."""
 
 from __future__ import annotations
 

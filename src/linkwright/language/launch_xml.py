@@ -1,4 +1,4 @@
-"""Editor functions for launch files in XML."""
+"""Language features for launch files in XML."""
 
 from __future__ import annotations
 

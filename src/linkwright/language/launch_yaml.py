@@ -1,4 +1,4 @@
-"""Editor functions for launch files in YAML, whose keys are the elements of the XML format."""
+"""Language features for launch files in YAML, whose keys are the elements of the XML format."""
 
 from __future__ import annotations
 

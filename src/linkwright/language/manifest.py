@@ -1,4 +1,4 @@
-"""Editor functions for ``package.xml``: dependencies, build types and licenses."""
+"""Language features for ``package.xml``: dependencies, build types and licenses."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The definitions and uses of names in an XML text, such as macros, properties and links.
 
-Nothing is expanded, so the branches of conditions and uncalled macros count, too. A property is identified by its
+Nothing is expanded, so the branches of conditions and uncalled macros also count. A property is identified by its
 name alone, because xacro's scopes are dynamic. A name that equals a parameter of an enclosing macro denotes this
 parameter.
 """

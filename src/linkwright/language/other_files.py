@@ -19,7 +19,7 @@ from linkwright.language.mentions import Mention, mentions_in
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.proof import Edit, ExpansionProof
 from linkwright.language.trials import trials
-from linkwright.language.workspace import Workspace, versions_of
+from linkwright.language.workspace import Workspace, hash_texts
 from linkwright.packages import enclosing_package
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
@@ -183,7 +183,7 @@ def _robots_of_package(project: Workspace, texts: Mapping[Path, str], folder: Pa
 
 
 def _named_together(project: Workspace, texts: Mapping[Path, str], file: Path, robots: Sequence[Path]) -> list[Path]:
-    """Return the robots that mention a file, or that a launch file mentions together with it."""
+    """Return the robots that mention a file, or are mentioned together with it in a launch file."""
     name = re.compile(rf"(?<![\w.-]){re.escape(file.name)}(?![\w-])")
     text = project.text(file, texts) or ""
     if ".srdf" in file.name:
@@ -229,9 +229,9 @@ def names_of_robot(project: Workspace, texts: Mapping[Path, str], robot: Path) -
         texts: the texts of the open files.
         robot: the description.
     """
-    versions = versions_of(texts)
+    text_hashes = hash_texts(texts)
     cached = project.cached_results.get(("names", robot))
-    if cached is None or cached[0] != versions:
+    if cached is None or cached[0] != text_hashes:
         expansions, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
         roots = [trial.expansion.document.root for trial in expansions]
         names = frozenset(
@@ -240,7 +240,7 @@ def names_of_robot(project: Workspace, texts: Mapping[Path, str], robot: Path) -
             for kind in _PART_KINDS
             for element in root.elements(kind.value)
         )
-        cached = project.cached_results["names", robot] = (versions, names)
+        cached = project.cached_results["names", robot] = (text_hashes, names)
     assert isinstance(cached[1], frozenset)
     return cached[1]
 

@@ -101,8 +101,8 @@ def programs_of(finder: PackageFinder, package: str) -> dict[str, Program]:
         for path in sorted((install_prefix(share) / "lib" / package).glob("*")):
             if path.is_file() and path.suffix not in (".so", ".dylib") and os.access(path, os.X_OK):
                 programs[path.name] = Program(path.name, str(path), Target(path))
-    ours = {name for owner, name in hosted_executables() if owner == package}
-    for name in sorted(ours | substituted_executables().get(package, frozenset())):
+    hosted_names = {name for owner, name in hosted_executables() if owner == package}
+    for name in sorted(hosted_names | substituted_executables().get(package, frozenset())):
         programs.setdefault(name, Program(name, "Linkwright"))
     return programs
 

@@ -1,4 +1,4 @@
-"""Editor functions for ``setup.py``: programs, and the files that are installed."""
+"""Language features for ``setup.py``: programs, and the files that are installed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Editor functions for SRDF: groups, and the links and joints of the description."""
+"""Language features for SRDF: groups, and the links and joints of the description."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The uses of a name in file formats with their own editor functions.
+"""The uses of a name in file formats with their own language features.
 
 A use is an occurrence of the name with the same definition.
 """

@@ -38,24 +38,24 @@ _CHECK_INPUTS = (
 
 
 MAX_CHARACTERS = 1_000_000
-"""The number of characters above which a file is large. A large file is checked, but has no other editor functions. The
+"""The maximum number of characters of a file that is not large. A large file is checked, but has no other features. The
 largest known public description has 300,000 characters."""
 _MAX_ROBOTS = 16
 """The number of descriptions whose robots are stored."""
 
 
 class _Result(NamedTuple):
-    """The findings about a subject, and the versions of the open texts that were checked."""
+    """The findings about a subject, and the hashes of the open texts that were checked."""
 
     findings: tuple[Diagnostic, ...]
-    versions: Mapping[Path, int]
+    text_hashes: Mapping[Path, int]
 
 
 _NOTHING = _Result((), {})
 
 
-def versions_of(texts: Mapping[Path, str]) -> dict[Path, int]:
-    """Return the hash of each text, as a replacement for a copy of the texts."""
+def hash_texts(texts: Mapping[Path, str]) -> dict[Path, int]:
+    """Return the hash of each text, to detect changes without a copy of the texts."""
     return {file: hash(text) for file, text in texts.items()}
 
 
@@ -71,7 +71,7 @@ class Workspace:
     Attributes:
         folders: the folders.
         index: the descriptions in the folders.
-        cached_results: results about files until a file changes, each with the versions of the open texts.
+        cached_results: results about files until a file changes, each with the hashes of the open texts.
     """
 
     def __init__(self, folders: Iterable[Path]) -> None:
@@ -166,15 +166,15 @@ class Workspace:
         texts = {
             file: text for file, text in texts.items() if file.name.endswith(DESCRIPTIONS) and file in self.index.files
         }
-        versions = versions_of(texts)
+        text_hashes = hash_texts(texts)
         cached = self._robots.pop(entry, None)
-        if cached is None or cached[0] != versions:
+        if cached is None or cached[0] != text_hashes:
             overlay = Overlay({str(path): text for path, text in texts.items()})
             try:
                 robot = read(expand(entry, {}, packages=self.finder(entry), overlay=overlay).document).robot
             except LinkwrightError:
                 robot = None
-            cached = versions, robot
+            cached = text_hashes, robot
         self._robots[entry] = cached
         if len(self._robots) > _MAX_ROBOTS:
             del self._robots[next(iter(self._robots))]
@@ -259,15 +259,17 @@ class Workspace:
         """
         old_findings = self._results.pop(subject, _NOTHING).findings
         if findings:
-            self._results[subject] = _Result(findings, versions_of(texts))
-        return self._of_files({_file(diagnostic, subject) for diagnostic in (*old_findings, *findings)} | {*changed})
+            self._results[subject] = _Result(findings, hash_texts(texts))
+        return self._findings_by_file(
+            {_file_of(diagnostic, subject) for diagnostic in (*old_findings, *findings)} | {*changed}
+        )
 
-    def without_findings(self) -> dict[Path, list[Diagnostic]]:
+    def cleared_findings(self) -> dict[Path, list[Diagnostic]]:
         """Return an empty list for each file with findings, to clear the findings in an editor."""
         results = self._results.items()
-        return {_file(finding, subject): [] for subject, result in results for finding in result.findings}
+        return {_file_of(finding, subject): [] for subject, result in results for finding in result.findings}
 
-    def fixable(self, file: Path, texts: Mapping[Path, str]) -> list[Finding]:
+    def fixable_findings(self, file: Path, texts: Mapping[Path, str]) -> list[Finding]:
         """Return the findings about a file with a fix that applies to the current texts.
 
         Args:
@@ -275,12 +277,12 @@ class Workspace:
             texts: the texts of the open files.
         """
         unique_findings = UniqueFindings()
-        versions = versions_of(texts)
+        text_hashes = hash_texts(texts)
         for subject, result in self._results.items():
             for finding in result.findings:
-                if isinstance(finding, Finding) and finding.fix is not None and _file(finding, subject) == file:
+                if isinstance(finding, Finding) and finding.fix is not None and _file_of(finding, subject) == file:
                     edited = {real_path(edit.source_file) for edit in finding.fix.edits}
-                    if all(result.versions.get(other) == versions.get(other) for other in edited):
+                    if all(result.text_hashes.get(other) == text_hashes.get(other) for other in edited):
                         unique_findings.add([finding])
         return [finding for finding in unique_findings.all() if isinstance(finding, Finding)]
 
@@ -292,9 +294,9 @@ class Workspace:
             texts: the texts of the open files.
         """
         unique_findings = UniqueFindings()
-        versions = versions_of(texts)
+        text_hashes = hash_texts(texts)
         for result in self._results.values():
-            if result.versions.get(file) == versions.get(file):
+            if result.text_hashes.get(file) == text_hashes.get(file):
                 unique_findings.add(
                     [
                         finding
@@ -317,32 +319,32 @@ class Workspace:
     def _check_subject(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
         overlay = Overlay({str(path): text for path, text in texts.items()})
         if subject.is_dir():
-            diagnostics, trouble = self._checker.check_package(subject, overlay, Contexts())
-            return (*trouble, *relevant_package_findings(diagnostics, [subject]))
+            diagnostics, problems = self._checker.check_package(subject, overlay, Contexts())
+            return (*problems, *relevant_package_findings(diagnostics, [subject]))
         if not self._is_xml(subject, texts):
             return ()
         open_subjects = frozenset({subject}) if subject in texts else frozenset()
         targets = Targets((subject,), self.index.packages, open_subjects)
-        checked, trouble = self._checker.check_file(subject, targets, overlay, Contexts())
-        examined = Examined.of(checked, subject)
-        return (*trouble, *relevant_findings(examined, [examined], targets, [subject]))
+        checked_file, problems = self._checker.check_file(subject, targets, overlay, Contexts())
+        examined = Examined.of(checked_file, subject)
+        return (*problems, *relevant_findings(examined, [examined], targets, [subject]))
 
     def _is_xml(self, file: Path, texts: Mapping[Path, str]) -> bool:
         """Return whether a file is XML by its name, or else by its text."""
         return file.name.endswith((*XML_FILES, ".xml")) or (self.text(file, texts) or "").lstrip().startswith("<")
 
-    def _of_files(self, files: set[Path]) -> dict[Path, list[Diagnostic]]:
+    def _findings_by_file(self, files: set[Path]) -> dict[Path, list[Diagnostic]]:
         """Return the findings about some files, of all subjects, without duplicates."""
         findings_by_file = {file: UniqueFindings() for file in files}
         for subject, result in self._results.items():
             for diagnostic in result.findings:
-                file = _file(diagnostic, subject)
+                file = _file_of(diagnostic, subject)
                 if file in findings_by_file:
                     findings_by_file[file].add([diagnostic])
         return {file: unique.all() for file, unique in findings_by_file.items()}
 
 
-def _file(diagnostic: Diagnostic, subject: Path) -> Path:
+def _file_of(diagnostic: Diagnostic, subject: Path) -> Path:
     """Return the file of a finding: its location, or else its description or manifest."""
     if diagnostic.span is not None:
         return real_path(diagnostic.span.file)

@@ -309,12 +309,12 @@ def _form(step: StepText) -> tuple[object, ...]:
 def _compare_languages(texts: Sequence[LessonText]) -> None:
     first = texts[0]
     for other in texts[1:]:
-        ours, theirs = ([_form(step) for step in text.steps] for text in (first, other))
-        if ours == theirs:
+        steps, other_steps = ([_form(step) for step in text.steps] for text in (first, other))
+        if steps == other_steps:
             continue
         index = next(
-            (index for index, pair in enumerate(zip(ours, theirs, strict=False)) if pair[0] != pair[1]),
-            min(len(ours), len(theirs)),
+            (index for index, pair in enumerate(zip(steps, other_steps, strict=False)) if pair[0] != pair[1]),
+            min(len(steps), len(other_steps)),
         )
         line = other.steps[min(index, len(other.steps) - 1)].line
         message = phrase(

@@ -1,4 +1,4 @@
-"""Tests of lessons, with correct solutions that the checks must accept and wrong ones that they must reject."""
+"""Tests of lessons: the checks must accept correct solutions, and reject wrong ones."""
 
 from __future__ import annotations
 
@@ -131,9 +131,11 @@ def _test_step(
         shutil.rmtree(scratch, ignore_errors=True)
         shutil.copytree(workspace, scratch)
         _apply(case, scratch, step.lesson)
-        given = answer if case.answer is None else case.answer
+        tested_answer = answer if case.answer is None else case.answer
         yield TestResult(
-            step.lesson.id, f"{step.id}: {case.title}", _unexpected_result(step, scratch, given, case.says, server)
+            step.lesson.id,
+            f"{step.id}: {case.title}",
+            _unexpected_result(step, scratch, tested_answer, case.says, server),
         )
 
 

@@ -16,7 +16,7 @@ from linkwright.learning.errors import file_error, unreadable
 
 PROGRESS_FILE = "learn.yaml"
 
-_LONGEST_ANSWER = 1000
+_MAX_ANSWER_LENGTH = 1000
 
 _HEADER = "# Progress in a course of Linkwright, written by `linkwright learn`.\n"
 
@@ -108,7 +108,7 @@ def _read_step(values: Mapping[str, Any]) -> StepProgress:
 
 def _read_answer(value: object) -> str:
     """Return an answer as text. A learner may have edited the file."""
-    if not isinstance(value, str | int | float) or len(text := str(value)) > _LONGEST_ANSWER or "\0" in text:
+    if not isinstance(value, str | int | float) or len(text := str(value)) > _MAX_ANSWER_LENGTH or "\0" in text:
         raise ValueError("a number is expected")
     return text
 

@@ -49,7 +49,7 @@ class TextFiles:
         self._changed = changed
 
     def affected(self, changed: Iterable[str], candidates: Collection[str]) -> set[str]:
-        """Return the candidates that have changed or that changed files can affect.
+        """Return the candidates that have changed or can be affected by changed files.
 
         Args:
             changed: the paths of changed and removed files, relative to the root.

@@ -23,7 +23,7 @@ class WorkingTreeChanges:
     Args:
         paths: the files and folders to check.
         name: the commit in git's notation.
-        with_packages: whether to check the packages of files, too.
+        with_packages: whether to also check the packages of files.
 
     Attributes:
         root: the root folder of the working tree.

@@ -40,7 +40,7 @@ from linkwright.xmltree.style import Style
 CONFIGURATION = "linkwright.toml"
 _PROJECT = "pyproject.toml"
 _PROJECT_TABLE = ("tool", "linkwright")
-KEYS = ("select", "extend-select", "ignore", "severity", "per-file-ignores", "options", "arguments", "format")
+_SETTINGS = ("select", "extend-select", "ignore", "severity", "per-file-ignores", "options", "arguments", "format")
 
 _HEADER = lazy_pattern(r"^[ \t]*\[(?!\[)([^\]\n]+)\]", re.MULTILINE)
 _POSITION = lazy_pattern(r"\(at line (\d+), column (\d+)\)")
@@ -70,7 +70,7 @@ def find_configuration(path: Path) -> Path | None:
         if configuration.is_file():
             return configuration
         project = folder / _PROJECT
-        if project.is_file() and _has_table(project):
+        if project.is_file() and _has_linkwright_table(project):
             return project
     return None
 
@@ -104,7 +104,7 @@ def _read_settings(file: Path, _stamp: int) -> tuple[Settings, tuple[Diagnostic,
     return reader.settings(table, file.absolute().parent), tuple(reader.diagnostics)
 
 
-def _has_table(project: Path) -> bool:
+def _has_linkwright_table(project: Path) -> bool:
     try:
         text = project.read_text(encoding="utf-8", errors="replace")
     except OSError:
@@ -141,8 +141,8 @@ class _Reader:
             )
             return Settings(folder=folder)
         for key in table:
-            if key not in KEYS:
-                hint = did_you_mean(key, KEYS) or phrase("the settings are {keys}", keys=joined(KEYS))
+            if key not in _SETTINGS:
+                hint = did_you_mean(key, _SETTINGS) or phrase("the settings are {keys}", keys=joined(_SETTINGS))
                 self._add("LINT102", phrase("there is no setting '{key}'", key=key), (key,), hint)
         select = table.get("select")
         return Settings(
@@ -176,11 +176,15 @@ class _Reader:
             return ()
         return tuple(selector for item in value if (selector := self._selector(path, item, item)))
 
-    def _selector(self, path: tuple[str, ...], selector: str, mark: str) -> str | None:
+    def _selector(self, path: tuple[str, ...], selector: str, value_text: str) -> str | None:
         if is_selector(selector):
             return canonical(selector)
         self._add(
-            "LINT104", phrase("there is no rule '{rule}'", rule=selector), path, selector_hint(selector), mark=mark
+            "LINT104",
+            phrase("there is no rule '{rule}'", rule=selector),
+            path,
+            selector_hint(selector),
+            value_text=value_text,
         )
         return None
 
@@ -204,7 +208,7 @@ class _Reader:
     def _arguments(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[Mapping[str, str], ...]]]:
         for pattern, value in table.items():
             sets = value if isinstance(value, list) else [value]
-            if all(isinstance(item, dict) and all(map(_is_plain, item.values())) for item in sets):
+            if all(isinstance(item, dict) and all(map(_is_scalar, item.values())) for item in sets):
                 yield pattern, tuple({name: _as_argument(item[name]) for name in item} for item in sets)
             else:
                 self._report_invalid(
@@ -274,8 +278,10 @@ class _Reader:
             message = joined([message, quoted(shown)], ": ")
         self._add("LINT103", message, path, hint)
 
-    def _add(self, code: str, message: Phrase, path: tuple[str, ...], hint: Phrase, *, mark: str | None = None) -> None:
-        span = _locate(self._source, (*self._prefix, *path), mark)
+    def _add(
+        self, code: str, message: Phrase, path: tuple[str, ...], hint: Phrase, *, value_text: str | None = None
+    ) -> None:
+        span = _locate(self._source, (*self._prefix, *path), value_text)
         self.diagnostics.append(Diagnostic(code, message, span, hint=hint, source=self._source))
 
 
@@ -288,7 +294,7 @@ def _has_option_type(option: Option, value: object) -> bool:
     return isinstance(value, kind) and isinstance(value, bool) == (kind is bool)
 
 
-def _is_plain(value: object) -> bool:
+def _is_scalar(value: object) -> bool:
     """Return whether an argument accepts a TOML value: a string, number or boolean."""
     return isinstance(value, (str, int, float))
 
@@ -302,8 +308,8 @@ def _toml_key(key: str) -> str:
     return key if re.fullmatch(r"[\w-]+", key) else f'"{key}"'
 
 
-def _locate(source: SourceText, path: tuple[str, ...], mark: str | None) -> Span:
-    """Return the location of a key, or of the text `mark` in the value of the key.
+def _locate(source: SourceText, path: tuple[str, ...], value_text: str | None) -> Span:
+    """Return the location of a key, or of the text `value_text` in the value of the key.
 
     The source is searched because tomllib stores no positions. If nothing is found, the result is the start of the
     file.
@@ -323,8 +329,8 @@ def _locate(source: SourceText, path: tuple[str, ...], mark: str | None) -> Span
         key_range = _find_key(source.text, start, end, remaining_keys)
         if key_range is None:
             continue
-        if mark is not None and mark != path[-1]:
-            quoted_match = re.compile(rf"""["']({re.escape(mark)})["']""").search(source.text, key_range[1], end)
+        if value_text is not None and value_text != path[-1]:
+            quoted_match = re.compile(rf"""["']({re.escape(value_text)})["']""").search(source.text, key_range[1], end)
             if quoted_match:
                 return source.span(*quoted_match.span(1))
         return source.span(*key_range)

@@ -348,7 +348,7 @@ def _without_consequences(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]
     """Return the diagnostics that do not follow from another diagnostic.
 
     If tags lack the xacro prefix, the links that they should create are missing. If an include does not find a package,
-    the meshes of this package are missing, too.
+    the meshes of this package are also missing.
     """
     findings = list(diagnostics)
     lacks_prefix = any(diagnostic.code == _PREFIX_MISSING for diagnostic in findings)

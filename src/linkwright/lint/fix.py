@@ -94,7 +94,7 @@ def rename_element(element: Element, tag: str, *, safe: bool = True) -> Fix | No
 def remove_element(element: Element, *, safe: bool = True) -> Fix | None:
     """Return a fix that removes an element and its content.
 
-    Return None if the element is not written in a file. A line that would be left empty is removed, too.
+    Return None if the element is not written in a file. A line that would be left empty is also removed.
     """
     source = element.source
     character_range = element_range(element)

@@ -19,8 +19,8 @@ _OPTIONAL = lazy_pattern(r"\$\(optenv\s+\S+\s+([^)]*)\)")
 _IN_PACKAGE = lazy_pattern(r"\$\(find\s+([\w-]+)\s*\)[/\\]*(.*)")
 _PACKAGE = lazy_pattern(r"\$\(find\s+((?:[^()]|\([^()]*\))*)\)[/\\]*")
 _EXPRESSION = lazy_pattern(r"\$\{[^{}]*\}|\$\([^()]*\)")
-_SHORTEST = len("_.xacro")
-"""The number of literal characters that a computed path must have. A shorter one could mean any file."""
+_MIN_LITERAL_CHARACTERS = len("_.xacro")
+"""The minimum number of literal characters of a computed path. A shorter one could mean any file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,11 +96,15 @@ def _pattern(filename: str) -> str:
     package = _PACKAGE.match(filename)
     literals = _EXPRESSION.split(filename[package.end() :] if package else filename)
     is_computed = len(literals) > 1 or (package is not None and "$" in package[1])
-    return "[^/]*".join(map(re.escape, literals)) if is_computed and len("".join(literals)) >= _SHORTEST else ""
+    return (
+        "[^/]*".join(map(re.escape, literals))
+        if is_computed and len("".join(literals)) >= _MIN_LITERAL_CHARACTERS
+        else ""
+    )
 
 
 def folders_by_package(folders: Iterable[Path]) -> dict[str, list[Path]]:
-    """Return the folders of packages by the names of the packages."""
+    """Return the folders of packages by package name."""
     folders_by_name: dict[str, list[Path]] = {}
     for folder in folders:
         name = package_name(folder)

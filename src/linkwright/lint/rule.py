@@ -43,7 +43,7 @@ class Rule:
         holds_for_parts: whether the findings hold for a description with missing parts, because the rule checks single
             elements or texts.
         holds_for_libraries: whether the rule also applies to a file that only defines macros, because it checks the
-            unexpanded files. Rules that hold for parts apply, too.
+            unexpanded files. Rules that hold for parts also apply.
         of_sources: whether the findings depend only on the unexpanded files, their package and the names of the
             arguments. Such a rule runs once for all sets of arguments that read the same files.
         needs_all_sets: whether a finding is valid only if it occurs with every set of arguments, such as that a macro

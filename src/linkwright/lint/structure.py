@@ -63,7 +63,7 @@ class Structure:
     def unknown_elements(self) -> list[tuple[SchemaElement, Element]]:
         """The elements that URDF does not define in their parents, except elements of other tools.
 
-        Elements of other namespaces are left out, too.
+        Elements of other namespaces are also left out.
         """
         return [
             (schema_element, child)

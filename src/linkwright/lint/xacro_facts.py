@@ -361,7 +361,7 @@ class XacroFacts:
 
     @cached_property
     def _misses_files(self) -> bool:
-        """Whether a file that was not read is included in a branch that is not taken."""
+        """Whether a branch that is not taken includes an unread file."""
         known_names = {path.name for path in self.files} | {path.name for path in self.neighbors}
         for facts in self.files.values():
             for include in facts.includes:

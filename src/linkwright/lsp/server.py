@@ -1,4 +1,4 @@
-"""The language server: open texts, checks in the background, and the requests of an editor."""
+"""The language server: open documents, background checks, and the requests of an editor."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _IDLE_SECONDS = 1.0
 
 
 class FormatContext(NamedTuple):
-    """A document whose format has its own editor functions."""
+    """A document whose format has its own language features."""
 
     format: Format
     document: Document
@@ -95,7 +95,7 @@ class LinkwrightServer(LanguageServer):
         previous = self.project
         self.project = Workspace(folders)
         if previous is not None:
-            self._publish(previous.without_findings(), {})
+            self._publish(previous.cleared_findings(), {})
             for uri in self.workspace.text_documents:
                 self.file_changed(uri)
         self._check_loop = asyncio.get_running_loop().create_task(self._check_changes(self.project))

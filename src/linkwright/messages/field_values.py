@@ -18,7 +18,7 @@ _HEADER = "std_msgs/msg/Header"
 _TIME = "builtin_interfaces/msg/Time"
 
 StampSetter = Callable[[Any], None]
-"""A function that sets a field to the builtin_interfaces/msg/Time that is its argument."""
+"""A function that sets a field to a builtin_interfaces/msg/Time, its argument."""
 
 
 def set_fields(

@@ -95,8 +95,8 @@ def _load_error(file: Path, error: Exception) -> UnloadableNetworkError:
     try:
         with file.open("rb") as stream:
             header = stream.read(_HEADER_BYTES)
-    except OSError as unread:
-        return UnloadableNetworkError(foreign(unread.strerror or unread), None)
+    except OSError as read_error:
+        return UnloadableNetworkError(foreign(read_error.strerror or read_error), None)
     export_hint = phrase("the file is damaged or incomplete: export or download it again")
     if not header:
         return UnloadableNetworkError(phrase("the file is empty"), export_hint)

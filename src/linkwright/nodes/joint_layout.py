@@ -37,7 +37,7 @@ class JointSettings:
         publish_default_velocities: whether joints without a received velocity are published with velocity 0.
         publish_default_efforts: whether joints without a received effort are published with effort 0.
         use_mimic_tags: whether joints with a ``<mimic>`` tag follow the joint that the tag names.
-        use_smallest_joint_limits: whether the soft limits of a ``<safety_controller>`` apply, too.
+        use_smallest_joint_limits: whether the soft limits of a ``<safety_controller>`` also apply.
         source_list: the topics from which joint states are read.
         delta: the distance that every joint moves in each cycle, in rad or m; 0 for no motion.
         zeros: the initial positions by joint, in rad or m.

@@ -190,7 +190,7 @@ class JointStatePublisherGui(JointStatePublisher):
     As in ROS, its default name is ``joint_state_publisher``.
 
     When sliders move, one message is published in the next iteration of the event loop. Messages on the topics of
-    ``source_list`` move the sliders, too.
+    ``source_list`` also move the sliders.
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:

@@ -34,7 +34,7 @@ def check_package_name(name: str) -> list[Diagnostic]:
 
 
 def rep_144_warning(name: str) -> Diagnostic:
-    """Return the warning (PKG202) that names the rule of REP 144 that a name violates."""
+    """Return the warning (PKG202) with the rule of REP 144 that a name violates."""
     advice = _rep_144_advice(name) or _identifier_problem(name)
     message = phrase("package name '{name}' does not follow REP 144: {advice}", name=name, advice=advice)
     return Diagnostic("PKG202", message, severity=Severity.WARNING, hint=_suggestion(name))

@@ -112,7 +112,7 @@ def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
 
 
 _COMPILING_COMMANDS = ("add_executable", "add_library", "add_module", "add_subdirectory", "include", "register_node")
-"""Fragments of the CMake commands that declare compiled targets, or run other files that may declare them."""
+"""Fragments of the CMake commands that declare compiled targets, or run other files."""
 
 
 def _text_with_targets(folder: Path) -> str | None:

@@ -173,7 +173,7 @@ class Gate:
             return f"requests from pages of '{origin[:200]}' are refused"
         return None
 
-    def is_shown_token(self, query: Mapping[str, str]) -> bool:
+    def has_token(self, query: Mapping[str, str]) -> bool:
         """Return whether the query of a request contains the token."""
         query_token = query.get(TOKEN_PARAMETER)
         return query_token is not None and hmac.compare_digest(
@@ -284,7 +284,7 @@ class Admission:
             connection.cancel_deadline()
 
     def admit(self, inner_protocol: object) -> None:
-        """Record that a connection has sent the token, so that no other connection replaces it."""
+        """Record that a connection has sent the token. No other connection replaces it."""
         connection = self._unadmitted_connections.pop(inner_protocol, None)  # type: ignore[call-overload]
         if connection is not None:
             connection.cancel_deadline()

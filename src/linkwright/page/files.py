@@ -222,7 +222,7 @@ class MeshFolders:
 def resolve(folder: ServedFolder, relative: str) -> Path:
     """Return the real path of a file below a folder, with links followed and checked.
 
-    A link may lead out of the folder of a package only to a file of the same package, as in share folders that
+    A link may point outside the folder of a package only to a file of the same package, as in share folders that
     ``colcon build --symlink-install`` creates.
 
     Raises:
@@ -230,7 +230,7 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
     """
     parts = relative.split("/")
     if any(part in ("", ".", "..") or "\\" in part or "\0" in part for part in parts):
-        raise FileRefusedError(403, "the path leads out of its folder")
+        raise FileRefusedError(403, "the path points outside its folder")
     if PurePosixPath(relative).suffix.lower() not in CONTENT_TYPES:
         raise FileRefusedError(403, "only meshes and images are served")
     if folder.package is None and not folder.is_model and len(parts) > _MAX_LOOSE_DEPTH:
@@ -245,7 +245,7 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
     if real_path.suffix.lower() not in CONTENT_TYPES:
         raise FileRefusedError(403, "only meshes and images are served")
     if not real_path.is_relative_to(root) and not _is_in_package(real_path, folder.package):
-        raise FileRefusedError(403, "a link leads out of the package")
+        raise FileRefusedError(403, "a link points outside the package")
     return real_path
 
 

@@ -5,7 +5,7 @@ program that would open its page in the browser sends the address of its page th
 as the program, so that the server notices its end, even if it was killed. The program allows only pages of the
 server's origin to show its page in a frame.
 
-The response stays open, too. In it, the server asks the program to pause its world and to resume it. A program confirms
+The response also stays open. In it, the server asks the program to pause its world and to resume it. A program confirms
 a pause in another line of its request.
 """
 

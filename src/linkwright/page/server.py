@@ -47,13 +47,13 @@ _IDLE_TIMEOUT = 30.0
 _FRAME_SOURCES = "http://127.0.0.1:* http://localhost:*"
 """The pages that a page with a terminal may show in frames, as a source list of a content security policy."""
 
-_WILDCARDS = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - not bound here, only replaced in URLs
+_LOOPBACK_OF_WILDCARD = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - not bound here, only replaced in URLs
 
 _BACKLOG = 128
 _BLOCK_SIZE = 256 * 1024
 """The number of bytes of a large file that are read at once."""
 
-_MIN_PACKED_SIZE, _MAX_PACKED_RATIO, _PACKING_LEVEL = 4096, 0.9, 1
+_MIN_COMPRESSED_SIZE, _MAX_COMPRESSION_RATIO, _COMPRESSION_LEVEL = 4096, 0.9, 1
 """The minimum size of a mesh to compress, the ratio below which the result is sent, and the level of gzip. The next
 levels take twice the time and save another tenth."""
 
@@ -68,7 +68,7 @@ In a checkout of Linkwright run
 
     make page
 
-and reload. An installed wheel carries the page; if you see this there, the wheel was built without it.
+and reload. If Linkwright was installed from a wheel, the wheel was built without the page.
 """
 _PAGE_TYPES = {
     ".html": "text/html; charset=utf-8",
@@ -87,7 +87,7 @@ _PAGE_TYPES = {
 }
 
 MAX_UNSENT_BYTES = 16 * 1024
-"""The number of unsent bytes, in the program and again in the operating system, above which writers wait."""
+"""The maximum number of unsent bytes, in the program and again in the operating system, before writers wait."""
 
 _NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 
@@ -215,7 +215,7 @@ class WebServer:
             await self._runner.cleanup()
             self._runner = None
 
-    # --- every request -----------------------------------------------------------------------------------------
+    # --- access control ----------------------------------------------------------------------------------------
 
     @web.middleware
     async def _check_access(
@@ -226,7 +226,7 @@ class WebServer:
         reason = self._gate.refusal(request.headers)
         if reason is not None:
             return _refusal(403, reason)
-        if self._gate.is_shown_token(request.query):
+        if self._gate.has_token(request.query):
             self._admit(request)
         return await handler(request)
 
@@ -266,15 +266,15 @@ class WebServer:
         is_hashed = parts[0] == "assets"  # the names of assets contain a hash of their content
         cache = "private, max-age=31536000, immutable" if is_hashed else "no-cache"
         file = self._page_folder / path
-        packed_path = file.with_name(f"{file.name}.gz")
-        if not (is_hashed and packed_path.is_file()):
+        gzip_path = file.with_name(f"{file.name}.gz")
+        if not (is_hashed and gzip_path.is_file()):
             return await self._page_response(request, file, content_type, cache)
         if not _accepts_gzip(request):
             vary = {"Vary": "Accept-Encoding"}
-            return await self._page_response(request, packed_path, content_type, cache, vary, unpack=True)
+            return await self._page_response(request, gzip_path, content_type, cache, vary, decompress=True)
         # Compression reduces the files to a quarter, which saves tens of seconds on a slow connection.
         encoding_headers = {"Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
-        return await self._page_response(request, packed_path, content_type, cache, encoding_headers)
+        return await self._page_response(request, gzip_path, content_type, cache, encoding_headers)
 
     async def _page_response(
         self,
@@ -284,17 +284,17 @@ class WebServer:
         cache: str,
         encoding_headers: Mapping[str, str] | None = None,
         *,
-        unpack: bool = False,
+        decompress: bool = False,
     ) -> web.StreamResponse:
         """Send a file of the page, with one copy in memory for concurrent requests."""
         async with self._read_lock:
-            cached = self._page_contents.get((path, unpack))
+            cached = self._page_contents.get((path, decompress))
             try:
-                file_version = await asyncio.to_thread(_read, path, cached.tag if cached else "", unpack=unpack)
+                file_version = await asyncio.to_thread(_read, path, cached.tag if cached else "", decompress=decompress)
             except OSError:
                 raise _not_found() from None
             if cached is None or file_version.body is not None:
-                cached = self._page_contents[path, unpack] = file_version
+                cached = self._page_contents[path, decompress] = file_version
         headers = {"Cache-Control": cache, **(encoding_headers or {})}
         if cache != _NO_STORE:
             headers["ETag"] = cached.tag
@@ -318,8 +318,9 @@ class WebServer:
             return web.Response(status=error.status, text=f"Refused: {error}.\n")
         self._admit(request)
         content_type = CONTENT_TYPES[path.suffix.lower()]
-        packs = _accepts_gzip(request) and path.suffix.lower() not in IMAGE_TYPES  # images are already compressed
-        return await _file_response(request, path, content_type, "private, no-cache", packs=packs)
+        # images are already compressed
+        may_compress = _accepts_gzip(request) and path.suffix.lower() not in IMAGE_TYPES
+        return await _file_response(request, path, content_type, "private, no-cache", may_compress=may_compress)
 
     async def _export(self, request: web.Request) -> web.StreamResponse:
         file = self._downloads.withdraw(request.match_info["key"])
@@ -338,7 +339,7 @@ class WebServer:
     async def _upload(
         self, handle_upload: Callable[[Uploads, web.Request], Awaitable[web.Response]], request: web.Request
     ) -> web.Response:
-        services = await self._viewer()
+        services = await self._wait_for_services()
         if services.open_guests is None:
             raise web.HTTPNotFound(text="This program does not accept recordings.\n")
         if services.uploads is None:
@@ -348,14 +349,14 @@ class WebServer:
             services.uploads = Uploads(services.guests)
         return await handle_upload(services.uploads, request)
 
-    async def _viewer(self) -> _Services:
+    async def _wait_for_services(self) -> _Services:
         """Wait until the services for pages are available, and return them."""
         try:
             return await asyncio.shield(self._services)
         except asyncio.CancelledError:
             if not self._services.cancelled():
                 raise  # the client has disconnected
-            raise web.HTTPServiceUnavailable(text="The program ends.\n") from None
+            raise web.HTTPServiceUnavailable(text="The program is shutting down.\n") from None
 
     async def _show_own_recording(self, uploads: Uploads, request: web.Request) -> web.Response:
         """Show a recording that this program made, without an upload."""
@@ -366,7 +367,7 @@ class WebServer:
 
     async def _show_program(self, programs: ProgramPages, request: web.Request) -> web.StreamResponse:
         if not programs.is_key(request.match_info["key"]):
-            return _without_token()
+            return _unauthorized()
         self._admit(request)
         return await programs.receive(request)
 
@@ -375,15 +376,15 @@ class WebServer:
     ) -> Callable[[web.Request], Awaitable[web.StreamResponse]]:
         """Return a handler that calls the given handler only for requests with the token."""
 
-        async def asked(request: web.Request) -> web.StreamResponse:
-            return await handler(request) if self._gate.is_shown_token(request.query) else _without_token()
+        async def check_token(request: web.Request) -> web.StreamResponse:
+            return await handler(request) if self._gate.has_token(request.query) else _unauthorized()
 
-        return asked
+        return check_token
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
-        if not self._gate.is_shown_token(request.query):
-            return _without_token()
-        services = await self._viewer()
+        if not self._gate.has_token(request.query):
+            return _unauthorized()
+        services = await self._wait_for_services()
         from linkwright.page.audience import Page, requested_language
 
         audience = _audience_of(services, request)
@@ -444,7 +445,7 @@ def _accepts_gzip(request: web.Request) -> bool:
     return any(encoding.strip().lower() == "gzip" for encoding in encodings)
 
 
-def _without_token() -> web.Response:
+def _unauthorized() -> web.Response:
     return _refusal(401, "the token is missing or wrong: open the address that linkwright printed, token included")
 
 
@@ -456,12 +457,12 @@ def _refusal(status: int, reason: str) -> web.Response:
 
 
 async def _file_response(
-    request: web.Request, path: Path, content_type: str, cache: str, *, packs: bool
+    request: web.Request, path: Path, content_type: str, cache: str, *, may_compress: bool
 ) -> web.Response:
     """Return a response with a file, or 304 if the browser already has this version of the file.
 
-    The ETag changes with the content. If `packs` is true, the file is compressed if that makes it clearly smaller, and
-    a header contains the uncompressed length.
+    The ETag changes with the content. If `may_compress` is true and the file becomes clearly smaller, it is compressed,
+    and a header contains the uncompressed length.
 
     FileResponse of aiohttp is not used, because it also looks for compressed files next to the requested file. These
     files would not be checked.
@@ -475,11 +476,11 @@ async def _file_response(
         return web.Response(status=304, headers=headers)
     headers["Content-Type"] = content_type
     body = file_version.body
-    if packs and len(body) >= _MIN_PACKED_SIZE:
-        packed_body = await asyncio.to_thread(gzip.compress, body, _PACKING_LEVEL, mtime=0)
-        if len(packed_body) < _MAX_PACKED_RATIO * len(body):
+    if may_compress and len(body) >= _MIN_COMPRESSED_SIZE:
+        compressed_body = await asyncio.to_thread(gzip.compress, body, _COMPRESSION_LEVEL, mtime=0)
+        if len(compressed_body) < _MAX_COMPRESSION_RATIO * len(body):
             headers |= {"Content-Encoding": "gzip", "X-Unpacked-Length": str(len(body))}
-            body = packed_body
+            body = compressed_body
     response = web.Response(body=body, headers=headers)
     response.last_modified = file_version.modified
     return response
@@ -522,11 +523,11 @@ class _FileVersion:
 
     def is_known_to(self, request: web.Request) -> bool:
         """Return whether the browser already has this version."""
-        return _is_among(self.tag, request.headers.get("If-None-Match", ""))
+        return _matches_tag(self.tag, request.headers.get("If-None-Match", ""))
 
 
-def _read(path: Path, known_tags: str, *, unpack: bool = False) -> _FileVersion:
-    """Return the current version of a regular file, decompressed if `unpack` is true.
+def _read(path: Path, known_tags: str, *, decompress: bool = False) -> _FileVersion:
+    """Return the current version of a regular file, decompressed if `decompress` is true.
 
     The content is omitted if the ETag is in `known_tags`, an If-None-Match header.
     """
@@ -535,13 +536,13 @@ def _read(path: Path, known_tags: str, *, unpack: bool = False) -> _FileVersion:
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):
             raise OSError("not a regular file")
-        tag = f'"{status.st_mtime_ns:x}-{status.st_size:x}{"-unpacked" if unpack else ""}"'
-        if _is_among(tag, known_tags):
+        tag = f'"{status.st_mtime_ns:x}-{status.st_size:x}{"-unpacked" if decompress else ""}"'
+        if _matches_tag(tag, known_tags):
             return _FileVersion(tag, status.st_mtime, None)
-        return _FileVersion(tag, status.st_mtime, gzip.decompress(file.read()) if unpack else file.read())
+        return _FileVersion(tag, status.st_mtime, gzip.decompress(file.read()) if decompress else file.read())
 
 
-def _is_among(tag: str, known_tags: str) -> bool:
+def _matches_tag(tag: str, known_tags: str) -> bool:
     return tag in {entry.strip().removeprefix("W/") for entry in known_tags.split(",")}
 
 
@@ -561,5 +562,5 @@ def limit_buffers(transport: asyncio.Transport) -> None:
 def url_of(listener: socket.socket) -> str:
     """Return the URL with which a browser on this machine reaches a listening socket."""
     host, port = listener.getsockname()[:2]
-    host = _WILDCARDS.get(host, host)
+    host = _LOOPBACK_OF_WILDCARD.get(host, host)
     return f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"

@@ -195,7 +195,7 @@ class SourceTexts:
 
     @property
     def names(self) -> list[str]:
-        """The names of the files, beginning with the main file."""
+        """The file names, beginning with the main file."""
         return list(dict.fromkeys([*self._files, *self._read]))
 
     def text(self, name: str) -> str | None:

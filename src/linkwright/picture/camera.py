@@ -17,7 +17,7 @@ HALF_FOV_TANGENT = 0.22
 """The tangent of half the field of view along the shorter side, for perspective cameras."""
 _MARGIN = 1.16
 """The ratio of the image's size to the size of the content that must be visible."""
-_SMALLEST_EXTENT = 1e-6
+_MIN_EXTENT = 1e-6
 """The width of the visible area in m if the scene is a single point."""
 
 
@@ -140,7 +140,7 @@ def fitting_camera(view: View, size: tuple[int, int], points: Sequence[Array]) -
     x, y, z = (np.concatenate([along(array, axis) for array in points]) for axis in (right, up, toward))
     width, height = size
     if not view.perspective:
-        extents = [max(float(values.max() - values.min()), _SMALLEST_EXTENT) for values in (x, y)]
+        extents = [max(float(values.max() - values.min()), _MIN_EXTENT) for values in (x, y)]
         middle = [float(values.max() + values.min()) / 2 for values in (x, y)]
         scale = min(width / extents[0], height / extents[1]) / _MARGIN
         return Camera(right, up, toward, (middle[0], middle[1], float(z.max())), 0.0, scale, size)
@@ -153,7 +153,7 @@ def fitting_camera(view: View, size: tuple[int, int], points: Sequence[Array]) -
         # All points are between two planes through the camera: |value - center| <= tangent * (distance - z).
         upper, lower = float((values + tangent * z).max()), float((tangent * z - values).max())
         center.append((upper - lower) / 2)
-        distances.append(max(upper + lower, _SMALLEST_EXTENT) / 2 / tangent)
+        distances.append(max(upper + lower, _MIN_EXTENT) / 2 / tangent)
     distance = max(distances)
     return Camera(
         right, up, toward, (center[0], center[1], depth), distance, shorter / 2 / (HALF_FOV_TANGENT * distance), size

@@ -23,7 +23,7 @@ ROUND_SIDES = 72
 DEFAULT_COLOR: Color = (1.0, 0.0, 0.0)
 """The color of a shape without a material, as in RViz."""
 _MAX_TEXTURE = 768
-"""The maximum width and height of textures in pixels. Larger textures are reduced."""
+"""The maximum width and height of textures in pixels. Larger textures are downsampled."""
 _MISSING_EXTRA = "INR104"
 
 
@@ -32,7 +32,7 @@ class MeshSurface:
     """A part of a mesh file with one material.
 
     Attributes:
-        surface: the part in m, in white.
+        surface: the white surface of the part, in meters.
         file_material: the material in the file; None to use that of the description.
         names: the names of the part in the file.
     """
@@ -43,24 +43,24 @@ class MeshSurface:
 
 
 class SurfaceLibrary:
-    """A reader that reads each mesh file once, for one or several scenes.
+    """A cache of the surfaces of mesh files, which reads each file once for one or several scenes.
 
     Attributes:
-        colorless: the files that were read without their colors, because a library is not installed, each with the
-            error that names it.
+        errors_of_colorless_files: the files that were read without their colors, because a library is not installed,
+            each with the error that names the library.
     """
 
     def __init__(self) -> None:
-        self.colorless: dict[Path, LinkwrightError] = {}
+        self.errors_of_colorless_files: dict[Path, LinkwrightError] = {}
         self._surfaces: dict[tuple[str, int, int, bool], list[MeshSurface]] = {}
         self._by_content: dict[tuple[ContentKey, bool], list[MeshSurface]] = {}
 
-    def read(self, path: Path, *, has_names: bool = False) -> list[MeshSurface]:
+    def read(self, path: Path, *, with_names: bool = False) -> list[MeshSurface]:
         """Return the surfaces of a mesh file.
 
         Args:
             path: the path of the file.
-            has_names: whether the surfaces must have their names.
+            with_names: whether the surfaces must have their names.
 
         Raises:
             LinkwrightError: INR101 to INR104, the file cannot be read.
@@ -70,27 +70,27 @@ class SurfaceLibrary:
         except OSError as error:
             read_mesh(path)  # raises an error with the reason
             raise unreadable(path, error.strerror or str(error)) from None
-        key = os.path.realpath(path), status.st_mtime_ns, status.st_size, has_names
+        key = os.path.realpath(path), status.st_mtime_ns, status.st_size, with_names
         if key not in self._surfaces:
             content = surface_key(path)
-            known = None if content is None else self._by_content.get((content, has_names))
-            self._surfaces[key] = self._read(path, status.st_size, has_names=has_names) if known is None else known
+            known = None if content is None else self._by_content.get((content, with_names))
+            self._surfaces[key] = self._read(path, status.st_size, with_names=with_names) if known is None else known
             if content is not None:
-                self._by_content[content, has_names] = self._surfaces[key]
+                self._by_content[content, with_names] = self._surfaces[key]
         return self._surfaces[key]
 
-    def _read(self, path: Path, size: int, *, has_names: bool) -> list[MeshSurface]:
+    def _read(self, path: Path, size: int, *, with_names: bool) -> list[MeshSurface]:
         return [
             MeshSurface(Surface.of_triangles(part.triangles, _texture(part)), part.file_material, part.names)
-            for part in self._parts(path, size, has_names=has_names)
+            for part in self._parts(path, size, with_names=with_names)
             if len(part.triangles.indices)
         ]
 
-    def _parts(self, path: Path, size: int, *, has_names: bool) -> list[MeshPart]:
+    def _parts(self, path: Path, size: int, *, with_names: bool) -> list[MeshPart]:
         kind = path.suffix.lower()
         if size > MAX_FILE_SIZE or kind == ".stl" or kind not in MESH_ENDINGS or not path.is_file():
             return [_plain_part(path)]
-        simple_parts = None if has_names else read_simple_parts(path)
+        simple_parts = None if with_names else read_simple_parts(path)
         if simple_parts is not None:
             return simple_parts
         try:
@@ -101,7 +101,7 @@ class SurfaceLibrary:
             if error.diagnostics[0].code != _MISSING_EXTRA:
                 raise
             part = _plain_part(path)
-            self.colorless[path] = error
+            self.errors_of_colorless_files[path] = error
             return [part]
 
 
@@ -132,23 +132,23 @@ def shape_surface(shape: SimpleShape, texture: Texture | None = None) -> Surface
 
 
 def surface_color(
-    file_material: FileMaterial | None, described: Color | None, *, is_textured: bool, is_gray: bool
+    file_material: FileMaterial | None, description_color: Color | None, *, is_textured: bool, format_has_colors: bool
 ) -> Color:
     """Return the color of a surface by RViz's rules.
 
     Args:
-        file_material: the material in the mesh file, which precedes the description's.
-        described: the color in the description, or None.
+        file_material: the material in the mesh file, which takes precedence over the description's.
+        description_color: the color in the description, or None.
         is_textured: whether the description sets a texture.
-        is_gray: whether the surface is that of a mesh file whose format has colors.
+        format_has_colors: whether the surface is that of a mesh file whose format has colors.
     """
     if file_material is not None:
         return file_material.color
     if is_textured:
         return 1.0, 1.0, 1.0
-    if described is not None:
-        return described
-    return (UNCOLORED,) * 3 if is_gray else DEFAULT_COLOR
+    if description_color is not None:
+        return description_color
+    return (UNCOLORED,) * 3 if format_has_colors else DEFAULT_COLOR
 
 
 def _texture(part: MeshPart) -> Texture | None:

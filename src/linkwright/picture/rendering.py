@@ -177,7 +177,7 @@ class _Renderer:
         lines = self._lines(visible, shaded.normals)
         alphas = shaded.alpha if opacity is None else np.full(len(lines), opacity, np.float32)
         alphas = alphas + (1.0 - alphas) * lines
-        colors = shaded.light
+        colors = shaded.colors
         if is_first:
             colors *= self._ambient(visible, shaded.normals)[:, None]
         colors *= ((1.0 - lines) * alphas)[:, None]

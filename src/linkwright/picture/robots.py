@@ -110,7 +110,7 @@ class _VisualReader:
             texture = self._texture(link, material)
         if not isinstance(geometry, Mesh):
             surface = shape_surface(geometry, texture)
-            shown = surface_color(None, rgb, is_textured=surface.texture is not None, is_gray=False)
+            shown = surface_color(None, rgb, is_textured=surface.texture is not None, format_has_colors=False)
             return [surface.colored(shown, alpha)]
         try:
             path = self._files.locate(geometry.filename, visual.element)
@@ -118,12 +118,12 @@ class _VisualReader:
         except LinkwrightError as error:
             self._add_problem(link, geometry.filename, error)
             return []
-        if path in self._library.colorless:
-            self._add_colorless(link, geometry.filename, self._library.colorless[path])
-        is_gray = path.suffix.lower() != ".stl"
+        if path in self._library.errors_of_colorless_files:
+            self._add_colorless(link, geometry.filename, self._library.errors_of_colorless_files[path])
+        format_has_colors = path.suffix.lower() != ".stl"
         return [
             part.surface.scaled(geometry.scale).colored(
-                surface_color(part.file_material, rgb, is_textured=False, is_gray=is_gray), alpha
+                surface_color(part.file_material, rgb, is_textured=False, format_has_colors=format_has_colors), alpha
             )
             for part in parts
         ]

@@ -1,7 +1,7 @@
 """Shade surfaces: compute the color of samples from normals, materials and lights.
 
-Colors are proportional to light, which is defined as the square of the displayed value. The square is close to the
-power in sRGB, and is bit-identical on every machine.
+Colors are computed in linear RGB, which is defined as the square of the displayed value. The square approximates the
+transfer function of sRGB, and is bit-identical on every machine.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from linkwright.picture.layers import Mesh
 from linkwright.picture.rasterizer import ScreenTriangles, VisibleTriangles
 from linkwright.picture.vectors import Floats, Indices, along, unit_vector, unit_vectors
 
-_KEY, _FILL, _SKY, _GROUND, _SHINE, _RIM = 0.74, 0.14, 0.34, 0.14, 0.09, 0.05
+_KEY, _FILL, _SKY, _GROUND, _SPECULAR, _RIM = 0.74, 0.14, 0.34, 0.14, 0.09, 0.05
 """The strengths of the lights."""
 _WRAP = 0.35
 """The extent to which the strongest light reaches around a shape, so that no side is black."""
@@ -31,12 +31,12 @@ class Lights:
     Attributes:
         key: the direction to the strongest light, from the upper left of the camera.
         fill: the direction to a weak light from the right.
-        toward: the direction to the camera.
+        to_camera: the direction to the camera.
     """
 
     key: Vector3
     fill: Vector3
-    toward: Vector3
+    to_camera: Vector3
 
     @classmethod
     def of(cls, camera: Camera) -> Lights:
@@ -50,16 +50,16 @@ class Lights:
 
 
 @dataclass(frozen=True, slots=True)
-class Shaded:
+class ShadedSamples:
     """The colors of samples.
 
     Attributes:
-        light: red, green and blue in proportion to light, shape (n, 3).
+        colors: linear RGB, shape (n, 3).
         alpha: the opacity, shape (n,).
-        normals: the unit normals on the side of the camera, shape (n, 3).
+        normals: the unit normals that face the camera, shape (n, 3).
     """
 
-    light: Floats
+    colors: Floats
     alpha: Floats
     normals: Floats
 
@@ -78,25 +78,25 @@ class Shader:
         self._screen = screen
         self._lights = lights
         colors = mesh.colors
-        self._light = colors * colors
+        self._linear_colors = colors * colors
         self._alphas = mesh.alphas
         self._textures = mesh.textures
-        self._colored = {
+        self._vertex_colors = {
             index: surface.vertex_colors
             for index, (surface, body) in enumerate(zip(mesh.surfaces, mesh.bodies, strict=True))
             if surface.vertex_colors is not None and body.ghost is None
         }
-        self._starts = np.cumsum([0, *(len(surface.points) for surface in mesh.surfaces)])
+        self._first_vertices = np.cumsum([0, *(len(surface.points) for surface in mesh.surfaces)])
 
-    def shade(self, visible: VisibleTriangles) -> Shaded:
+    def shade(self, visible: VisibleTriangles) -> ShadedSamples:
         """Return the colors of the samples at which triangles are visible."""
         table, rows = self._table(visible.triangles)
         parts = [
             self._shade(visible.x[part], visible.y[part], visible.triangles[part], table, rows[part])
             for part in (slice(start, start + _BATCH) for start in range(0, len(rows), _BATCH))
         ]
-        return Shaded(
-            np.concatenate([part.light for part in parts]),
+        return ShadedSamples(
+            np.concatenate([part.colors for part in parts]),
             np.concatenate([part.alpha for part in parts]),
             np.concatenate([part.normals for part in parts]),
         )
@@ -125,7 +125,7 @@ class Shader:
         table[:, 12:15] = normals[:, 2] - normals[:, 0]
         return table, row_of[triangles]
 
-    def _shade(self, x: Floats, y: Floats, triangles: Indices, table: Floats, rows: Indices) -> Shaded:
+    def _shade(self, x: Floats, y: Floats, triangles: Indices, table: Floats, rows: Indices) -> ShadedSamples:
         values = table[rows]
         x, y = x - values[:, 0], y - values[:, 1]
         second = np.clip(values[:, 2] * x + values[:, 3] * y, 0.0, 1.0)
@@ -134,28 +134,28 @@ class Shader:
         normals = unit_vectors(normals)
         parts = self._mesh.parts[triangles]
         albedo = self._albedo(triangles, parts, second, third)
-        return Shaded(self._lit(albedo, normals), self._alphas[parts], normals)
+        return ShadedSamples(self._lit(albedo, normals), self._alphas[parts], normals)
 
     def _lit(self, albedo: Floats, normals: Floats) -> Floats:
         lights = self._lights
-        facing = np.maximum(along(normals, lights.toward), 0.0)
+        facing_camera = np.maximum(along(normals, lights.to_camera), 0.0)
         key = np.maximum((along(normals, lights.key) + _WRAP) / (1.0 + _WRAP), 0.0)
         key = (key + key * key) * 0.5  # smooths the border between light and shade
         fill = along(normals, lights.fill) * 0.5 + 0.5
         sky = (normals[:, 2] + 1.0) * 0.5
         diffuse = _KEY * key + _FILL * fill * fill + (_GROUND + (_SKY - _GROUND) * sky)
-        shine = np.maximum(along(normals, unit_vector(add_vectors(lights.key, lights.toward))), 0.0)
+        specular = np.maximum(along(normals, unit_vector(add_vectors(lights.key, lights.to_camera))), 0.0)
         for _ in range(5):
-            shine = shine * shine
-        away = 1.0 - facing
+            specular = specular * specular
+        away = 1.0 - facing_camera
         rim = away * away * away * sky
-        extra = _SHINE * shine + _RIM * rim
-        lit: Floats = albedo * diffuse[:, None] + extra[:, None]
+        specular_and_rim = _SPECULAR * specular + _RIM * rim
+        lit: Floats = albedo * diffuse[:, None] + specular_and_rim[:, None]
         return lit
 
     def _albedo(self, triangles: Indices, parts: Indices, second: Floats, third: Floats) -> Floats:
-        """Return the material colors of samples, proportional to light."""
-        albedo = self._light[parts]
+        """Return the material colors of samples in linear RGB."""
+        albedo = self._linear_colors[parts]
         for index, texture in self._textures.items():
             selected = np.flatnonzero(parts == index)
             coordinates = self._mesh.surfaces[index].coordinates
@@ -166,7 +166,7 @@ class Shader:
                 rows = np.clip(np.floor((v - np.floor(v)) * height), 0, height - 1).astype(np.int64)
                 texels = texture[rows, columns].astype(np.float32) * (1.0 / 255.0)
                 albedo[selected] *= texels * texels
-        for index, colors in self._colored.items():
+        for index, colors in self._vertex_colors.items():
             selected = np.flatnonzero(parts == index)
             if len(selected):
                 mixed = self._interpolate(colors, index, triangles[selected], second[selected], third[selected])
@@ -177,7 +177,7 @@ class Shader:
         self, values: NDArray[np.float64], part: int, triangles: Indices, second: Floats, third: Floats
     ) -> NDArray[np.float64]:
         """Return values of a surface's vertices, interpolated at samples."""
-        corners = values[self._mesh.faces[triangles] - self._starts[part]]
+        corners = values[self._mesh.faces[triangles] - self._first_vertices[part]]
         first_values = corners[:, 0]
         mixed: NDArray[np.float64] = (
             first_values

@@ -124,7 +124,7 @@ class _WorldReader:
             self._add_incomplete(link, path.reason, path.hint)
             return
         try:
-            parts = self._library.read(path, has_names=mesh.submesh is not None)
+            parts = self._library.read(path, with_names=mesh.submesh is not None)
         except LinkwrightError as error:
             self._add_incomplete(link, error.diagnostics[0].message, error.diagnostics[0].hint)
             return

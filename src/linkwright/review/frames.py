@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 UNMOVED = Placement(IDENTITY, (0.0, 0.0, 0.0))
 _TOLERANCE = 1e-6
-"""The difference in m, and between the entries of rotation matrices, up to which a link has not moved."""
+"""The maximum difference in m, and between the entries of rotation matrices, of a link that has not moved."""
 
 
 class SharedFrames:

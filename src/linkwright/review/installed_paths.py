@@ -35,7 +35,7 @@ def _places(version: Version, package: PurePosixPath, path: str) -> frozenset[st
     """Return the installed paths of a file without the name of its package, or None if they are not known."""
     folder = version.root / package
     if Manifest(read_document(str(folder / MANIFEST))).is_ros1:
-        return None  # catkin also finds the sources
+        return None  # catkin also finds files in the source folder, whatever is installed
     facts = package_facts(version, package.as_posix().removeprefix("."))
     if facts is None or not facts.is_complete:
         return None

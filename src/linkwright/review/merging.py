@@ -75,7 +75,10 @@ def name_edit(old: str, new: str) -> Hashable:
 
 
 def _common_ends(old: str | list[str], new: str | list[str]) -> tuple[int, int]:
-    """Return how many items are equal at the start, and how many of the others at the end."""
+    """Return the lengths of the common prefix and suffix.
+
+    The suffix is found first, and the two do not overlap.
+    """
     length = min(len(old), len(new))
     end = next((index for index in range(length) if old[-1 - index] != new[-1 - index]), length)
     rest = length - end

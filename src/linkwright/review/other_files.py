@@ -14,7 +14,7 @@ from linkwright.review.versions import Version, Versions
 _HEAD_BYTES = 4096
 """The number of bytes at the beginning of a file that tell what it is."""
 _MIN_FILES = 4
-"""The number of files of a folder from which they are one line."""
+"""The minimum number of files of a folder that are summarized in one line."""
 
 
 def file_states(versions: Versions, files: Iterable[ChangedFile]) -> dict[str, Phrase]:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _TOLERANCE = 1e-4
-"""The distance in m up to which paths are equal."""
+"""The maximum distance in m between equal paths."""
 _MAX_POINTS = 200
 """The number of points of each path in a report."""
 _MAX_PAIRS = 24

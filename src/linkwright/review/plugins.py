@@ -82,7 +82,7 @@ def _parameters(plugin: Element) -> Iterator[tuple[str, str]]:
 def contents_text(element: Element) -> Phrase | None:
     """Return the values of a plugin or sensor, or the plugins and sensors in another element with theirs, or None.
 
-    A plugin has the default topics of a known one, too.
+    A plugin also has the default topics of a known one.
     """
     if element.tag in _PARTS or not any(child.tag in _PARTS and child.attributes for child in element.walk()):
         texts = [values_text(element, _MAX_VALUES), _default_topics_text(element)]

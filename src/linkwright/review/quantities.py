@@ -10,9 +10,9 @@ from linkwright.diagnostics import Phrase
 from linkwright.review.changes import Figure
 
 _RELATIVE_TOLERANCE = 1e-4
-"""The relative difference up to which a quantity is equal; it is shown with four digits."""
+"""The maximum relative difference of equal quantities, which are shown with four digits."""
 _LENGTH_TOLERANCE = 1e-4
-"""The difference in m up to which a length is equal."""
+"""The maximum difference in m of equal lengths."""
 
 
 def figure_of(name: Phrase, unit: str, old: object, new: object) -> Iterator[Figure]:

@@ -1,4 +1,4 @@
-"""Paths in launch files to files that only the old version has."""
+"""Find paths in launch files to files that the new version lacks."""
 
 from __future__ import annotations
 

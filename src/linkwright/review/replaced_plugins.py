@@ -20,7 +20,7 @@ _FILE_ROLE = re.compile(
 """The name of a file without what tells only the version of the simulator."""
 _SEPARATORS = re.compile(r"[\W_]+")
 _MIN_ROLE = 3
-"""The number of characters from which a role is one."""
+"""The minimum number of characters of a role."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,7 +57,7 @@ from linkwright.review.versions import Version, Versions
 _Pair = tuple[KindRule, "str | None", "str | None"]
 """The rule for a file, its old path and its new path."""
 _MIN_EXPANDED = 4
-"""The number of descriptions from which several processes are faster than one."""
+"""The minimum number of descriptions for which several processes are used."""
 _MOVED = "moved from {folder}, installed at the same place"
 _LISTED = (SubjectKind.BUILD, SubjectKind.MANIFEST, SubjectKind.LAUNCH_FILE, SubjectKind.PARAMETERS)
 """The kinds whose changed files are listed with the other files if no difference is found."""
@@ -84,7 +84,7 @@ def review(
         scenarios: scenarios to run in both versions, relative to the root. Their code, and that of the packages, runs.
         seeds: the number of seeds of scenarios; None for their own.
         with_images: whether to make images of robots that look different.
-        with_scenes: whether to make scenes in 3D of them, too.
+        with_scenes: whether to also make 3D scenes of them.
 
     Raises:
         LinkwrightError: REV103, there is no such package.
@@ -153,7 +153,7 @@ class _Reviewer:
         )
 
     def _with_other_subjects(self, subjects: Sequence[Subject]) -> list[Subject]:
-        """Return subjects with those of plugin descriptions and sources, and with paths that lead nowhere."""
+        """Return the subjects with broken paths, and with the subjects of plugin descriptions and sources."""
         lost: dict[str, list[Change]] = {}
         for path, change in lost_references(self._versions, self._changed_files):
             lost.setdefault(path, []).append(change)
@@ -193,7 +193,7 @@ class _Reviewer:
         paths = (file.old_path if version.is_old else file.new_path for file in self._changed_files)
         return {path for path in paths if path and is_plain_robot(version.file(path))}
 
-    # --- which files ------------------------------------------------------------------------------------------------
+    # --- compared files ---------------------------------------------------------------------------------------------
 
     def _pairs(self) -> Iterator[_Pair]:
         """Yield the files to compare: the rule of the kind, the old path and the new path."""
@@ -229,7 +229,7 @@ class _Reviewer:
         return rule
 
     def _package_build_file(self, file: ChangedFile) -> tuple[str, str] | None:
-        """Return the paths of the ``CMakeLists.txt`` of the package that runs another one, or None."""
+        """Return the old and new path of the package's ``CMakeLists.txt`` if a file is another one in a subfolder."""
         path = PurePosixPath(file.path)
         folder = _package_folder(self._versions.new, file.path, (MANIFEST, ROSBUILD_MANIFEST))
         if path.name != CMAKE_FILE or folder is None:
@@ -241,7 +241,10 @@ class _Reviewer:
         return old_path, new_path
 
     def _is_part_of_a_robot(self, rule: KindRule, file: ChangedFile) -> bool:
-        """Return whether a file is not a setting of a tool: hidden, or in YAML and outside all packages."""
+        """Return whether a file belongs to a robot.
+
+        Hidden files, and YAML files outside all packages, are settings of tools.
+        """
         if any(part.startswith(".") for part in PurePosixPath(file.path).parts):
             return False
         sides = ((self._versions.old, file.old_path), (self._versions.new, file.new_path))
@@ -283,7 +286,7 @@ class _Reviewer:
         return Targets(tuple(version.file(path) for path in paths if path), tuple(packages))
 
     def _notes(self) -> Iterator[Phrase]:
-        """Yield what the review could not look at."""
+        """Yield notes about files that the review did not compare."""
         for file in self._changed_files:
             if file.is_submodule:
                 if file.old_path is None:
@@ -294,11 +297,11 @@ class _Reviewer:
             if version.commit is None:
                 continue
             for link in version.commit.removed_links:
-                yield phrase("symbolic link '{path}' leads out of the repository and is ignored", path=link)
+                yield phrase("symbolic link '{path}' points outside the repository and is ignored", path=link)
             if version.commit.missing_files:
                 yield counted(
-                    "git cannot write one file of '{version}', such as '{path}'",
-                    "git cannot write {count} files of '{version}', such as '{path}'",
+                    "git cannot check out one file of '{version}', such as '{path}'",
+                    "git cannot check out {count} files of '{version}', such as '{path}'",
                     len(version.commit.missing_files),
                     version=version.name,
                     path=version.commit.missing_files[0],
@@ -357,7 +360,7 @@ def _compare(
 
 
 def _renaming(versions: Versions, rule: KindRule, old_path: str, new_path: str) -> Change:
-    """Return the change that a file has another path."""
+    """Return the change that reports a renamed or moved file."""
     old, new = PurePosixPath(old_path), PurePosixPath(new_path)
     if old.name == new.name and rule.removal_reason is not None and keeps_installed_path(versions, old_path, new_path):
         return Change(phrase("moved from {folder}, installed at the same place", folder=f"{old.parent}/"))
@@ -389,7 +392,7 @@ def _lone_contents(
 
 
 def _is_only_moved(subject: Subject) -> bool:
-    """Return whether a file is the same at another path, and installed where it was."""
+    """Return whether a file was only moved, and is installed at the same path as before."""
     templates = [change.sentence.template for change in subject.changes]
     return templates == [_MOVED] and not subject.figures and not subject.problems
 
@@ -437,7 +440,7 @@ def _maps_of_images(versions: Versions, files: Sequence[ChangedFile]) -> Iterato
 def _targets(version: Version) -> set[str]:
     """Return the paths of the complete descriptions, semantic descriptions in xacro, and worlds of a version.
 
-    A robot that another description includes is complete if a launch file starts it, too.
+    A robot that another description includes is complete if a launch file also starts it.
     """
     checker = version.checker()
     started = [file for file in included_robots(version.root) if checker.calls(file, ())]

@@ -70,7 +70,7 @@ class Version:
         return self._nearest(folder).get(package) or self.shares.get(package)
 
     def checker(self) -> Checker:
-        """Return a checker that finds the packages of this version, also where the working tree has them, too."""
+        """Return a checker that finds the packages of this version, even if the working tree also has them."""
         return Checker(folders=(self.root,), shares=self.shares)
 
     def model(self, path: str, values: Mapping[str, str]) -> Model:
@@ -244,7 +244,7 @@ def _common_commit(repository: GitRepository, old_commit: str, old_name: str, ne
 def _is_checked_out(repository: GitRepository, commit: str) -> bool:
     """Return whether the working tree contains the files of a commit, so that they need not be written.
 
-    A working tree with links that lead out of it is not used: the files of others could appear in the report.
+    A working tree with links that point outside it is not used: the files of others could appear in the report.
     """
     if repository.resolve("HEAD") != commit or repository.changed_files(commit):
         return False

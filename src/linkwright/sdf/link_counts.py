@@ -1,4 +1,4 @@
-"""Count links without complete parsing of a world.
+"""Count the links of a world without building its model.
 
 For a huge world, parsing would take minutes and gigabytes.
 """

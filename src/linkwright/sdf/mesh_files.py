@@ -21,7 +21,7 @@ def shapes_of(model: Model) -> Iterator[Visual | Collision]:
 
 
 def mesh_files(models: Iterable[Model], finder: ResourceFinder) -> tuple[Path, ...]:
-    """Return the mesh and heightmap files that models use and that exist, without duplicates."""
+    """Return the existing mesh and heightmap files of models, without duplicates."""
     paths: dict[Path, None] = {}
     for shape in (model_shape for model in models for model_shape in shapes_of(model)):
         if isinstance(shape.geometry, Mesh | Heightmap) and shape.element is not None and shape.element.source:

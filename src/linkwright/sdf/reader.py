@@ -105,7 +105,7 @@ WITHOUT_EFFECT = {
 }
 """Child elements, by their parent, that Linkwright recognizes but ignores, and those that ros2_control reads itself."""
 OPEN = frozenset({"plugin", "gui", "state"})
-"""Elements with content that other programs define, and the state that Gazebo saved."""
+"""Elements with content of other programs, and the state saved by Gazebo."""
 
 
 @dataclass(frozen=True, slots=True)

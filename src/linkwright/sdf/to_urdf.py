@@ -130,7 +130,9 @@ class _Converter:
             child = self._frames.link(joint.child)
             if WORLD in (child, self._frames.link(joint.parent)):
                 reason = phrase("{joint} connects the model to the world", joint=_joint_description(joint))
-                raise _ConversionError(reason, joint.element, phrase("set a fixed base where the robot is spawned"))
+                raise _ConversionError(
+                    reason, joint.element, phrase("remove the joint, and spawn the robot with a fixed base")
+                )
             if child in parent_joints:
                 placeholders = {"link": child, "joint": parent_joints[child].name, "other_joint": joint.name}
                 reason = phrase(

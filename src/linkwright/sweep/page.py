@@ -94,7 +94,7 @@ def _finite_rows(table: Table, name: str) -> list[int]:
 
 def _finite_values(table: Table, name: str) -> list[float]:
     values = table.columns[name]
-    return [float(values[index]) for index in _finite_rows(table, name)]  # type: ignore[arg-type]  # they are numbers
+    return [float(values[index]) for index in _finite_rows(table, name)]  # type: ignore[arg-type]  # the values are numbers
 
 
 def _varied_parameters(table: Table) -> list[str]:

@@ -37,8 +37,8 @@ def run_on_ray(path: Path, runs: Iterable[Run], address: str, report: Report) ->
     with connect_to_ray(address, path.parent) as cluster:
         for index, outcome in cluster.run_tasks(_run_in_cluster, ((path.name, run) for run in planned)):
             if isinstance(outcome, LostTask):
-                lost = f"the process of the run was lost twice: {outcome.error}"
-                report(Outcome(planned[index].row, error=lost))
+                message = f"the process of the run was lost twice: {outcome.error}"
+                report(Outcome(planned[index].row, error=message))
             else:
                 report(outcome)
 

@@ -181,7 +181,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
     async def settle(self) -> None:
         """Run all ready callbacks of the graph and the simulation.
 
-        Callbacks that these cause are run, too. Time does not advance.
+        Callbacks that these cause are also run. Time does not advance.
 
         Raises:
             Exception: the error of a callback.

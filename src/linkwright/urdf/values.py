@@ -152,7 +152,7 @@ def vector_hint(text: str, count: int) -> Phrase | None:
     if malformed is None:
         return phrase("give {count} numbers, not {count_given}", count=count, count_given=len(text.split()))
     if malformed.startswith("(") and "," in malformed:
-        return phrase("a comma in an expression makes a pair of numbers; write a point as decimal separator")
+        return phrase("a comma in an expression creates a tuple; use a point as the decimal separator")
     hint = number_hint(malformed)
     return (
         phrase("'{value}': {hint}", value=malformed, hint=hint)

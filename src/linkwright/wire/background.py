@@ -182,7 +182,7 @@ class BackgroundTransport(ABC):
     def close_publisher(self, publisher: Publisher[Any]) -> None:
         """Stop mirroring a publisher once its reliable messages are acknowledged.
 
-        If no reader is left to acknowledge the messages, mirroring stops, too.
+        If no reader is left to acknowledge the messages, mirroring also stops.
         """
         self._mirror(lambda engine: engine.close_publisher(publisher))
 

@@ -81,7 +81,7 @@ _STEPS_PER_CLOCK_CHECK = 1_000
 _MACROS_PER_CLOCK_CHECK = 32
 
 LONG = 1_000
-"""The number of characters above which a text is charged to the budget."""
+"""The maximum number of characters of a text that is not charged to the budget."""
 
 
 class Budget:

@@ -82,7 +82,7 @@ def expand_with_omissions(inputs: Inputs, packages: Packages) -> tuple[Expansion
 
 
 class _StandInPackages:
-    """A finder that returns a folder that does not exist for a missing package."""
+    """A finder that returns a nonexistent folder for a missing package."""
 
     def __init__(self, packages: Packages, omissions: Omissions) -> None:
         self._packages = packages
@@ -126,7 +126,7 @@ class _OmittingExpander(Expander):
             super().record_fault(fault)
 
     def _tolerant(self, directive: Directive) -> Directive:
-        """Return a directive that leaves out its tag if the tag needs something that is missing."""
+        """Return a directive that leaves out its tag if the tag needs a missing file or definition."""
 
         def expand(expander: Expander, site: Site) -> None:
             session, nesting = self.session, self._nesting

@@ -4,7 +4,7 @@
 the result, too. Here, a tag that fails is left out, and the walk continues. Two rules keep the result correct:
 
 - **Gaps are known.** An element is left out of the result if its attribute or text failed, or if a tag inside was
-  left out. The enclosing elements are left out, too.
+  left out. The enclosing elements are also left out.
 - **Consequences are not reported.** A part that is left out may have defined names. After this part, a missing name
   is not an error, and a value may differ from the intended one. Therefore, each part that depends on a name or value
   is also left out, without a message.

@@ -23,7 +23,7 @@ _MAX_LOOKAHEAD_DEPTH = 100
 """The number of nesting levels that a plan covers. Deeper elements are planned when the walk reaches them."""
 _UNKNOWN_OFFSET = -1
 _CHANGE_MARKERS = ("$", PREFIX, _DECLARATION, "&", "<!", "<?")
-"""Strings of which any element that may change contains at least one. An unchanged element may contain them, too."""
+"""Strings of which any element that may change contains at least one. An unchanged element may also contain them."""
 
 KEEP, COPY, ELEMENT, TAG, TEXT, COMMENT, SWITCH = range(7)
 """Kinds of steps, in this order: keep nodes unchanged; copy elements and keep the nodes between them; expand an

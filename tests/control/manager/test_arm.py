@@ -38,7 +38,7 @@ class Robot:
 
     def send_goal(self, *points: Any) -> SentGoal:
         goal = get_action(ACTION).Goal(trajectory=trajectory(*points, names=JOINTS))
-        return SentGoal(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # it has a node
+        return SentGoal(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # the arm has a node
 
     def positions(self) -> list[float]:
         return [state.value for state in self.manager.resources.states([f"{name}/position" for name in JOINTS])]

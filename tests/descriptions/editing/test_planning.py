@@ -316,7 +316,7 @@ def test_missing_elements_and_infinite_values_are_rejected(tmp_path: Path) -> No
         plan_edit(examine(robot("")), EditRequest("joint", "j", xyz=(0, 0, 1)))
 
 
-# --- every robot of the corpus ----------------------------------------------------------------------------------------
+# --- the robots of the corpus -----------------------------------------------------------------------------------------
 
 
 def parts_of(robot_model: Robot) -> list[tuple[Any, str, int]]:

@@ -75,7 +75,7 @@ async def test_deadline_missed_events_are_sent_to_both_sides(graph, node, clock)
         String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(deadline=requested.append)
     )
     await clock.advance(5.0)
-    assert (offered, requested) == ([], [])  # it begins with the first message, as in DDS
+    assert (offered, requested) == ([], [])  # the deadline begins with the first message, as in DDS
     for _ in range(10):
         publisher.publish(String())
         await clock.advance(0.9)

@@ -100,7 +100,7 @@ def place(text: str, wanted: str, more: int = 0) -> types.Position:
     return types.Position(before.count("\n"), len(line.encode("utf-16-le")) // 2)
 
 
-def written(text: str, place: types.Range) -> str:
+def text_at(text: str, place: types.Range) -> str:
     """Return the text of a range in one line."""
     units = text.splitlines()[place.start.line].encode("utf-16-le")
     return units[2 * place.start.character : 2 * place.end.character].decode("utf-16-le")
@@ -124,7 +124,7 @@ async def labels(editor: Editor, name: str, position: types.Position) -> list[st
 async def test_ros_and_workspace_modules_are_found(editor: Editor) -> None:
     editor.open(TALKER, language="python")
     findings = await editor.until(TALKER, "F401", "F401")
-    assert {written(NODE, finding.range) for finding in findings} == {"os", "LaunchNode"}
+    assert {text_at(NODE, finding.range) for finding in findings} == {"os", "LaunchNode"}
     assert "A node in the graph" in await hover(editor, TALKER, place(NODE, "Node)"))
     assert "Count" in await hover(editor, TALKER, place(NODE, "Count\n"))
     assert "create_publisher" in await hover(editor, TALKER, place(NODE, "create_publisher", more=3))

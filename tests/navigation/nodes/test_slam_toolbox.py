@@ -279,7 +279,7 @@ def test_robot_is_localized_in_saved_map(test, tmp_path):
     test.publish("/initialpose", initial)
     test.advance(0.1)
     pose = np.array((0.3, -3.0, 0.0))
-    robot.go(pose[None], np.array([[20.0, 7.0, 2.0]]))  # it was carried away
+    robot.go(pose[None], np.array([[20.0, 7.0, 2.0]]))  # the robot was carried away
     at = poses.last.pose.pose.position
     assert [at.x, at.y] == pytest.approx(relative_pose(PATH[0], pose)[:2], abs=0.05)
 

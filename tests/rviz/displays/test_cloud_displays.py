@@ -46,7 +46,7 @@ def colored_cloud(count: int = 2):
     return cloud(array)
 
 
-def shown(display) -> list[list[float]]:
+def points_of(display) -> list[list[float]]:
     return [content.fields["positions"].reshape(-1, 3).tolist() for content in contents(display)]
 
 
@@ -148,7 +148,7 @@ async def test_malformed_message_is_reported_and_last_cloud_remains():
         await world.settle()
         level, text = world.status("PointCloud2")["Message"]
         assert (level, text[:20]) == ("error", "Data size (40 bytes)")
-        assert len(shown(world.display("PointCloud2"))[0]) == 2
+        assert len(points_of(world.display("PointCloud2"))[0]) == 2
         publisher.publish(colored_cloud(3))
         await world.settle()
         assert "Message" not in world.status("PointCloud2")
@@ -161,9 +161,9 @@ async def test_points_remain_for_decay_time():
         publisher.publish(colored_cloud(1))
         publisher.publish(colored_cloud(2))
         await world.settle()
-        assert [len(cloud) for cloud in shown(display)] == [1, 2]
+        assert [len(cloud) for cloud in points_of(display)] == [1, 2]
         assert world.status("PointCloud2")["Points"][1].startswith("Showing [")
-        await eventually(lambda: shown(display) == [])
+        await eventually(lambda: points_of(display) == [])
         none = ("ok", "Showing [0] points from [0] messages")
         await eventually(lambda: world.status("PointCloud2")["Points"] == none)
 
@@ -177,10 +177,10 @@ async def test_zero_decay_time_keeps_only_newest_message():
             publisher.publish(colored_cloud(count))
         await world.settle()
         display.set_property(("Decay Time",), 0)
-        assert [len(cloud) for cloud in shown(display)] == [3]
+        assert [len(cloud) for cloud in points_of(display)] == [3]
         publisher.publish(colored_cloud(4))
         await world.settle()
-        assert [len(cloud) for cloud in shown(display)] == [4]
+        assert [len(cloud) for cloud in points_of(display)] == [4]
 
 
 async def test_page_receives_fields_of_selected_point():
@@ -203,7 +203,7 @@ async def test_laser_scan_is_shown():
         message.header.frame_id = "base"
         publisher.publish(message)
         await world.settle()
-        np.testing.assert_allclose(shown(world.display("LaserScan"))[0], [[1, 0, 0], [0, 2, 0]], atol=1e-6)
+        np.testing.assert_allclose(points_of(world.display("LaserScan"))[0], [[1, 0, 0], [0, 2, 0]], atol=1e-6)
         assert world.display("LaserScan").properties.text("Color Transformer") == "Intensity"
 
 
@@ -263,7 +263,9 @@ async def test_scan_of_moving_scanner_is_deskewed():
         message.header.frame_id, message.header.stamp.sec = "laser", 100
         publisher.publish(message)
         await world.settle()
-        np.testing.assert_allclose(shown(world.display("LaserScan"))[0], [[1, 0, 0], [3, 0, 0], [5, 0, 0]], atol=1e-6)
+        np.testing.assert_allclose(
+            points_of(world.display("LaserScan"))[0], [[1, 0, 0], [3, 0, 0], [5, 0, 0]], atol=1e-6
+        )
         assert contents(world.display("LaserScan"))[0].pose == [0, 0, 0, 0, 0, 0, 1]
 
 
@@ -285,7 +287,7 @@ async def test_scalar_message_is_a_colored_point(cls, field, value, color):
         publisher.publish(message)
         await world.settle()
         display = world.display(cls)
-        assert shown(display) == [[[0, 0, 0]]]
+        assert points_of(display) == [[[0, 0, 0]]]
         assert colors(display) == [color]
         names = set(store_rows(display))
         assert {"Use rainbow", "Min Intensity", "Max Intensity", "Decay Time"} <= names
@@ -381,7 +383,7 @@ async def test_legacy_point_cloud_is_shown():
         )
         await world.settle()
         display = world.display("PointCloud")
-        assert shown(display) == [[[1, 0, 0], [2, 0, 0]]]
+        assert points_of(display) == [[[1, 0, 0], [2, 0, 0]]]
         first, second = colors(display)
         assert first != second
 

@@ -56,7 +56,7 @@ def array(*detections):
     return message
 
 
-async def shown(cls: str, message, extra: str = "") -> dict:
+async def displayed_fields(cls: str, message, extra: str = "") -> dict:
     async with open_world(config(f"{PLUGINS}/{cls}", extra)) as world:
         world.move_arm()
         publish(world, "/topic", message)
@@ -67,7 +67,7 @@ async def shown(cls: str, message, extra: str = "") -> dict:
 
 @pytest.mark.parametrize(("cls", "wrap"), [("Detection3DArray", array), ("Detection3D", lambda message: message)])
 async def test_detections_are_boxes_with_likeliest_class_and_score(cls, wrap):
-    fields = await shown(cls, wrap(detection(result("ball", 0.25), result("person", 0.75))))
+    fields = await displayed_fields(cls, wrap(detection(result("ball", 0.25), result("person", 0.75))))
     assert fields["poses"].tolist() == [1, 0, 0, 0, 0, 0, 1]
     assert fields["sizes"].tolist() == [0.5, 1, 2]
     assert fields["colors"].tolist() == [0, 0, 255]
@@ -75,19 +75,19 @@ async def test_detections_are_boxes_with_likeliest_class_and_score(cls, wrap):
 
 
 async def test_detection_without_results_is_box_without_class():
-    fields = await shown("Detection3DArray", array(detection()))
+    fields = await displayed_fields("Detection3DArray", array(detection()))
     assert (fields["names"], fields["scores"].tolist(), fields["colors"].tolist()) == ([""], [-1], [255, 22, 80])
 
 
 async def test_boxes_without_header_are_in_fixed_frame():
-    fields = await shown("BoundingBox3D", box(3.0))
+    fields = await displayed_fields("BoundingBox3D", box(3.0))
     assert (fields["frame"], fields["poses"].tolist()) == ("base", [3, 0, 0, 0, 0, 0, 1])
 
 
 async def test_bounding_box_array_has_no_classes():
     message = get_message("vision_msgs/msg/BoundingBox3DArray")(boxes=[box(1.0), box(2.0)])
     message.header.frame_id = "tip"
-    fields = await shown("BoundingBox3DArray", message)
+    fields = await displayed_fields("BoundingBox3DArray", message)
     assert (fields["sizes"].shape, fields["names"]) == ((6,), ["", ""])
 
 
@@ -102,7 +102,7 @@ async def test_nonfinite_boxes_are_rejected():
 async def test_class_colors_are_read_from_file(tmp_path):
     path = tmp_path / "colors.yaml"
     path.write_text("Ball: {r: 1, g: 2, b: 3}\n")
-    fields = await shown("Detection3DArray", array(detection(result("ball", 1.0))), f", ConfigPath: {path}")
+    fields = await displayed_fields("Detection3DArray", array(detection(result("ball", 1.0))), f", ConfigPath: {path}")
     assert fields["colors"].tolist() == [1, 2, 3]
 
 
@@ -140,7 +140,7 @@ def image(seconds: int):
     return message
 
 
-def found(seconds: int, *results):
+def detection_message(seconds: int, *results):
     marked = get_message("vision_msgs/msg/Detection2D")(results=list(results))
     marked.bbox.center.position.x, marked.bbox.center.position.y = 10.0, 20.0
     marked.bbox.size_x, marked.bbox.size_y = 4.0, 6.0
@@ -164,12 +164,14 @@ async def test_image_is_shown_with_matching_detections(monkeypatch):
 
         camera.publish(image(1))
         assert await now() == [1.0, None, None]
-        detector.publish(found(1, result("ball", 0.5)))  # its image is gone: it was not known that any would come
+        detector.publish(
+            detection_message(1, result("ball", 0.5))
+        )  # its image is gone: it was not known that any would come
         assert await now() == [1.0, 1.0, False]
         camera.publish(image(2))
         camera.publish(image(3))
         assert await now() == [1.0, 1.0, False]
-        detector.publish(found(2, result("ball", 0.5)))
+        detector.publish(detection_message(2, result("ball", 0.5)))
         assert await now() == [2.0, 2.0, True]
         (boxes,) = [
             content for content in contents(world.display("Detections")) if content.fields["kind"] == "image_boxes"
@@ -182,7 +184,7 @@ async def test_image_is_shown_with_matching_detections(monkeypatch):
 async def test_images_are_shown_without_waiting_if_detector_is_silent(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.detection_image._PATIENCE", -1.0)
     async with open_world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as world:
-        publish(world, "/found", found(1, result("ball", 0.5)))
+        publish(world, "/found", detection_message(1, result("ball", 0.5)))
         publish(world, "/topic", image(5))
         await world.settle()
         assert [content.fields["kind"] for content in contents(world.display("Detections"))] == ["image_frame"]

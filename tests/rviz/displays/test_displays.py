@@ -32,7 +32,7 @@ async def rows_with(client, identity: str) -> dict[str, dict]:
             return rows
 
 
-# --- which there are -----------------------------------------------------------------------------------------------
+# --- display classes -----------------------------------------------------------------------------------------------
 
 
 def test_display_classes_are_found_by_unique_names():

@@ -72,7 +72,7 @@ class Server:
         self._updates.publish(Update(server_id="s", seq_num=number, type=Update.KEEP_ALIVE))
 
 
-def shown(world) -> dict[str, dict]:
+def contents_by_name(world) -> dict[str, dict]:
     """Return a page's content by kind and name."""
     (display,) = world.viewer.displays
     return {f"{content.fields['kind']} {content.fields['name']}": content.fields for content in contents(display)}
@@ -95,18 +95,18 @@ async def test_interactive_markers_are_added_moved_and_removed():
     async with open_world(RvizConfig.parse(FILE)) as world:
         server = Server(world.graph, marker("one", x=1))
         await connected(world)
-        assert shown(world)["interactive_marker one"]["pose"] == [1, 0, 0, 0, 0, 0, 1]
+        assert contents_by_name(world)["interactive_marker one"]["pose"] == [1, 0, 0, 0, 0, 0, 1]
         server.update(markers=[marker("two", x=2)])
         await world.settle()
-        assert sorted(shown(world)) == ["interactive_marker one", "interactive_marker two"]
+        assert sorted(contents_by_name(world)) == ["interactive_marker one", "interactive_marker two"]
         moved = Pose(name="two")
         moved.pose.position.x = 5.0
         server.update(poses=[moved])
         await world.settle()
-        assert shown(world)["interactive_marker_moved two"]["pose"] == [5, 0, 0, 0, 0, 0, 1]
+        assert contents_by_name(world)["interactive_marker_moved two"]["pose"] == [5, 0, 0, 0, 0, 0, 1]
         server.update(erases=["two"])
         await world.settle()
-        assert sorted(shown(world)) == ["interactive_marker one"]
+        assert sorted(contents_by_name(world)) == ["interactive_marker one"]
 
 
 async def test_updates_wait_while_time_is_paused():
@@ -117,9 +117,9 @@ async def test_updates_wait_while_time_is_paused():
         server.update(markers=[marker("two")])
         server.update(erases=["one"])
         await world.settle()
-        assert sorted(shown(world)) == ["interactive_marker one"]
+        assert sorted(contents_by_name(world)) == ["interactive_marker one"]
         world.viewer.manager.set_time(paused=False, mode="Off", source="")
-        assert sorted(shown(world)) == ["interactive_marker two"]
+        assert sorted(contents_by_name(world)) == ["interactive_marker two"]
 
 
 async def test_lost_update_requests_markers_again():
@@ -130,9 +130,9 @@ async def test_lost_update_requests_markers_again():
         server.sequence = 7
         server.keep_alive()
         await world.settle()
-        assert shown(world) == {}
+        assert contents_by_name(world) == {}
         await connected(world)
-        assert sorted(shown(world)) == ["interactive_marker three"]
+        assert sorted(contents_by_name(world)) == ["interactive_marker three"]
 
 
 async def test_feedback_of_user_is_published_to_server():
@@ -172,11 +172,11 @@ async def test_marker_appears_once_its_frame_is_known():
     async with open_world(RvizConfig.parse(FILE)) as world:
         Server(world.graph, marker("one", frame="tip"))
         await connected(world)
-        assert shown(world) == {}
+        assert contents_by_name(world) == {}
         assert status(world)["one"][0] == "error"
         world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
         await world.settle()
-        assert sorted(shown(world)) == ["interactive_marker one"]
+        assert sorted(contents_by_name(world)) == ["interactive_marker one"]
         assert "one" not in status(world)
 
 
@@ -187,7 +187,7 @@ async def test_disabled_display_unsubscribes_from_server():
         (display,) = world.viewer.displays
         display.set_checked(False)
         display.on_enabled_changed()
-        assert shown(world) == {}
+        assert contents_by_name(world) == {}
         assert server._updates.get_subscription_count() == 0
 
 

@@ -1,4 +1,4 @@
-"""Displays as pages add, arrange, remove and set them."""
+"""Pages add, arrange, remove and change displays."""
 
 from __future__ import annotations
 
@@ -41,21 +41,23 @@ async def test_disabled_group_disables_its_displays():
         assert world.viewer.config.text() == TEXT
 
 
-@pytest.mark.parametrize("box", ["", "Enabled: true", "Value: true", "Enabled: true, Value: false", "Enabled: no"])
-async def test_undo_of_checkbox_restores_file(box):
-    text = f"Visualization Manager:\n  Displays:\n    - {{Class: rviz_default_plugins/Axes, {box}}}\n"
+@pytest.mark.parametrize(
+    "checkbox_yaml", ["", "Enabled: true", "Value: true", "Enabled: true, Value: false", "Enabled: no"]
+)
+async def test_undo_of_checkbox_restores_file(checkbox_yaml):
+    text = f"Visualization Manager:\n  Displays:\n    - {{Class: rviz_default_plugins/Axes, {checkbox_yaml}}}\n"
     async with open_world(RvizConfig.parse(text)) as world:
         manager = world.viewer.manager
         (display,) = manager.displays
-        was = display.config.checked
-        manager.tree.check(display, not was)
+        was_checked = display.config.checked
+        manager.tree.check(display, not was_checked)
         changed = manager.config.text()
-        assert display.config.checked is not was
+        assert display.config.checked is not was_checked
         for _ in range(2):
             manager.history.undo()
-            assert (manager.config.text(), display.config.checked) == (text, was)
+            assert (manager.config.text(), display.config.checked) == (text, was_checked)
             manager.history.redo()
-            assert (manager.config.text(), display.config.checked) == (changed, not was)
+            assert (manager.config.text(), display.config.checked) == (changed, not was_checked)
 
 
 FRAMES = """Visualization Manager:
@@ -89,7 +91,7 @@ async def test_fade_time_is_shortest_of_tf_displays():
         assert stream.fade_time is None
 
 
-# --- which displays there are --------------------------------------------------------------------------------------
+# --- adding and choosing displays ----------------------------------------------------------------------------------
 
 
 async def test_display_choices_are_sent():
@@ -172,7 +174,7 @@ async def test_removed_displays_unsubscribe_and_undo_restores_them():
         assert names(world) == ["Grid", "Marks", "Clicks", "Radar"]
         assert publisher.get_subscription_count() == 1
         assert world.viewer.config.text() == text
-        await undo(client)  # the edit before, of a display that is another object now
+        await undo(client)  # undo the earlier edit of the display, which is a new object since it was restored
         assert world.viewer.displays[2].properties.number("Alpha") == 0.5
         assert world.viewer.config.text() == TEXT
 
@@ -244,10 +246,10 @@ async def test_displays_are_moved(displays, group, before, expected):
         await client.send("move_displays", displays=displays, group=group, before=before)
         await client.until("tree")
 
-        def holder(display) -> str | None:
+        def group_name(display) -> str | None:
             return display.config.group.name if display.config.group else None
 
-        assert [(display.config.name, holder(display)) for display in world.viewer.displays] == expected
+        assert [(display.config.name, group_name(display)) for display in world.viewer.displays] == expected
         await undo(client)
         assert world.viewer.config.text() == TEXT
 
@@ -310,7 +312,7 @@ async def test_group_nesting_depth_is_limited():
 async def test_number_of_displays_is_limited(monkeypatch):
     monkeypatch.setattr(display_tree, "MAXIMUM_DISPLAYS", 6)
     async with opened() as (world, client):
-        await edit(client, "duplicate_displays", displays=["display-2"])  # a group and what it holds
+        await edit(client, "duplicate_displays", displays=["display-2"])  # a group with its display
         for kind, fields in (
             ("duplicate_displays", {"displays": ["display-1"]}),
             ("group_displays", {"displays": ["display-1"], "name": "All"}),

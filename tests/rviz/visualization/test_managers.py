@@ -48,7 +48,7 @@ async def test_page_may_have_own_displays(monkeypatch):
             assert await shared.drain() == []
             assert world.viewer.config.text() == TEXT
             assert world.viewer._node.get_parameter("fixed_frame").value == "base"
-        async with own_page(world) as again:  # it was loaded anew
+        async with own_page(world) as again:  # the page was loaded anew
             opening = await again.opened()
             assert [display["id"] for display in opening["tree"]["displays"]] == ids
         await eventually(lambda: publisher.get_subscription_count() == 1)

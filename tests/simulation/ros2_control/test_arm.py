@@ -113,7 +113,7 @@ class Arm:
 
     def call(self, *points: Any) -> SentGoal:
         goal = get_action(ACTION).Goal(trajectory=trajectory(*points))
-        return SentGoal(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # it has a node
+        return SentGoal(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # the arm has a node
 
 
 async def test_controller_can_start_before_first_update(tmp_path):

@@ -294,7 +294,7 @@ async def test_unloadable_detector_ends_node_with_one_error_and_hint(test, start
     assert words in logged[0]
 
 
-# --- where no images come -----------------------------------------------------------------------------------------
+# --- missing images -----------------------------------------------------------------------------------------------
 
 
 IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
@@ -370,7 +370,7 @@ async def test_missing_images_are_not_reported_without_subscribers(test, start, 
     assert warnings() == []
 
 
-# --- while the detector is loaded -----------------------------------------------------------------------------------
+# --- loading of the detector ----------------------------------------------------------------------------------------
 
 
 class Slow:

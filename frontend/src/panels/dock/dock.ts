@@ -17,9 +17,11 @@ import { TimeStrip } from "./time-strip";
 
 /** The dockable panels; the browser stores their arrangement for each file. */
 export class Dock {
-  /** A panel was opened, closed, moved or brought to the front. */
+  /** Emitted when a panel is opened, closed, moved or brought to the front. */
   readonly changed = new Signal();
-  /** The arrangement was replaced: titles must be set again, and panels that depend on data opened or closed. */
+  /**
+   * Emitted when the arrangement is replaced: titles must be set again, and panels that depend on data opened or closed.
+   */
   readonly arrangementReplaced = new Signal();
   /** The panels that the file shows, for `reset`; null if it does not specify them. */
   panelsOfFile: readonly PanelName[] | null = null;
@@ -119,7 +121,7 @@ export class Dock {
     return count > 0 ? `${translateTitle(id)} (${count})` : translateTitle(id);
   }
 
-  /** Restores the arrangement of the first visit. */
+  /** Restores the default arrangement. */
   reset(): void {
     if (this.isClassroom) {
       this.build(CLASSROOM_PANELS);
@@ -185,9 +187,7 @@ export class Dock {
     this.frontTabs.update();
   }
 
-  /**
-   * Shows the same panels after the window took another form, as they were in such a window or at their default places.
-   */
+  /** Keeps the open panels when the window's form changes, in the arrangement stored for the new form, if any. */
   private changeForm(): void {
     this.form = formOf(this.api);
     if (this.file !== null && this.arrange(this.file)) return;

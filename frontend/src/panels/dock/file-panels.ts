@@ -112,7 +112,7 @@ export class FilePanels {
     const { opened } = panelsMessage;
     const file = configuration.path ?? panelsMessage.origin;
     if (this.shownNumber === opened) {
-      if (file !== dock.file) dock.storeFor(file); // it was saved under another name
+      if (file !== dock.file) dock.storeFor(file); // the file was saved under another name
       return;
     }
     const isReplaced = this.shownNumber !== null;

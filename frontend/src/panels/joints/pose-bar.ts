@@ -12,7 +12,7 @@ export class PoseBar {
   private readonly chipBox = h("div", { class: "pose-chips" });
   private readonly nameField = h("input", { class: "field pose-name" });
   private readonly notice = h("p", { class: "hint pose-notice", role: "status" });
-  private readonly picker = h("input");
+  private readonly fileInput = h("input");
 
   constructor(private readonly session: Session) {
     const texts = strings.description.poses;
@@ -23,11 +23,11 @@ export class PoseBar {
       if (event.key === "Enter") this.save();
       event.stopPropagation();
     });
-    this.picker.type = "file";
-    this.picker.accept = ".srdf,.xml,.xacro";
-    this.picker.hidden = true;
-    this.picker.addEventListener("change", () => void this.importFile());
-    const moreButton = button(texts.more, () => this.openMore(moreButton), "tool bare", icon("more"));
+    this.fileInput.type = "file";
+    this.fileInput.accept = ".srdf,.xml,.xacro";
+    this.fileInput.hidden = true;
+    this.fileInput.addEventListener("change", () => void this.importFile());
+    const moreButton = button(texts.more, () => this.openMoreMenu(moreButton), "tool bare", icon("more"));
     moreButton.setAttribute("aria-haspopup", "menu");
     const entry = h(
       "div",
@@ -38,7 +38,7 @@ export class PoseBar {
       moreButton,
     );
     this.notice.hidden = true;
-    this.element = h("div", { class: "joint-bar poses", role: "group", aria: { label: texts.label } }, entry, this.chipBox, this.notice, this.picker);
+    this.element = h("div", { class: "joint-bar poses", role: "group", aria: { label: texts.label } }, entry, this.chipBox, this.notice, this.fileInput);
     const { poses, joints, robotChanged } = session;
     poses.changed.on(() => this.show());
     robotChanged.on(() => this.show());
@@ -89,11 +89,11 @@ export class PoseBar {
     this.notice.hidden = true;
   }
 
-  private openMore(anchor: HTMLElement): void {
+  private openMoreMenu(anchor: HTMLElement): void {
     const texts = strings.description.poses;
     openMenu(anchor, [
       { label: texts.export, run: () => this.export() },
-      { label: texts.import, run: () => this.picker.click() },
+      { label: texts.import, run: () => this.fileInput.click() },
     ]);
   }
 
@@ -102,10 +102,10 @@ export class PoseBar {
   }
 
   private async importFile(): Promise<void> {
-    const file = this.picker.files?.[0];
+    const file = this.fileInput.files?.[0];
     if (!file) return;
     const poses = readSrdf(await file.text());
-    this.picker.value = "";
+    this.fileInput.value = "";
     this.notice.hidden = poses.length > 0;
     this.notice.textContent = strings.description.poses.nothingFound;
     if (poses.length > 0) this.session.poses.save(this.robotName, ...poses);

@@ -2,7 +2,7 @@ import type { Object3D, Quaternion, Vector3 } from "three";
 import type { InteractiveControl } from "../../protocol";
 import { ThinLines } from "../objects/thin-lines";
 
-/** The length of the line to each side, m. */
+/** The length of the line to each side, in meters. */
 const REACH = 1000;
 const MODES: ReadonlySet<InteractiveControl["mode"]> = new Set<InteractiveControl["mode"]>([
   "move_axis",
@@ -34,7 +34,7 @@ export class VisualAid {
   }
 
   hide(): void {
-    this.line?.root.removeFromParent(); // an object that is only made invisible still counts in bounds
+    this.line?.root.removeFromParent(); // an object that is only made invisible still counts toward the bounds
   }
 
   dispose(): void {

@@ -9,7 +9,7 @@ export function computeWorldFrame(stage: Stage): Matrix4 {
   return stage.world?.drawing.computeWorldPose() ?? new Matrix4();
 }
 
-/** Returns the point of the world's ground, z = 0, at a position on the canvas, pixels. */
+/** Returns the point of the world's ground, z = 0, at a canvas position in pixels. */
 export function groundAt(stage: Stage, x: number, y: number): Place | null {
   const ray = stage.picker.rayAt(x, y).ray.clone().applyMatrix4(computeWorldFrame(stage).invert());
   const point = ray.intersectPlane(GROUND, new Vector3());

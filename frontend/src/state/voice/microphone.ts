@@ -139,7 +139,7 @@ async function openBrowserCapture(onBlock: (samples: Int16Array, lostSeconds: nu
     // Load the module first: sound between opening the microphone and loading would be lost.
     await context.audioWorklet.addModule(workletUrl);
     const resumption = context.resume();
-    resumption.catch(() => undefined); // it is awaited below, unless there is no microphone
+    resumption.catch(() => undefined); // the promise is awaited below, unless there is no microphone
     const stream = await devices.getUserMedia({
       audio: { channelCount: 1, echoCancellation: true, noiseSuppression: true, autoGainControl: true },
     });

@@ -40,7 +40,7 @@ class BadFrameError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class ClientMessage:
-    """A message that a client publishes on a channel that it advertised."""
+    """A message from a client on a channel that the client advertised."""
 
     channel: int
     data: bytes

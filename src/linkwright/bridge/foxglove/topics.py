@@ -165,6 +165,6 @@ class Publication:
 def _full_type(name: str) -> str:
     """Return the full name of a message type.
 
-    The short form ``std_msgs/String`` is accepted, too.
+    The short form ``std_msgs/String`` is also accepted.
     """
     return name.replace("/", "/msg/", 1) if name.count("/") == 1 else name

@@ -81,7 +81,7 @@ def run_judge(arguments: argparse.Namespace) -> int:
     if arguments.seeds < 1:
         raise LinkwrightError(Diagnostic("LEARN143", phrase("--seeds must be at least 1")))
     results: list[RunResult] = []
-    with redirect_stdout(sys.stderr):  # where the program prints
+    with redirect_stdout(sys.stderr):  # the judged program may print, but stdout contains only the result
         for result in judge_program(exercise, program, range(arguments.seeds), rival=rival):
             results.append(result)
             if not arguments.json:

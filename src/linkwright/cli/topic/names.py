@@ -44,7 +44,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the names of topics, as ros2 does."""
+    """Print the topic names, as ros2 does."""
 
     async def job(session: Session) -> int:
         node = session.node

@@ -32,7 +32,7 @@ class Sample:
 
     Attributes:
         state: the state at the sampled time.
-        index: the index of the last point that was passed; 0 before the first point, too.
+        index: the index of the last point that was passed; also 0 before the first point.
         point_ns: the time of that point, in nanoseconds.
         has_ended: whether the last point has been passed.
     """

@@ -1,6 +1,6 @@
 """controller_manager's spawner and unspawner, which load and unload controllers.
 
-As in Jazzy and later, the parameter files of the spawner's own process apply to the controllers, too.
+As in Jazzy and later, the parameter files of the spawner's own process also apply to the controllers.
 
 Source: controller_manager of ros2_control, with the options of Humble and Jazzy and their messages.
 """

@@ -24,10 +24,10 @@ Key = tuple[str, Hashable]
 
 _WEIGHTS = {"mesh": 2, "words": 3, "joint": 3, "children": 3}
 _SHAPES, _INERTIAL, _PARENT = 1, 1, 1
-_ENOUGH = 4
+_MIN_WEIGHT = 4
 """The minimum sum of weights for a rename. No single fact is sufficient."""
 _MAX_CANDIDATES = 40
-"""The number of links with the same fact, such as the same mesh, above which the fact is ignored."""
+"""The maximum number of links that share a fact, such as a mesh. A fact of more links is ignored."""
 _MAX_PASSES = 20
 _WORD = lazy_pattern(r"[a-z]+|\d+")
 _CAMEL = lazy_pattern(r"(?<=[a-z0-9])(?=[A-Z])")
@@ -135,7 +135,7 @@ class RenameSearch:
             by_link[False, new_name].append(value)
         for (old_name, new_name), value in sums.items():
             others = (by_link[True, old_name], by_link[False, new_name])
-            if value >= _ENOUGH and all(max(values) == value and values.count(value) == 1 for values in others):
+            if value >= _MIN_WEIGHT and all(max(values) == value and values.count(value) == 1 for values in others):
                 yield old_name, new_name
 
     def _candidates(self) -> Mapping[tuple[str, str], None]:
@@ -195,7 +195,7 @@ class RenameSearch:
 
 
 def _by_key(names: Iterable[str], keys_of: Callable[[str], Iterator[Key]]) -> dict[Key, list[str]]:
-    """Return the names of links by their keys."""
+    """Return the link names by their keys."""
     names_by_key: dict[Key, list[str]] = defaultdict(list)
     for name in names:
         for key in keys_of(name):

@@ -236,7 +236,7 @@ class _Planner:
         """Return the description after one edit of several literal numbers in an attribute.
 
         The result is None if the file must not be edited, if the attribute would not get the requested values, or if
-        other parts would change, too.
+        other parts would also change.
         """
         if self._allowed(os.path.realpath(text_range.source.name)) is not None:
             return None

@@ -26,7 +26,7 @@ class EditRequest:
         xyz: the requested position in meters, in the frame of the parent link or of the link. For the part ``axis``,
             the requested axis in the joint frame. None leaves the current value.
         rpy: the requested roll, pitch and yaw in rad. None leaves the current values.
-        together: whether other parts that depend on the same text may change, too.
+        together: whether other parts that depend on the same text may also change.
     """
 
     part: Part

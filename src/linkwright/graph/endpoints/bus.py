@@ -50,7 +50,7 @@ class Transport(Protocol):
     def close_publisher(self, publisher: Publisher[Any]) -> None:
         """Stop mirroring a publisher once its reliable messages are acknowledged.
 
-        If no reader is left to acknowledge the messages, mirroring stops, too.
+        If no reader is left to acknowledge the messages, mirroring also stops.
         """
 
     def open_subscription(self, subscription: Subscription[Any]) -> None:

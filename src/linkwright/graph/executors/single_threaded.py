@@ -1,4 +1,4 @@
-"""The executor that runs callbacks in the thread that spins."""
+"""The executor that runs callbacks in the spinning thread."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.graph.faults import ConditionReachedException, ShutdownException
 class SingleThreadedExecutor(SpinningExecutor):
     """An executor that runs callbacks one by one in the spinning thread.
 
-    It corresponds to rclpy's ``SingleThreadedExecutor``. If a callback raises an exception, ``spin`` raises it, too. If
+    It corresponds to rclpy's ``SingleThreadedExecutor``. If a callback raises an exception, ``spin`` also raises it. If
     the context is shut down during the wait, ``spin`` raises ``ExternalShutdownException``.
     """
 

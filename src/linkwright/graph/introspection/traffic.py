@@ -37,7 +37,7 @@ class TrafficWindow:
     Args:
         size: the maximum number of messages.
         max_age_ns: the maximum age of the messages, in nanoseconds; None for no limit. The last two messages are always
-            kept, so that statistics exist for slow topics, too.
+            kept, so that statistics also exist for slow topics.
     """
 
     def __init__(self, size: int, max_age_ns: int | None = None) -> None:

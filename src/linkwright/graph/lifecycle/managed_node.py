@@ -195,7 +195,7 @@ class LifecycleNodeMixin(ManagedEntity):
     def _perform(self, transition: Transition) -> TransitionCallbackReturn:
         """Run the callback of a transition, then the transition that its result triggers.
 
-        If the callback results in an error, the error processing runs, too.
+        If the callback results in an error, the error processing also runs.
         """
         initial = self._state_machine.state
         self._enter_state(transition)

@@ -27,7 +27,7 @@ T = TypeVar("T")
 
 
 class Entity(Part, ABC):
-    """A source of callbacks, whose calls a dispatcher runs.
+    """A source of callbacks that a dispatcher runs.
 
     Attributes:
         callback_group: decides which entities may run at the same time; the node's default group unless another is

@@ -24,7 +24,7 @@ STRICT = "strict_callback_groups"
 """The parameter that makes responses wait for the callback group of their client, as in rclpy."""
 
 RUNNER = "callback_of"
-"""The name of the local variable that holds the entity in a function that runs the entity's callback."""
+"""The name of the local variable with the entity in a function that runs the entity's callback."""
 
 _PACKAGE_FOLDER = str(Path(__file__).parents[2]) + os.sep
 _reported: set[tuple[CodeType, str]] = set()

@@ -217,7 +217,7 @@ def expand_topic_name(name: str, node_name: str, namespace: str) -> str:
 
 
 def expand_service_name(name: str, node_name: str, namespace: str) -> str:
-    """Return the absolute name of a service or action, expanded as by `expand_topic_name`.
+    """Return the absolute name of a service or action, expanded by the rules of `expand_topic_name`.
 
     Raises:
         InvalidServiceNameError: the name is not valid.

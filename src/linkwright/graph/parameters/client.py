@@ -90,7 +90,7 @@ class AsyncParameterClient:
     def list_parameters(
         self, prefixes: list[str] | None = None, depth: int | None = None, callback: Done | None = None
     ) -> Future[Any]:
-        """Request the names of parameters. See `NodeParameters.list_parameters`."""
+        """Request the parameter names. See `NodeParameters.list_parameters`."""
         return self._send_request("list_parameters", callback, prefixes=prefixes or [], depth=depth or 0)
 
     def get_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:

@@ -201,7 +201,7 @@ class NodeParameters:
         If a parameter is set to no value and its descriptor allows dynamic typing, the parameter is undeclared.
 
         Raises:
-            ParameterNotDeclaredException: a parameter is not declared. Those before it stay set.
+            ParameterNotDeclaredException: a parameter is not declared. The parameters before it stay set.
         """
         return [self.set_parameters_atomically([parameter]) for parameter in parameter_list]
 
@@ -354,13 +354,14 @@ def _check_names(names: Sequence[str]) -> None:
 
 
 def _is_listed(name: str, prefixes: Sequence[str], depth: int) -> bool:
-    def near(relative_name: str) -> bool:
+    def is_within_depth(relative_name: str) -> bool:
         return depth == 0 or relative_name.count(PARAMETER_SEPARATOR_STRING) < depth
 
     if not prefixes:
-        return near(name)
+        return is_within_depth(name)
     return any(
-        name == prefix or (name.startswith(prefix + PARAMETER_SEPARATOR_STRING) and near(name[len(prefix) + 1 :]))
+        name == prefix
+        or (name.startswith(prefix + PARAMETER_SEPARATOR_STRING) and is_within_depth(name[len(prefix) + 1 :]))
         for prefix in prefixes
     )
 

@@ -99,7 +99,7 @@ def _is_stricter(requested: Duration, offered: Duration) -> bool:
 
 
 def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: bool) -> QoSProfile:
-    """Return a profile whose BEST_AVAILABLE values are resolved, as by rmw_dds_common.
+    """Return a profile whose BEST_AVAILABLE values are resolved, as rmw_dds_common does.
 
     The chosen values match the endpoints that are known now.
 

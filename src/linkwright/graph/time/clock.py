@@ -542,7 +542,7 @@ class ROSClock(Clock):
     def _jump_to(self, now_ns: int) -> None:
         """Set simulated time, and call the jump callbacks whose threshold the jump exceeds.
 
-        If the time jumps back, timers are notified, too.
+        If the time jumps back, timers are also notified.
         """
         jump = TimeJump(ClockChange.ROS_TIME_NO_CHANGE, Duration(nanoseconds=now_ns - self._override_ns))
         handles = [handle for handle in self._jump_handles if handle.threshold.is_exceeded(jump)]

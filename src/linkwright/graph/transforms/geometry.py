@@ -68,7 +68,7 @@ def do_transform_pose_stamped(pose: Any, transform: Any) -> Any:
 def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
     """Return a PoseWithCovarianceStamped in the target frame.
 
-    The covariance is rotated, too.
+    The covariance is also rotated.
     """
     result = _new_message("PoseWithCovarianceStamped", transform)
     result.pose.pose = do_transform_pose(pose.pose.pose, transform)

@@ -1,4 +1,4 @@
-"""The tf buffer that nodes use, with lookups that block or return futures.
+"""The tf buffer of nodes, with lookups that block or return futures.
 
 The methods are those of ``tf2_ros.Buffer``.
 """

@@ -1,4 +1,4 @@
-"""Marks for errors that missing third-party software causes, not a mistake of the user.
+"""Mark errors that are caused by missing third-party software, not by the user.
 
 A launch skips the parts whose software is missing, and continues. For example, the simulation of a robot is useful
 even without move_group.

@@ -86,7 +86,7 @@ class LaunchDescription(LaunchDescriptionEntity):
         return self._entities
 
     def get_launch_arguments(self, conditional_inclusion: bool = False) -> list[DeclareLaunchArgument]:
-        """Return the arguments that this description and the descriptions that it includes declare.
+        """Return the declared arguments of this description and the descriptions that it includes.
 
         The search omits descriptions that cannot be read before the launch. The first declaration of a name counts. A
         declaration under a condition has its attribute ``conditionally_included`` set.

@@ -16,7 +16,7 @@ EntitiesOrCallable = SomeEntitiesType | Callable[..., Any] | None
 
 
 class BaseEventHandler:
-    """An event handler that reacts to the events that a matcher accepts.
+    """An event handler for the events that a matcher accepts.
 
     Users derive from this class and override `handle`.
 
@@ -99,7 +99,7 @@ class EventHandler(BaseEventHandler):
 
 
 class _ReactionHandler(BaseEventHandler):
-    """An event handler that visits given entities, or the entities that a function of event and context returns.
+    """An event handler that visits given entities, or those returned by a function of event and context.
 
     Args:
         matcher: called with an event; returns whether the handler accepts the event.

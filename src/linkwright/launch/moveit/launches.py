@@ -223,7 +223,7 @@ def _read_virtual_joints(text: Any) -> Iterator[tuple[str, str]]:
 
 
 class DeclareBooleanLaunchArg(DeclareLaunchArgument):
-    """An action that declares an argument that is true or false.
+    """An action that declares a boolean argument.
 
     Args:
         name: the argument's name.

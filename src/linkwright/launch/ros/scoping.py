@@ -199,7 +199,7 @@ class SetUseSimTime(SetParameter):
 
 @expose_action("set_ros_log_dir")
 class SetROSLogDir(Action):
-    """An action that changes the log folder of processes that are started later.
+    """An action that changes the log folder of later processes.
 
     Args:
         new_log_dir: the path of the folder; a relative path is relative to the previous log folder.

@@ -99,7 +99,7 @@ class ExecutableInPackage(
 
 
 class ParameterSubstitution(_LaunchRosSubstitution, tag="param", shown="Parameter(name={name})"):
-    """A substitution that evaluates to the value of a parameter that `SetParameter` set in the scope."""
+    """A substitution that evaluates to the value that `SetParameter` set for a parameter in the scope."""
 
     name: Texts = Texts()
     default: AnyOptionalTexts = AnyOptionalTexts(default=None, kw_only=True, read=normalize_default)

@@ -1,4 +1,4 @@
-"""Simulate robots that lack masses, collisions or a drive, which are added as by ``linkwright drive``."""
+"""Simulate a robot after adding missing masses, collisions and a drive, as ``linkwright drive`` does."""
 
 from __future__ import annotations
 

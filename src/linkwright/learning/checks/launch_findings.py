@@ -12,7 +12,7 @@ _SKIPPED = "LAUNCH146"
 
 
 class CheckedLog(LaunchLog):
-    """The log of a launch that a check runs, which also collects the problems that the launch reports.
+    """The log of a launch during a check, which also collects the problems reported by the launch.
 
     Args:
         output: the stream for all lines.

@@ -45,13 +45,13 @@ class FileFolder:
         self._robots: dict[tuple[str, tuple[tuple[str, str], ...]], RobotCheck] = {}
 
     def file(self, name: str) -> Path:
-        """Return a file of the folder.
+        """Return the path of a file in the folder.
 
         Args:
             name: the path in the folder, such as ``urdf/mbot_base.urdf``.
 
         Raises:
-            NotYet: there is no such file.
+            NotYet: the file is missing or empty.
         """
         path = self.folder / name
         if path.is_file():
@@ -142,7 +142,7 @@ class FileFolder:
         )
 
     def simulate(self, name: str) -> AbstractContextManager[SteppedSimulation]:
-        """Return a simulation of a file's robot in an empty world, completed as by ``linkwright drive``.
+        """Return a simulation of a file's robot in an empty world, completed as ``linkwright drive`` does.
 
         Args:
             name: the path in the folder.

@@ -279,7 +279,7 @@ class JointCheck(_CheckedPart):
 
         Args:
             axis: the direction in the frame of the root link, with all joints at zero.
-            either_sign: whether the opposite direction is accepted, too.
+            either_sign: whether the opposite direction is also accepted.
 
         Raises:
             NotYet: the axis is another one.

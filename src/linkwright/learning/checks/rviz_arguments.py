@@ -18,12 +18,14 @@ def require_rviz_configuration(arguments: Sequence[str], path: Path) -> None:
     Raises:
         NotYet: they name none, or another file.
     """
-    given = [value for option, value in pairwise(arguments) if option in _OPTIONS]
-    if any(Path(value).exists() and Path(value).samefile(path) for value in given):
+    config_paths = [value for option, value in pairwise(arguments) if option in _OPTIONS]
+    if any(Path(value).exists() and Path(value).samefile(path) for value in config_paths):
         return
-    if given:
+    if config_paths:
         raise NotYet(
-            phrase("rviz2 opens '{actual}', but should open 'rviz/{expected}'", actual=given[0], expected=path.name)
+            phrase(
+                "rviz2 opens '{actual}', but should open 'rviz/{expected}'", actual=config_paths[0], expected=path.name
+            )
         )
     raise NotYet(
         phrase(

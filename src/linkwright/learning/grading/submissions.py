@@ -18,7 +18,7 @@ from linkwright.learning.progress import PROGRESS_FILE, Progress, read_progress
 
 _ARCHIVES = {".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar"}
 _SKIPPED = {".git", "__pycache__", "__MACOSX"}
-_LONGEST_PROGRESS = 1 << 20
+_MAX_PROGRESS_SIZE = 1 << 20
 _MAX_FILES = 20_000
 _MAX_BYTES = 256 << 20
 _NESTING = 64
@@ -117,7 +117,7 @@ def _read_claims(submission: Submission, course: Course) -> None:
     path = submission.folder / PROGRESS_FILE
     try:
         status = path.lstat()
-        if not stat.S_ISREG(status.st_mode) or status.st_size > _LONGEST_PROGRESS:
+        if not stat.S_ISREG(status.st_mode) or status.st_size > _MAX_PROGRESS_SIZE:
             submission.note(phrase("{file} is a link or too large, and was not read", file=PROGRESS_FILE))
             return
         progress = read_progress(submission.folder)

@@ -129,7 +129,7 @@ class Judge:
         """Add a reason for the score."""
         self.reasons.append(LocalText({"en": en, "zh": zh}))
 
-    # --- what runs a judge --------------------------------------------------------------------------------------------
+    # --- called by runs -----------------------------------------------------------------------------------------------
 
     @property
     def score(self) -> float:

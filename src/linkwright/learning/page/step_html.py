@@ -21,7 +21,7 @@ MAX_IMAGE_BYTES = 400_000
 
 _CHINESE = "\u3000-\u303f\u3400-\u9fff\uff00-\uffef"
 _CHINESE_PAIR = re.compile(f"[{_CHINESE}][{_CHINESE}“”‘’…—]|[“”‘’…—][{_CHINESE}]")
-"""Two characters between which Chinese text has no space; quotation marks and dashes are those of English, too."""
+"""Two characters between which Chinese text has no space; quotation marks and dashes are also those of English."""
 
 
 def step_html(text: str, folder: Path) -> str:

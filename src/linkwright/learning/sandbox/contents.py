@@ -12,8 +12,9 @@ from collections import Counter
 
 _SHARED_FOLDERS = ("/tmp", "/var/tmp", "/dev/shm", "/dev/mqueue", "/run/lock")
 """The folders in which all users may write."""
-_LONGEST_PATH = 2048
-"""Folders with longer paths are deleted: most programs cannot read much longer ones."""
+_MAX_PATH_LENGTH = 2048
+"""The maximum number of characters of a path. Folders with longer paths are deleted, because most programs cannot read
+much longer ones."""
 
 
 def remove_harmful(folder: str) -> tuple[str, ...]:
@@ -25,7 +26,7 @@ def remove_harmful(folder: str) -> tuple[str, ...]:
     """
     _permit_owner(folder, os.lstat(folder))
     removed = []
-    too_deep = [path for path in _paths_of(folder) if len(path) > _LONGEST_PATH]
+    too_deep = [path for path in _paths_of(folder) if len(path) > _MAX_PATH_LENGTH]
     for path in too_deep:
         _delete_folder(path, folder)
     links: Counter[tuple[int, int]] = Counter()
@@ -120,7 +121,7 @@ def _paths_of(folder: str) -> list[str]:
                 found.append(entry.path)
                 if entry.is_dir(follow_symlinks=False):
                     _permit_owner(entry.path, entry.stat(follow_symlinks=False))
-                    if len(entry.path) <= _LONGEST_PATH:
+                    if len(entry.path) <= _MAX_PATH_LENGTH:
                         waiting.append(entry.path)
     return found
 

@@ -15,7 +15,7 @@ if sys.platform != "win32":
 _OPEN_FILES = 1024
 _NICENESS = 10
 _SPARE_PROCESSES = 16
-"""The kernel allows this many more processes than the limit, so that the watchdog sees that it is exceeded."""
+"""The number of processes that the kernel allows beyond the limit, so that the watchdog can detect an excess."""
 _GROWTH_OF_OTHERS = 100
 """The number of threads that the user's other programs may start meanwhile without affecting the run."""
 _OOM_SCORE = 1000

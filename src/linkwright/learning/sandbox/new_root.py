@@ -135,7 +135,7 @@ class _Root:
                 make_read_only(self._bind(self._sources[real], real))
                 done.append(real)
         for link, target in self._links.items():
-            with contextlib.suppress(OSError):  # it exists in a folder that is mounted
+            with contextlib.suppress(OSError):  # the link exists in a mounted folder
                 Path(self._at(link)).parent.mkdir(parents=True, exist_ok=True)
                 Path(self._at(link)).symlink_to(target)
 

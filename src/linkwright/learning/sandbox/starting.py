@@ -215,7 +215,7 @@ class Start:
         is_filtered = filter_system_calls(forbid_local_servers=shares_servers)
         confinement.local_servers_forbidden = is_filtered and shares_servers
         if "root" in confinement.namespaces and landlock.landlock_version() < landlock.MOVE_VERSION:
-            return  # it would forbid moving files between folders, and the root folder protects as well
+            return  # Landlock would forbid moving files between folders, and the root folder protects as well
         special = [path for path in ("/tmp", "/dev/shm", "/dev/pts") if "root" in confinement.namespaces]
         devices = [f"/dev/{name}" for name in ("null", "zero", "full", "random", "urandom", "ptmx", "tty")]
         proc = ["/proc"] if "root" in confinement.namespaces else []

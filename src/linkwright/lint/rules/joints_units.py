@@ -52,11 +52,11 @@ class LimitInDegrees(Rule):
                 if abs(angle) > max_angle:
                     yield self.report(
                         phrase(
-                            "'{name}' in <limit> of joint '{joint_name}' is {angle} turns: {other_angle} rad",
+                            "'{name}' in <limit> of joint '{joint_name}' is {value} rad, which is {turns} turns",
                             name=name,
                             joint_name=joint.name,
-                            angle=format_number(abs(angle) / (2 * pi)),
-                            other_angle=format_number(angle),
+                            value=format_number(angle),
+                            turns=format_number(abs(angle) / (2 * pi)),
                         ),
                         limit,
                         name,

@@ -81,7 +81,7 @@ class VisualAsCollision(Rule):
     code = "LW436"
     name = "collision-uses-visual-mesh"
     default = False
-    options = (Option("triangles", 2000, "the number of triangles from which a shared mesh is reported"),)
+    options = (Option("triangles", 2000, "the minimum number of triangles of a shared mesh that is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         max_triangles = self.option(subject, "triangles", int)

@@ -313,7 +313,7 @@ def _shared_parameters(facts: XacroFacts) -> set[str]:
 def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], bool]:
     """Return the names and the blocks that a macro's body mentions.
 
-    The third result is whether the body may mention other names, too.
+    The third result is whether the body may also mention other names.
     """
     names: set[str] = set()
     is_open = False

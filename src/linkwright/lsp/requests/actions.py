@@ -154,7 +154,7 @@ def add_requests(server: LinkwrightServer) -> None:
         texts = server.texts()
         actions: list[types.CodeAction] = []
         if _may_be_requested(_ACTION_KINDS[:2], only):
-            actions += quick_fixes(server, project.fixable(real_path(path), texts), params, positions)
+            actions += quick_fixes(server, project.fixable_findings(real_path(path), texts), params, positions)
             actions += suppression_actions(server, project.findings(real_path(path), texts), params, path, positions)
         if _may_be_requested(_ACTION_KINDS[2:], only):
             start, end = positions.offset(params.range.start), positions.offset(params.range.end)

@@ -123,10 +123,14 @@ class _MacroCalls:
             positions = self._server.positions(file)
             if positions is None:
                 continue
-            starts = [use for use in uses if not positions.text.startswith("</", _tag_start(positions.text, use.start))]
+            opening_tags = [
+                use for use in uses if not positions.text.startswith("</", _tag_start(positions.text, use.start))
+            ]
             item = self._definition(owner, file) if owner else _file_item(self._server, file, positions)
             if item is not None:
-                yield types.CallHierarchyIncomingCall(item, [positions.range(use.start, use.end) for use in starts])
+                yield types.CallHierarchyIncomingCall(
+                    item, [positions.range(use.start, use.end) for use in opening_tags]
+                )
 
     def outgoing(self) -> Iterator[types.CallHierarchyOutgoingCall]:
         """Yield the macros that the macro calls."""

@@ -220,8 +220,8 @@ def parse_interface(
         source: the content of the file.
         type_name: the name of the interface, such as ``my_msgs/srv/Count``.
         known_messages: determines which messages exist, to check references.
-        is_ros1: whether to read the file as ROS 1 does. Its names of fields may have capitals, and it has the types
-            ``time``, ``duration`` and ``Header``. These become the types of ROS 2 with the same fields.
+        is_ros1: whether to read the file as ROS 1 does. Its field names may contain capital letters, and it may use the
+            types ``time``, ``duration`` and ``Header``. These become the types of ROS 2 with the same fields.
 
     Raises:
         DefinitionError: the file has mistakes; the error contains all of them (MSG110 to MSG119).

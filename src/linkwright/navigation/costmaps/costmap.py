@@ -24,7 +24,7 @@ UNKNOWN: Final = 255
 """The cell has not been observed."""
 
 _STEPS_PER_CELL = 2.0
-"""The number of points per cell at which the outline of a footprint is checked."""
+"""The number of checked points per cell of the outline of a footprint."""
 
 
 class Costmap:

@@ -26,7 +26,7 @@ _HIT_PROBABILITY: Final = 233
 _MIN_PRIOR: Final = 0.02
 """Prior probabilities are clipped to this distance from 0 and 1, so that later readings can still change them."""
 _UPDATE_FACTOR: Final = 1.2
-"""The distance up to which cells are updated, as a multiple of the measured distance."""
+"""The maximum distance of updated cells, as a multiple of the measured distance."""
 
 
 @dataclass(frozen=True, kw_only=True)

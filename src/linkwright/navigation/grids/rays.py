@@ -47,7 +47,7 @@ def cast_rays(distances: Grid, points: NDArray[np.float64], angles: NDArray[np.f
     0.
 
     Args:
-        distances: the meters to the nearest occupied cell (see `distance_field`), 0 in occupied cells.
+        distances: the distance to the nearest occupied cell in meters (see `distance_field`), 0 in occupied cells.
         points: the origins of the rays, x and y in the frame of the grid, in meters, of shape (..., 2).
         angles: the angles of the rays about z in that frame, in radians, of shape (...).
         limit: the range of rays that hit no cell or leave the grid, in meters.

@@ -330,7 +330,7 @@ class AmclNode(ManagedNode):
         if not all(map(isfinite, pose)) or not np.isfinite(covariance).all():
             logger.error("Received initial pose contains NaNs or Infs! Ignoring as invalid!")
             return
-        covariance[2, :2] = covariance[:2, 2] = 0.0  # nav2 ignores these covariances, too.
+        covariance[2, :2] = covariance[:2, 2] = 0.0  # nav2 also ignores these covariances.
         self._set_pose(self._moved_by_odometry(pose, message.header.stamp.nanoseconds), covariance)
         if not self._is_localizing:
             logger.warning("Received initial pose request, but AMCL is not yet in the active state")

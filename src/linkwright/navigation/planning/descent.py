@@ -40,7 +40,7 @@ class _Slope:
     def are_connected(self, cell: Cell, neighbor: Cell) -> bool:
         """Return whether the straight step to an adjacent cell avoids unreachable cells.
 
-        For a diagonal step, both cells beside the corner must be reachable, too.
+        For a diagonal step, both cells beside the corner must also be reachable.
         """
         (row, column), (to_row, to_column) = cell, neighbor
         return self.potential_at(to_row, to_column) < inf and (

@@ -90,7 +90,7 @@ def missing_name(error: ImportError) -> tuple[str, str] | None:
 
 
 def other_module_hint(error: ImportError) -> Phrase | None:
-    """Return a hint on other modules that define a name that cannot be imported, or None.
+    """Return a hint on other modules that define a missing name, or None.
 
     Only Linkwright's stand-ins provide this information.
     """

@@ -29,7 +29,7 @@ BLOCK_ENDS = {
     "function": "endfunction",
     "macro": "endmacro",
 }
-"""For each command that begins a block, the command that ends the block."""
+"""The commands that end blocks, by the commands that begin them."""
 
 
 def is_open(text: str) -> bool:

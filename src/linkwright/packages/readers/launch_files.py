@@ -172,7 +172,7 @@ def _place_of(python: PythonFile, node: ast.expr | None) -> EvaluatedText | None
 
 
 class _PathReader(ast.NodeVisitor):
-    """A visitor that finds the paths in share folders that are not part of longer paths."""
+    """A visitor that finds the complete paths in share folders, without the beginnings of longer paths."""
 
     def __init__(self, python: PythonFile, facts: LaunchFile) -> None:
         self._python = python
@@ -183,7 +183,7 @@ class _PathReader(ast.NodeVisitor):
     def visit_Assign(self, node: ast.Assign) -> None:
         names = [target.id for target in node.targets if isinstance(target, ast.Name)]
         if any(name in self._names_in_paths for name in names):
-            self._path_depth += 1  # other paths begin with this name
+            self._path_depth += 1  # the value is only the beginning of other paths
             self.generic_visit(node)
             self._path_depth -= 1
         else:

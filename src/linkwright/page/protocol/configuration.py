@@ -196,7 +196,7 @@ class Configuration(ServerMessage):
 
 
 class DisplayClass(Record):
-    """A display class that can be added, and the message types that it shows."""
+    """An available display class, and the message types that it shows."""
 
     cls: str
     messages: list[str]
@@ -309,7 +309,7 @@ class Redo(PageMessage):
 
 
 class RequestDisplayChoices(PageMessage):
-    """A request for the classes that can be added and the topics that they can show."""
+    """A request for the available display classes and the topics that they can show."""
 
 
 class RequestFolder(PageMessage):

@@ -104,7 +104,7 @@ class PlotField(Record):
 
 
 class PlotSeries(Record):
-    """A series that a page plots, with an ID that the page has chosen."""
+    """A series that a page plots, with an ID chosen by the page."""
 
     id: int
     topic: str
@@ -149,7 +149,7 @@ class RequestFields(PageMessage):
 
 
 class WatchSeries(PageMessage):
-    """All series that the page plots from now on, and the duration that it shows, in seconds."""
+    """All series that the page plots from now on, and the shown duration in seconds."""
 
     series: list[PlotSeries]
     seconds: float = 30.0

@@ -172,7 +172,7 @@ class Clock(ServerMessage):
 
 
 class TimeReset(ServerMessage):
-    """The notice that time was reset and that displays have discarded their messages."""
+    """The notice that time was reset and displays have discarded their messages."""
 
 
 class SetTime(PageMessage):

@@ -24,7 +24,7 @@ NAME_LISTS = ("name", "names", "joint_names")
 """Fields with the names of the elements of arrays in the same message or in nested messages."""
 
 NAME_FIELDS = ("name", "child_frame_id")
-"""Fields that contain the name of a message that is an element of an array."""
+"""Fields that contain the name of an array element, which is a message."""
 
 SECONDS = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 """Messages that represent a number of seconds."""

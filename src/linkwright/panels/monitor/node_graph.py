@@ -11,7 +11,7 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 
 class NodeGraphFeature(PageFeature):
-    """The feature that sends the nodes and topics to the pages that watch them.
+    """The feature that sends the nodes and topics to subscribed pages.
 
     The nodes and topics are sent initially and after every change.
     """

@@ -12,7 +12,7 @@ from linkwright.panels.terminal.history import TerminalHistory
 from linkwright.panels.terminal.pty import Ended, Pty, Receive, TerminalSize
 
 MAX_UNACKNOWLEDGED = 16
-"""The number of unacknowledged messages with output at which no more output is read."""
+"""The maximum number of unacknowledged messages with output. No more output is read until pages acknowledge some."""
 
 _PAUSE_SECONDS = 0.005
 """Seconds between two blocks of output.

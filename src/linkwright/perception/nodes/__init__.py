@@ -1,1 +1,1 @@
-"""Nodes that filter and convert sensor data, with the names of nodes in ROS packages."""
+"""Nodes that filter and convert sensor data, with the node names of ROS packages."""

@@ -114,7 +114,7 @@ class _ImuFilter(SingleNode, ABC):
             return
         seconds = self._constant_dt or (0.0 if self._last_ns is None else (stamp_ns - self._last_ns) / 1e9)
         self._last_ns = stamp_ns
-        if seconds >= 0.0:  # it is negative after simulated time has jumped back
+        if seconds >= 0.0:  # the interval is negative after simulated time has jumped back
             self._filter.update(angular_velocity, acceleration, self._magnetic, seconds)
         self._publish(message, acceleration)
 

@@ -1,4 +1,4 @@
-"""Subscriptions that exist only while the topics that depend on them have subscribers."""
+"""Subscriptions that exist only while the output topics have subscribers."""
 
 from __future__ import annotations
 

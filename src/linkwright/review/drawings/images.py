@@ -27,7 +27,7 @@ _VIEWS_OF_COLLISIONS = ("iso", "front")
 _PLACES = ("origin xyz", "origin rpy")
 """The ends of the names of properties with a place, which is compared as seen in the image."""
 _MOVED = 1e-5
-"""The difference in m, and between the entries of rotation matrices, up to which a link is in the same place."""
+"""The maximum difference in m, and between the entries of rotation matrices, of a link in the same place."""
 
 
 def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames) -> list[ViewImages]:

@@ -29,7 +29,7 @@ from linkwright.sdf.worlds import Sdf
 
 _SIZE = (480, 360)
 _MAX_FACES = 2_000_000
-"""The number of triangles of both versions up to which images are made; more take a minute."""
+"""The maximum number of triangles of both versions for which images are made; more take a minute."""
 _FAR = 8.0
 """The size of a scene, in sizes of the changed links, from which only the surroundings of these links are shown."""
 

@@ -206,7 +206,7 @@ class _BuiltNames:
 
 
 def _built_targets(commands: Sequence[Command]) -> Iterator[Fact]:
-    """Yield the targets that are built. In ROS 1, those that are not installed can be used, too."""
+    """Yield the targets that are built. In ROS 1, targets that are not installed can also be used."""
     names = {command.name for command in commands}
     is_ros1 = not names.isdisjoint(("catkin_package", "rosbuild_init"))
     for command in commands:

@@ -21,7 +21,8 @@ _SEPARATOR = "---"
 _MAX_FIELDS = 10
 """The number of fields that the line about an added interface names."""
 _MIN_RENUMBERED = 3
-"""The number of constants with other values from which they are one line. An inserted value renumbers those below."""
+"""The minimum number of constants with other values that are summarized in one line. An inserted value renumbers those
+below."""
 _PARTS = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
 """The names of the structures of a message, a service and an action, in front of the names of fields."""
 

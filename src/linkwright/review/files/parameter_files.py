@@ -192,9 +192,9 @@ def _read(file: Path) -> str:
 
 
 def _are_equal(name: str, old: YamlValue, new: YamlValue) -> bool:
-    """Return whether two values are equal as texts or as numbers: ``0`` and ``0.000`` are.
+    """Return whether two values are equal as texts or as numbers, such as ``0`` and ``0.000``.
 
-    The parameters of a node are equal only if they have the same type, too.
+    The parameters of a node must also have the same type.
     """
     if is_parameter(name) and has_other_type(old, new):
         return False

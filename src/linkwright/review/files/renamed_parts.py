@@ -12,12 +12,12 @@ from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.merging import name_edit
 
 _MIN_FACTS = 6
-"""The number of parameters and values from which a part can be recognized under another name."""
+"""The minimum number of parameters and values of a part that can be recognized under another name."""
 _MIN_SIMILARITY = 0.6
 _MIN_ALIKE = 2
-"""The number of parts beside each other, renamed in the same way, from which they need not have many values."""
+"""The minimum number of neighboring parts, renamed in the same way, that need not have many values."""
 _MAX_PARTS = 60
-"""The number of parts of either version up to which moved parts are searched."""
+"""The maximum number of parts of either version for which moved parts are searched."""
 _ITEM = re.compile(r"\[(old )?\d+\]$")
 """The end of the path of an item of a list that has no name."""
 _Facts = Counter[str]

@@ -15,18 +15,18 @@ _INERTIAL = re.compile(r"(?P<inertial>(?:.* )?inertial) (?P<value>mass|pose|iner
 """The path of a value of an inertial."""
 _MOMENTS = frozenset({"ixx", "iyy", "izz"})
 _ROUNDING = 1e-6
-"""The difference, relative to the largest number of a value, up to which two values are equal."""
+"""The maximum difference of two equal values, relative to the largest number of a value."""
 _NOTHING = 1e-15
-"""The difference up to which numbers are equal, whatever their size."""
+"""The maximum difference of equal numbers, whatever their size."""
 _SAME_RATIO = 1e-2
-"""The relative difference of the ratios of the moments of inertia up to which the tensor is scaled as a whole."""
+"""The maximum relative difference of the ratios of the moments of inertia of a tensor that is scaled as a whole."""
 _MIN_DIGITS, _MAX_DIGITS = 4, 17
 _POSE = 6
 """The number of numbers of a pose."""
 _PARTS = slice(0, 3), slice(3, _POSE)
 """The position and the rotation in a pose."""
 _FEW = 2
-"""The number of entries of a tensor up to which both values of each are shown."""
+"""The maximum number of entries of a tensor for which both values of each are shown."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,7 @@ _MAX_VALUES = 12
 _MIN_ALIKE = 4
 """The number of parts beside each other that gain or lose a value of the same name, from which they are one line."""
 _MAX_ITEM_CHANGES = 6
-"""The number of changes of the items of a list up to which all are shown."""
+"""The maximum number of changes of the items of a list that are all shown."""
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ _UNSEEN = frozenset(
 )
 """The tags of elements that images do not show, with their contents."""
 _MIN_ALIKE = 3
-"""The number of equal changes of elements at different places from which they are one line."""
+"""The minimum number of equal changes of elements at different places that are summarized in one line."""
 
 
 def compare_worlds(pair: FilePair) -> None:

@@ -11,9 +11,9 @@ import yaml
 from linkwright.review.files.yaml_values import is_structured_list, name_of_item
 
 _MAX_COMPARISONS = 1_000_000
-"""The product of the lengths of two lists up to which their items are aligned."""
+"""The maximum product of the lengths of two lists whose items are aligned."""
 _MAX_SIMILARITIES = 2_500
-"""The product of the numbers of different items of two lists up to which their contents align them."""
+"""The maximum product of the numbers of different items of two lists that are aligned by their contents."""
 _MIN_SIMILARITY = 0.4
 
 

@@ -24,7 +24,7 @@ from linkwright.review.list_changes import excerpts, shortened
 _MAX_SOURCE = 120
 """The number of characters of a statement that are shown."""
 _MAX_STATEMENTS = 3
-"""The number of changed statements up to which each is shown."""
+"""The maximum number of changed statements that are each shown."""
 _WITH_DEFAULT = re.compile(r"\$\(var ([\w.-]+) ")
 _VARIABLE = re.compile(r"(?<=\bname )\w+\b|(?<=\barg=')\w+\b(?=')")
 """The names of variables and parameters in the texts of statements."""

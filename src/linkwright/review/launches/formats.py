@@ -38,7 +38,7 @@ def _key(path: str | None) -> tuple[str, str]:
 
 
 def is_launch_yaml(file: Path) -> bool:
-    """Return whether a YAML file has the key of a launch file. Other files have such names, too."""
+    """Return whether a YAML file has the key of a launch file. Other files also have such names."""
     try:
         return re.search(rb"(?m)^launch[ \t]*:", file.read_bytes()) is not None
     except OSError:

@@ -42,7 +42,7 @@ class IncludedActions:
         self._outline = outline
 
     def lone_file(self, entry: Entry, other: IncludedActions) -> str | None:
-        """Return the included file with an action, or None if there is none, or if the other version has one, too."""
+        """Return the included file with an action, or None if there is none, or if the other version also has one."""
         if entry.kind not in _MOVABLE:
             return None
         return None if other._file_with(entry) else self._file_with(entry)

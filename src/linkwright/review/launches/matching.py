@@ -45,7 +45,7 @@ def replacements(
 
 
 def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> float:
-    """Return how certain it is that an action is another one under a new name; 0 if it is not."""
+    """Return a score for the certainty that an action was renamed to another; 0 if it was not."""
     if old.kind != new.kind:
         return 0.0
     if old.kind == "environment":

@@ -19,7 +19,7 @@ from linkwright.review.list_changes import change_text, shortened
 from linkwright.review.merging import name_edit
 
 _MIN_GROUP = 3
-"""The number of added or removed parameters or remappings of a node from which they are one change."""
+"""The minimum number of added or removed parameters or remappings of a node that are reported as one change."""
 _MAX_ITEMS = 8
 _MAX_VALUE = 60
 

@@ -244,7 +244,7 @@ class ExpressionTexts:
 
 
 def shortened_text(text: str) -> str:
-    """Return a text, or the beginning of a long one with a number that differs if the rest does."""
+    """Return a text, shortened if it is long, with a hash of the whole text."""
     if len(text) <= _MAX_LENGTH:
         return text
     return f"{text[:_MAX_LENGTH]}... ({hashlib.sha256(text.encode('utf-8', 'replace')).hexdigest()[:12]})"

@@ -122,7 +122,7 @@ class ItemComparison:
     def _matched(
         self, old: list[Item], new: list[Item], matches: Callable[[Item, Item], bool]
     ) -> list[tuple[Item, Item]]:
-        """Take the pairs with equal keys that match out of two lists, and return them."""
+        """Remove the matching pairs with equal keys from two lists, and return them."""
         pairs = []
         for new_item in list(new):
             for old_item in old:
@@ -134,7 +134,7 @@ class ItemComparison:
         return pairs
 
     def _renamed(self, old: list[Item], new: list[Item]) -> list[tuple[Item, Item]]:
-        """Take the pairs with other names and similar contents out of two lists, and return them."""
+        """Remove the pairs with other names and similar contents from two lists, and return them."""
         pairs = []
         for new_item in list(new):
             candidates = [item for item in old if item.element.tag == new_item.element.tag]

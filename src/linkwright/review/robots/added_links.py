@@ -11,7 +11,7 @@ from linkwright.diagnostics import Phrase, joined, phrase, term
 from linkwright.urdf import Box, Geometry, Link, Mesh, Robot, Sphere
 
 _MAX_LINKS = 4
-"""The number of added links up to which each has a line of its own."""
+"""The maximum number of added links that each have a line of their own."""
 
 
 class AddedLinks:

@@ -26,10 +26,10 @@ from linkwright.urdf.bodies import Bodies
 
 _SAMPLES = 300
 _MIN_COUNT = 3
-"""The number of sampled configurations from which a collision is reported. Small changes move the border of a few."""
+"""The minimum number of colliding samples for which a collision is reported. Small changes move the border of a few."""
 _MIN_CORNERS = 4
 _MIN_THICKNESS = 1e-6
-"""The thickness of a mesh, as a fraction of its length, up to which it has no volume."""
+"""The maximum thickness of a mesh that has no volume, as a fraction of its length."""
 _DEPTH = 1e-4
 """The depth in m from which two shapes collide; shapes that only touch do not."""
 

@@ -16,15 +16,15 @@ from linkwright.geometry.shapes import Box, Capsule, Placement, SimpleShape, Sph
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.kinematics import KinematicTree
 from linkwright.review.changes import Figure
-from linkwright.review.quantities import figure_of
 from linkwright.review.frames import matrix
+from linkwright.review.quantities import figure_of
 from linkwright.review.robots.reach import Chain, have_equal_distances, reaches
 from linkwright.urdf import Collision, Mesh, Robot, Visual
 from linkwright.xmltree import Element
 
 _REACH_SAMPLES = 2_000
 _MIN_CHAIN = 3
-"""The number of moving joints from which the end of a chain has a reach."""
+"""The minimum number of moving joints of a chain whose end has a reach."""
 _MAX_CHAINS = 4
 """The number of chains whose reach is compared; the fingers of a hand would fill the report."""
 _UNLIMITED = np.pi

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 _FEW = 64
-"""The number of positions at which chains are compared before their reach is searched for."""
+"""The number of positions for which chains are compared before their reach is searched."""
 _EQUAL = 1e-9
-"""The difference in m up to which distances are equal."""
+"""The maximum difference in m of equal distances."""
 _STARTS = 8
-"""The number of sampled configurations from which a search starts."""
+"""The number of sampled configurations that are the starting points of a search."""
 _MAX_SWEEPS = 20
 _MIN_GAIN = 1e-7
 """The increase of the distance in m, over all joints, below which a search ends."""

@@ -124,7 +124,7 @@ def _is_required(call: ast.Call, option: str) -> bool:
 
 
 class _SourceFile(PythonFile):
-    """A source, in which attributes of a class or object that are set once have their values, too."""
+    """A source in which attributes of a class or object that are set once also have their values."""
 
     @cached_property
     def _attributes(self) -> dict[str, ast.expr | None]:

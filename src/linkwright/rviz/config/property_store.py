@@ -13,7 +13,7 @@ from linkwright.rviz.config.schema import Path, PropertySpec, Schema, accept, fa
 from linkwright.rviz.config.yaml_tree import NewSection, SavedEntry, Scalar, Section, make_section, remove_unchanged
 
 _MIN_INDEXED_PROPERTIES = 30
-"""The number of sibling properties from which a lookup by name uses an index."""
+"""The minimum number of sibling properties for which a lookup by name uses an index."""
 
 
 def property_id(owner: str, path: Iterable[str]) -> str:

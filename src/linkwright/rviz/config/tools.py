@@ -109,7 +109,7 @@ _MANAGER = "Visualization Manager"
 _TOOLS = "Tools"
 
 MAX_TOOLS = 100
-"""The number of tools at which a page can add no more. A limit is needed because each tool may have a publisher."""
+"""The maximum number of tools. Each tool may create a publisher, so pages cannot add any number of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,8 +118,8 @@ class ToolEntry:
 
     Attributes:
         id: an ID that is stable while the file is open.
-        cls: the class name of the tool in RViz 2, even if the file has the name in RViz 1.
-        section: the tool's section of the file, which stays unchanged if the class is unknown.
+        cls: the class name of the tool in RViz 2, even if the file contains the RViz 1 name.
+        section: the tool's section of the file, which remains unchanged if the class is unknown.
         properties: the values of the tool's properties.
     """
 

@@ -461,7 +461,7 @@ def _world_scene(
 
 
 def _read_content(text: str, index: MeshIndex) -> tuple[World, WorldContent]:
-    """Return the world that a text describes, and the content that draws the world.
+    """Return the world described by a text, and the content that draws the world.
 
     Raises:
         LinkwrightError: the text is not SDF, or contains neither a world nor a model.

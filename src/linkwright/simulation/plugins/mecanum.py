@@ -1,8 +1,8 @@
 """Mecanum drive of gz: ``gz-sim-mecanum-drive-system``.
 
-Source: gz-sim (parameters, topics, defaults, wheel speeds, wheel odometry). Unlike in gz-sim, anisotropic friction does
-not simulate the rollers. The wheels slide, and the plugin sets the velocity that mecanum wheels would give the robot,
-as `planar_move` does.
+Source: gz-sim (parameters, topics, defaults, wheel speeds, wheel odometry). Unlike gz-sim, the
+plugin does not simulate the rollers by anisotropic friction. The wheels slide, and the plugin sets the velocity that
+mecanum wheels would give the robot, as `planar_move` does.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         if not (min(parameters.wheel_separation, parameters.wheelbase) > 0.0 and parameters.wheel_radius > 0.0):
             raise self.parameter_error(
                 phrase(
-                    "plugin '{plugin}': the separation and the diameter of the wheels must be positive",
+                    "plugin '{plugin}': <wheel_separation>, <wheelbase> and <wheel_radius> must be positive",
                     plugin=self.context.name,
                 )
             )

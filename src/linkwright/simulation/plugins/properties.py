@@ -101,7 +101,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
                         "SIM111",
                         phrase(
                             "this mass or inertia is not physically possible; give a positive mass and moments that "
-                            "fulfill the triangle inequality"
+                            "satisfy the triangle inequality"
                         ),
                     )
                 )

@@ -37,7 +37,7 @@ _SENSORS_OF_SYSTEMS = {
     "logical-camera": ("logical_camera",),
     "cpu-lidar": ("lidar",),
 }
-"""The systems of gz that publish measurements, and the types of the sensors that they measure."""
+"""The systems of gz that publish measurements, and the types of their sensors."""
 _OWN_SYSTEMS = ("physics", "user-commands", "label")
 """The systems of gz whose features the simulation itself provides: moving, spawning and deleting models, labels."""
 _NO_LIBRARY = ("", "__default__")

@@ -31,7 +31,7 @@ from linkwright.xmltree import Element
 _DEFAULT_STEP = 0.001
 """The default time step in s."""
 _ANCHOR_DISTANCE = 0.1
-"""The distance in m between the two points that hold the axis of a hinge that closes a loop."""
+"""The distance in m between the two points that hold the axis of a loop-closing hinge."""
 _LOOP_STEPS = 4.0
 """The time constant of constraints that close a loop, in time steps."""
 _MAX_ROLLING_WHEELS = 2

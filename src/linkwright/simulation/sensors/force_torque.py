@@ -7,7 +7,7 @@ import numpy as np
 from linkwright.geometry.arrays import Array, quaternion_inverse, rotate
 from linkwright.geometry.single import IDENTITY, Transform, compose, invert
 from linkwright.sdf.sensors import ForceTorque
-from linkwright.simulation.sensors.mount import accelerations
+from linkwright.simulation.sensors.mount import update_accelerations
 from linkwright.simulation.sensors.noise import VectorNoise
 from linkwright.simulation.simulation import Simulation
 
@@ -47,7 +47,7 @@ class ForceTorqueSensor:
         self._offset = offset
 
     def measure(self) -> tuple[Array, Array]:
-        """Return the force in N and the torque in N m, in the configured axes.
+        """Return the force in N and the torque in N m, in the configured measurement frame.
 
         With ``parent_to_child``, the parent exerts the force and torque on the child; otherwise the child exerts them
         on the parent.
@@ -56,7 +56,7 @@ class ForceTorqueSensor:
             KeyError: the links no longer exist.
         """
         simulation = self._simulation
-        accelerations(simulation)
+        update_accelerations(simulation)
         data, body = simulation.data, int(simulation.model.body(self._joint.child).id)
         joint = compose(simulation.link_pose(self._joint.child), self._joint_in_child)
         wrench, reference_point = data.cfrc_int[body], data.subtree_com[simulation.model.body_rootid[body]]
@@ -64,10 +64,10 @@ class ForceTorqueSensor:
         torque = np.array(wrench[:3]) - np.cross(np.subtract(joint[:3], reference_point), force)
         if self._settings.measure_direction != "parent_to_child":
             force, torque = -force, -torque
-        to_axes = quaternion_inverse(np.array(self._axes(joint)))
-        return self._force_noise.apply(rotate(to_axes, force)), self._torque_noise.apply(rotate(to_axes, torque))
+        to_frame = quaternion_inverse(np.array(self._measurement_orientation(joint)))
+        return self._force_noise.apply(rotate(to_frame, force)), self._torque_noise.apply(rotate(to_frame, torque))
 
-    def _axes(self, joint: Transform) -> tuple[float, ...]:
+    def _measurement_orientation(self, joint: Transform) -> tuple[float, ...]:
         """Return the orientation in the world of the configured measurement frame, as a quaternion.
 
         `joint` is the current pose of the joint.

@@ -79,7 +79,7 @@ class Mount:
 
         At rest, the proper acceleration is the opposite of gravity and points upwards.
         """
-        accelerations(self.simulation)
+        update_accelerations(self.simulation)
         simulation, mujoco, acceleration = self.simulation, load_mujoco(), np.zeros(6)
         kind = mujoco.mjtObj.mjOBJ_XBODY
         mujoco.mj_objectAcceleration(simulation.model, simulation.data, kind, self.body, acceleration, 0)
@@ -96,7 +96,7 @@ def _to_vector(values: Array) -> Vector3:
     return x, y, z
 
 
-def accelerations(simulation: Simulation) -> None:
+def update_accelerations(simulation: Simulation) -> None:
     """Update the accelerations of all bodies and the forces between them in MuJoCo's data."""
     simulation.refresh()
     load_mujoco().mj_rnePostConstraint(simulation.model, simulation.data)

@@ -52,7 +52,7 @@ def overlaps(simulation: Simulation, names: Container[str] | None = None) -> lis
 
 
 def _moving_first(simulation: Simulation, links: Iterable[str]) -> list[str]:
-    """Return links sorted so that links that can move come before static ones."""
+    """Return links sorted with movable links before static ones."""
     return sorted(links, key=lambda link: int(simulation.model.body_weldid[simulation.body(link)]) == 0)
 
 

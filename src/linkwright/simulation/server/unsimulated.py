@@ -1,4 +1,4 @@
-"""Elements of SDF that a world may contain but that are not simulated."""
+"""Elements of SDF worlds that are not simulated."""
 
 from __future__ import annotations
 

@@ -188,7 +188,7 @@ class Requests:
         self._launch_process = subprocess.Popen(command, stdin=subprocess.DEVNULL)  # noqa: S603 - fixed words, no shell
 
     def cancel(self, except_action: str = "") -> None:
-        """Cancel the goals of these requests, and end the launch file.
+        """Cancel the goals of these requests, and shut down the launch.
 
         Goals of the action `except_action` are not canceled.
         """
@@ -198,7 +198,7 @@ class Requests:
         self._interrupt_launch()
 
     def cancel_all(self) -> None:
-        """End the launch file, and cancel all goals of the commands' actions.
+        """Shut down the launch, and cancel all goals of the commands' actions.
 
         Goals that other clients have sent to these actions are included.
         """
@@ -207,7 +207,7 @@ class Requests:
         self._interrupt_launch()
 
     def close(self) -> None:
-        """Cancel all goals, end the launch file, and wait for its end."""
+        """Cancel all goals, shut down the launch, and wait until its process exits."""
         self.cancel()
         if self._end_thread is not None:
             self._end_thread.join()
@@ -217,7 +217,7 @@ class Requests:
         return self._launch_process is not None and self._launch_process.poll() is None
 
     def _interrupt_launch(self) -> None:
-        """Interrupt the launch file without waiting for its end."""
+        """Interrupt the process of the launch without waiting for its exit."""
         process, self._launch_process = self._launch_process, None
         if process is None or process.poll() is not None:
             return

@@ -1,4 +1,4 @@
-"""The choice of the page that talks, and the limit of the sound that a page may send."""
+"""The choice of the talking page, and the limit of the sound that a page may send."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Floor:
 
 
 class SoundBudget:
-    """A limit for the sound that a page sends and the loss that it reports.
+    """A limit for the sound that a page sends, and for its reported loss.
 
     Each may last as long as the time that has passed, with a reserve of 10 s. The two are counted separately, because a
     page may send silence for lost sound.

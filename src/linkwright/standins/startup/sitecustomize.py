@@ -224,6 +224,6 @@ def _is_between_messages(traceback: object) -> bool:
 _stand_ins = StandIns()
 sys.meta_path.insert(0, SourceFolders(_stand_ins))
 sys.meta_path.append(_stand_ins)
-if __name__ == "sitecustomize":  # this is false if `linkwright.pytest_plugin` runs the file after Python has started
+if __name__ == "sitecustomize":  # the name differs if `linkwright.pytest_plugin` runs the file after Python has started
     sys.excepthook = _report_with_hint
     _run_next_sitecustomize()

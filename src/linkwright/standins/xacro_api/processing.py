@@ -268,5 +268,5 @@ def _print_diagnostics(diagnostics: Sequence[Diagnostic]) -> None:
 
 
 def _is_description_message(diagnostic: Diagnostic) -> bool:
-    """Return whether a diagnostic is a message from the description, as by ``xacro.message``."""
+    """Return whether a diagnostic is a message of the description, such as one of ``xacro.message``."""
     return diagnostic.code.startswith("XAC7")

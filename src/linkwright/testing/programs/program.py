@@ -87,7 +87,7 @@ class Program:
             if not thread.ended.ended():
                 thread.kill()
 
-    # --- what the threads need ---------------------------------------------------------------------------------------
+    # --- called by the threads ---------------------------------------------------------------------------------------
 
     @contextmanager
     def surroundings(self) -> Iterator[None]:

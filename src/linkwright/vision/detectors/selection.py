@@ -18,7 +18,7 @@ def select_detections(
     limits: Limits,
     corners: Sequence[object] | None = None,
 ) -> Detections:
-    """Return the detections within the limits, the most certain first.
+    """Return the detections within the limits, the highest score first.
 
     Args:
         boxes: left, top, right, bottom of each detection.

@@ -1,4 +1,4 @@
-"""The formats of detection messages: reading, and adding tracker IDs and positions."""
+"""Read detection messages of several formats, and add tracker IDs and positions to them."""
 
 from __future__ import annotations
 

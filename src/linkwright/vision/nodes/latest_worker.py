@@ -12,7 +12,7 @@ _CLOSE_TIMEOUT = 10.0
 
 
 class LatestWorker(Generic[T]):
-    """A thread that calls a function, always with the latest item that was offered.
+    """A thread that calls a function, always with the latest offered item.
 
     Args:
         prepare: called in the thread before the first item. It returns the function, or None to stop the thread, and

@@ -80,7 +80,7 @@ class FastServer:
         self._late_replies: deque[tuple[float, bytes, int, Any]] = deque()
         self._early_requests: list[EarlyRequest] = []
         self._first_samples: dict[bytes, tuple[int, int]] = {}
-        """The number and time of each writer's first sample that arrived here. All later samples arrive here, too."""
+        """The number and time of each writer's first sample that arrived here. All later samples also arrive here."""
         self._numbered_requests: dict[bytes, deque[tuple[int, int]]] = {}
         self._lock = Lock()
         self._replies = participant.add_writer(dds_topic(Role.REPLY, service.name), response, user_data)
@@ -89,7 +89,7 @@ class FastServer:
         )
 
     def on_early_request(self, request: EarlyRequest) -> None:
-        """Accept a request from Cyclone's reader, unless this reader receives it, too."""
+        """Accept a request from Cyclone's reader, unless this reader also receives it."""
         discovered_at = self._participant.matched_writers(self._requests).get(request.writer)
         if discovered_at is None or time.monotonic() < discovered_at + _SETTLING_TIME_S:
             with self._lock:

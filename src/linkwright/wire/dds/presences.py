@@ -32,7 +32,7 @@ def open_presence(presence: Presence, domain: Domain) -> QuietReader | QuietClie
 class QuietReader(MirroredTopic):
     """A reader that stores the last sample but never takes it.
 
-    Writers send it only samples that other readers in this process receive, too.
+    Writers send it only samples that other readers in this process also receive.
     """
 
     _STATUS = 0

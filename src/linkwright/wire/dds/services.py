@@ -137,7 +137,7 @@ class RemoteServer:
         self._fast: FastClient | None = None
 
     def connect_fast(self, participant: RtpsParticipant) -> None:
-        """Start calling servers on Fast DDS, too."""
+        """Also start calling servers on Fast DDS."""
         self._fast = FastClient(self._client, participant, self._remote.is_dead)
 
     def send(self, request: Any, on_response: Callable[[Any], None], number: int) -> Callable[[], None]:
@@ -248,7 +248,7 @@ class IncomingService:
         return count == _MAX_SAMPLES
 
     def connect_fast(self, participant: RtpsParticipant) -> None:
-        """Start answering clients on Fast DDS, too."""
+        """Also start answering clients on Fast DDS."""
         self._fast = FastServer(self._service, participant)
         early_requests, self._early_requests = self._early_requests, []
         for request in early_requests:

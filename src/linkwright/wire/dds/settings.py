@@ -168,7 +168,7 @@ Announcements continue for as long as the process lives.
 A node of Fast DDS on LOCALHOST announces itself on loopback alone, and Cyclone ignores packets on loopback unless
 loopback is one of its interfaces. So this process announces itself to the node, which answers at this process's address
 on the network. If loopback were an interface, its address would be announced to the network, and Fast DDS on other
-machines would send all data to their own loopback, too.
+machines would also send all data to their own loopback.
 """
 
 _RELIABLE_TRAFFIC = (

@@ -328,7 +328,7 @@ class Engine(AnyEngine):
         if token is None or token.session == self._session_id:
             return False
         if appeared:
-            return not (self._is_client and self._remote.has_just_gone(key)) and self._remote.add(key, token)
+            return not (self._is_client and self._remote.was_just_removed(key)) and self._remote.add(key, token)
         if self._remote.remove(key) is None:
             return False
         self._departures.token_removed(key, token)

@@ -80,7 +80,7 @@ class SessionOpener:
 
 
 class ObstacleReporter:
-    """A thread that reports why the addresses that a session connects to cannot be reached.
+    """A thread that reports why a session cannot reach its configured addresses.
 
     Args:
         config: the configuration of the session.

@@ -12,7 +12,7 @@ from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.remote_entities import RemoteEntities
 from linkwright.wire.zenoh.tokens import Token
 
-_GONE_FOR = 0.5
+_READD_DELAY_SECONDS = 0.5
 """Seconds for which a removed token is not added again. Zenoh retries broken links only after one second."""
 
 
@@ -44,7 +44,7 @@ class RemoteGraph(RemoteEntities):
                 self._counts[token.kind, token.data_key] += 1
         return True
 
-    def has_just_gone(self, key: str) -> bool:
+    def was_just_removed(self, key: str) -> bool:
         """Return whether a token disappeared a moment ago.
 
         A report that such a token is alive is outdated.
@@ -52,13 +52,15 @@ class RemoteGraph(RemoteEntities):
         If a session requests tokens that it already knows, Zenoh answers in a separate task, and the report of a
         token's end may overtake the answer. A token that reappears after a broken connection takes longer.
         """
-        return key in self._removal_times and time.monotonic() - self._removal_times[key] < _GONE_FOR
+        return key in self._removal_times and time.monotonic() - self._removal_times[key] < _READD_DELAY_SECONDS
 
     def remove(self, key: str) -> Token | None:
         """Remove a token and return it, or None if the token was not known."""
         now = time.monotonic()
         for expired_key in [
-            gone_key for gone_key in islice(self._removal_times, 2) if now - self._removal_times[gone_key] > _GONE_FOR
+            removed_key
+            for removed_key in islice(self._removal_times, 2)
+            if now - self._removal_times[removed_key] > _READD_DELAY_SECONDS
         ]:
             del self._removal_times[expired_key]  # removing two per call keeps the table small
         self._removal_times.pop(key, None)

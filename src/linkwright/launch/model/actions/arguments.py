@@ -189,7 +189,7 @@ class DeclareLaunchArgument(Action):
 
 @expose_action("bool_arg")
 class DeclareBooleanLaunchArgument(DeclareLaunchArgument):
-    """An action that declares an argument that is true or false.
+    """An action that declares a boolean argument.
 
     Args:
         name: the argument's name.

@@ -109,7 +109,7 @@ def retry_on_failure(*, times: int, delay: float | None = None) -> Callable[[F],
                     time.sleep(delay)
             return test(self, *args, **kwargs)
 
-        return tried  # type: ignore[return-value]  # it has the signature of F
+        return tried  # type: ignore[return-value]  # the function has the signature of F
 
     return decorate
 

@@ -50,7 +50,7 @@ class SensorSettings:
         name: the name, such as ``odom0``.
         kind: one of `KINDS`.
         topic: the topic of the sensor's messages.
-        used: whether the sensor provides each of the 15 values of the state.
+        used: whether the filter uses each of the 15 state values from this sensor.
         differential: whether the sensor's poses are used as velocities.
         relative: whether the sensor's poses are relative to the first pose.
         queue_size: the depth of the subscription.
@@ -85,7 +85,7 @@ class Configuration:
     frames: Frames
     publishes_tf: bool
     publishes_acceleration: bool
-    permit_corrected: bool
+    publishes_corrections: bool
     transform_offset_ns: int
     reset_on_time_jump: bool
     gravity: float
@@ -118,7 +118,7 @@ def read_configuration(node: Node) -> Configuration:
         frames=_read_frames(node),
         publishes_tf=declare("publish_tf", True).value,
         publishes_acceleration=declare("publish_acceleration", False).value,
-        permit_corrected=declare("permit_corrected_publication", False).value,
+        publishes_corrections=declare("permit_corrected_publication", False).value,
         transform_offset_ns=_nanoseconds(declare("transform_time_offset", 0.0).value),
         reset_on_time_jump=declare("reset_on_time_jump", False).value,
         gravity=declare("gravitational_acceleration", GRAVITY).value,

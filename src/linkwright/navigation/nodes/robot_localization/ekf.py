@@ -139,7 +139,7 @@ class EkfNode(SingleNode):
             )
             self._reset()
             return
-        if kalman.time_ns <= self._last_published_ns and not configuration.permit_corrected:
+        if kalman.time_ns <= self._last_published_ns and not configuration.publishes_corrections:
             return
         self._last_published_ns = kalman.time_ns
         roll, pitch, yaw = (float(angle) for angle in kalman.state[ANGLES])

@@ -28,7 +28,7 @@ class StoredMarkersDisplay(TopicDisplay):
         self._meshes = MeshIndex(host.context.finder)
 
     def stop(self) -> None:
-        """Unsubscribe, and end the pages' access to the files of the markers."""
+        """Unsubscribe, and stop serving the markers' meshes and textures to pages."""
         super().stop()
         self.context.meshes.replace(self.id, {})
 
