@@ -18,7 +18,7 @@ SHARED = "another launch or program on ROS_DOMAIN_ID"
 
 
 @pytest.fixture(autouse=True)
-def domain(monkeypatch: pytest.MonkeyPatch, _surroundings: None) -> int:
+def domain(monkeypatch: pytest.MonkeyPatch, _isolated_environment: None) -> int:
     """Let nodes join the domain of this process."""
     monkeypatch.delenv("LINKWRIGHT_DDS")
     return own_domain()

@@ -18,6 +18,7 @@ from linkwright.panels.recording import RecordingFeature
 from tests.full_disk import full_disk, needs_limits
 from tests.panels.test_live_history import KEPT, filled
 from tests.panels.test_time import config
+from tests.panels.test_timeline import open_recording
 from tests.recordings import needs_rosbags
 from tests.skipping import skipping
 from tests.viewer.scene import Client, World, open_world, page
@@ -317,9 +318,7 @@ async def test_recording_can_be_downloaded_completely_and_repeatedly():
 
 @skipping
 async def test_recording_is_disabled_during_playback(folder: Path):
-    from tests.panels.test_timeline import shown
-
-    async with shown(folder) as world, page(world.viewer) as client:
+    async with open_recording(folder) as world, page(world.viewer) as client:
         assert not (await client.until("recording_state"))["possible"]
         await client.send("record_topics", topics=[])
         await client.send("play", playing=False)

@@ -140,7 +140,7 @@ CASES = [
         Edit("src/my_robot_description/package.xml", "<description>", "<description>wheels & "),
         says="write '&amp;'",
     ),
-    wrong("body", "curved quotes", Edit(URDF, '"base_link"', '"base_link”'), says="in place of '”'"),
+    wrong("body", "curved quotes", Edit(URDF, '"base_link"', '"base_link”'), says="replace '”'"),
     wrong("body", "full-width digits", Edit(URDF, '"0.20"', '"０.２０"'), says="ASCII characters: '0.20'"),
     wrong("body", "a body above its frame", Edit(URDF, "<visual>", '<visual><origin xyz="0 0 0.08"/>'), says="center"),
     right("left-wheel", "a frame that is turned with its axis", *TURNED),

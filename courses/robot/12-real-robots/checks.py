@@ -467,7 +467,7 @@ def cmake_installs(work):
     path = package.file("CMakeLists.txt")
     rules = read_cmake(SourceText(str(path), path.read_text(encoding="utf-8")), package.folder)
     try:
-        installed = {file.destination for file in rules.installed(package.folder)}
+        installed = {file.destination for file in rules.installed_files(package.folder)}
     except FileNotFoundError as error:
         raise NotYet(
             en=f"CMakeLists.txt installs '{error}', which does not exist.",

@@ -8,7 +8,7 @@ from linkwright.messages import get_message
 from tests.panels.monitor.test_live_panels import samples, subscriptions
 from tests.panels.test_live_history import KEPT
 from tests.panels.test_time import config
-from tests.panels.test_timeline import START, shown
+from tests.panels.test_timeline import START, open_recording
 from tests.skipping import skipping
 from tests.viewer.scene import open_world, page
 from tests.waiting import eventually
@@ -63,7 +63,7 @@ async def test_added_series_begins_with_stored_samples():
 
 @skipping
 async def test_plots_of_recording_show_samples_before_playback_time(tmp_path):
-    async with shown(tmp_path) as world, page(world.viewer) as client:
+    async with open_recording(tmp_path) as world, page(world.viewer) as client:
         await client.until("playhead", playing=True)
         await client.send("play", playing=False)
         await client.until("playhead", playing=False)
