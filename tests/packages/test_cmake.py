@@ -175,6 +175,16 @@ def test_configured_files_are_installed(package: Path) -> None:
     assert file.text(package) == "arm: 2\n"
 
 
+def test_deeply_nested_blocks_are_not_read(package: Path) -> None:
+    def nested(depth: int) -> str:
+        return "if(1)\n" * depth + "install(DIRECTORY urdf DESTINATION share/arm)\n" + "endif()\n" * depth
+
+    assert rules(nested(60), package).is_complete
+    install_rules = rules(nested(3000), package)
+    assert not install_rules.is_complete
+    assert not install_rules.copies
+
+
 def test_compiled_targets_are_listed_and_other_rules_read(package: Path) -> None:
     text = "add_executable(move src/move.cpp)\nadd_library(kinematics SHARED k.cpp)\nadd_library(headers INTERFACE)\n"
     install_rules = rules(text + "install(DIRECTORY launch DESTINATION share/arm)", package)

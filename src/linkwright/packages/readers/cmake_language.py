@@ -24,6 +24,7 @@ from linkwright.packages.ament import ROS_VARIABLES
 from linkwright.packages.readers.cmake_conditions import YES, Condition, Word
 from linkwright.packages.readers.cmake_syntax import (
     BLOCK_ENDS,
+    MAX_NESTED_BLOCKS,
     Statement,
     Token,
     branches,
@@ -113,7 +114,7 @@ class Command:
 
 
 class _LimitExceededError(Exception):
-    """Raised when a file runs too many commands or a text is too long.
+    """Raised when a file runs too many commands, nests too many blocks, or a text is too long.
 
     The argument names the command or text.
     """
@@ -163,6 +164,7 @@ class CMakeProgram:
     _exit_command: str = ""
     _parent_values: dict[str, str] = field(default_factory=dict)
     _depth: int = 0
+    _block_depth: int = 0
     _count: int = 0
 
     def run(self, source: SourceText) -> Iterator[Command]:
@@ -197,7 +199,11 @@ class CMakeProgram:
             index += 1
             if statement.name in BLOCK_ENDS:
                 end = end_of_block(body, index, statement.name)
+                self._block_depth += 1
+                if self._block_depth > MAX_NESTED_BLOCKS:
+                    raise _LimitExceededError(statement.name)
                 yield from self._run_compound(statement, list(body[index:end]))
+                self._block_depth -= 1
                 index = end + 1
             else:
                 yield from self._run_command(statement)

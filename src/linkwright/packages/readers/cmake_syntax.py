@@ -30,6 +30,8 @@ BLOCK_ENDS = {
     "macro": "endmacro",
 }
 """The commands that end blocks, by the commands that begin them."""
+MAX_NESTED_BLOCKS = 60
+"""The depth of nested blocks up to which commands are read."""
 
 
 def is_open(text: str) -> bool:

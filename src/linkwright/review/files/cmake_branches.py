@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import SourceText
-from linkwright.packages.readers.cmake_syntax import BLOCK_ENDS, Statement, branches, end_of_block, statements
+from linkwright.packages.readers.cmake_syntax import (
+    BLOCK_ENDS,
+    MAX_NESTED_BLOCKS,
+    Statement,
+    branches,
+    end_of_block,
+    statements,
+)
 
 
 def conditions_of(source: SourceText) -> dict[int, str]:
@@ -22,7 +29,9 @@ def conditional_statements(source: SourceText) -> Iterator[tuple[Statement, str]
     yield from _walk(list(statements(source)), ())
 
 
-def _walk(body: Sequence[Statement], around: tuple[str, ...]) -> Iterator[tuple[Statement, str]]:
+def _walk(body: Sequence[Statement], around: tuple[str, ...], depth: int = 0) -> Iterator[tuple[Statement, str]]:
+    if depth > MAX_NESTED_BLOCKS:
+        return
     index = 0
     while index < len(body):
         statement = body[index]
@@ -33,14 +42,14 @@ def _walk(body: Sequence[Statement], around: tuple[str, ...]) -> Iterator[tuple[
         end = end_of_block(body, index, statement.name)
         block = body[index:end]
         if statement.name != "if":
-            yield from _walk(block, around)
+            yield from _walk(block, around, depth + 1)
         else:
-            yield from _walk_branches(statement, block, around)
+            yield from _walk_branches(statement, block, around, depth + 1)
         index = end + 1
 
 
 def _walk_branches(
-    opening: Statement, body: Sequence[Statement], around: tuple[str, ...]
+    opening: Statement, body: Sequence[Statement], around: tuple[str, ...], depth: int
 ) -> Iterator[tuple[Statement, str]]:
     earlier: list[str] = []
     for condition, branch in branches(opening, body):
@@ -50,4 +59,4 @@ def _walk_branches(
             text = " ".join(f'"{token.text}"' if token.is_quoted else token.text for token in condition.tokens)
             earlier.append(text)
             texts = [text]
-        yield from _walk(branch, (*around, *texts))
+        yield from _walk(branch, (*around, *texts), depth)
