@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -40,28 +40,7 @@ def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison, fr
     new_links = _drawn(new, {*set(new.links) - set(comparison.links.values()), *(name for _, name in changed)})
     if not old_links and not new_links:
         return []
-    library = SurfaceLibrary()
-    scenes = [
-        robot_scene(
-            robot,
-            model.finder,
-            folder=model.path.parent,
-            outlined=dict.fromkeys(links, OUTLINE_COLOR),
-            library=library,
-            root=root,
-        )
-        for robot, model, links, root in (
-            (old, models.old, old_links, None),
-            (new, models.new, new_links, frames.new_root),
-        )
-    ]
-    if not any(len(scene.mesh.faces) for scene in scenes):
-        return []
-    images = []
-    for name, view in VIEWS.items():
-        camera = camera_for(view, _SIZE, *scenes)
-        images.append(ViewImages(name, *(png(render(scene, camera=camera)) for scene in scenes)))
-    return images
+    return _images(models, (old, old_links), (new, new_links), frames, {name: name for name in VIEWS})
 
 
 def collision_images(
@@ -79,27 +58,44 @@ def collision_images(
     }
     if not changed:
         return []
+    old_links = (_with_collisions(old), {old_names[name] for name in changed})
+    labels = {name: f"{name}, collision" for name in _VIEWS_OF_COLLISIONS}
+    return _images(models, old_links, (_with_collisions(new), changed), frames, labels)
+
+
+def _images(
+    models: Pair,
+    old: tuple[Robot, Collection[str]],
+    new: tuple[Robot, Collection[str]],
+    frames: SharedFrames,
+    labels: Mapping[str, str],
+) -> list[ViewImages]:
+    """Return images of both robots, or none if neither has something to draw.
+
+    Args:
+        models: the descriptions.
+        old: the old robot, and its links to outline.
+        new: the new robot, and its links to outline.
+        frames: the frames that both robots have.
+        labels: the labels of the images, by the name of the view.
+    """
     library = SurfaceLibrary()
     scenes = [
         robot_scene(
-            _with_collisions(robot),
+            robot,
             model.finder,
             folder=model.path.parent,
             outlined=dict.fromkeys(links, OUTLINE_COLOR),
             library=library,
             root=root,
         )
-        for robot, model, links, root in (
-            (old, models.old, [old_names[name] for name in changed], None),
-            (new, models.new, changed, frames.new_root),
-        )
+        for (robot, links), model, root in ((old, models.old, None), (new, models.new, frames.new_root))
     ]
     if not any(len(scene.mesh.faces) for scene in scenes):
         return []
     images = []
-    for name in _VIEWS_OF_COLLISIONS:
+    for name, label in labels.items():
         camera = camera_for(VIEWS[name], _SIZE, *scenes)
-        label = f"{name}, collision"
         images.append(ViewImages(label, *(png(render(scene, camera=camera)) for scene in scenes)))
     return images
 
