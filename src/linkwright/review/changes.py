@@ -45,6 +45,13 @@ class SubjectKind(Enum):
     SOURCE = "node source"
 
 
+class PathChange(Enum):
+    """How the path of a file changed."""
+
+    RENAMED = "renamed"
+    MOVED = "moved, installed at the same place"
+
+
 @dataclass(frozen=True)
 class Location:
     """A location in a file of either version.
@@ -74,6 +81,7 @@ class Change:
         cases: the names of the argument sets with which the change occurs; empty for all of them.
         other_names: the names of other links, joints or extensions that change in the same way.
         other_locations: the locations of their values, if they are not that of the first.
+        path_change: how the path of the file changed, if that is the change.
     """
 
     sentence: Phrase
@@ -83,6 +91,7 @@ class Change:
     cases: tuple[str, ...] = ()
     other_names: tuple[str, ...] = ()
     other_locations: tuple[Location, ...] = ()
+    path_change: PathChange | None = None
 
     @property
     def name(self) -> str:

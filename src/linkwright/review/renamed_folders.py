@@ -7,14 +7,13 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import counted, joined_first, phrase
-from linkwright.review.changes import Change, Effect, Subject, SubjectKind
+from linkwright.review.changes import Change, Effect, PathChange, Subject, SubjectKind
 from linkwright.review.versions import Versions
 
 _MIN_FILES = 3
 """The number of files of a folder from which they are one line."""
 _MAX_NAMES = 40
 """The number of files that the line names."""
-_RENAMED = "renamed from {path}"
 _Folders = tuple[str, str]
 """The old and the new path of a folder."""
 
@@ -36,7 +35,7 @@ def with_renamed_folders(versions: Versions, subjects: Sequence[Subject]) -> lis
         if len(group) < _MIN_FILES:
             continue
         for subject in group:
-            others = [change for change in subject.changes if change.sentence.template != _RENAMED]
+            others = [change for change in subject.changes if change.path_change is not PathChange.RENAMED]
             result[next(i for i, each in enumerate(result) if each is subject)] = replace(subject, changes=others)
         result.append(_folder(versions, folders, group))
     return sorted(result, key=lambda subject: subject.path)
@@ -44,7 +43,7 @@ def with_renamed_folders(versions: Versions, subjects: Sequence[Subject]) -> lis
 
 def _folders(subject: Subject) -> _Folders | None:
     """Return the paths of the outermost folder that differs in the paths of a file; None if the name differs, too."""
-    is_renamed = any(change.sentence.template == _RENAMED for change in subject.changes)
+    is_renamed = any(change.path_change is PathChange.RENAMED for change in subject.changes)
     if not is_renamed or subject.old_path is None or subject.new_path is None or subject.kind is SubjectKind.MESH:
         return None
     old, new = (PurePosixPath(path).parts for path in (subject.old_path, subject.new_path))
@@ -62,7 +61,7 @@ def _folder(versions: Versions, folders: _Folders, group: Sequence[Subject]) -> 
         change.effect is Effect.BREAKING
         for subject in group
         for change in subject.changes
-        if change.sentence.template == _RENAMED
+        if change.path_change is PathChange.RENAMED
     )
     names = joined_first((subject.path.removeprefix(new) for subject in group), _MAX_NAMES)
     if any(path.is_file() for path in versions.new.file(folders[0]).rglob("*")):

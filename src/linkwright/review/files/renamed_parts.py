@@ -16,6 +16,8 @@ _MIN_FACTS = 6
 _MIN_SIMILARITY = 0.6
 _MIN_ALIKE = 2
 """The minimum number of neighboring parts, renamed in the same way, that need not have many values."""
+_MAX_NEIGHBORS = 200
+"""The maximum number of new parts beside a part that are compared with it."""
 _MAX_PARTS = 60
 """The maximum number of parts of either version for which moved parts are searched."""
 _ITEM = re.compile(r"\[(old )?\d+\]$")
@@ -28,17 +30,19 @@ def renamed_parts(old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) ->
     """Return the parts of a file that have another name or place but similar values: the new paths, by old path."""
     old_parts, new_parts = _lone_parts(old, new), _lone_parts(new, old)
     renamed = dict(_renamed_alike(old_parts, new_parts))
+    rest = {name: facts for name, facts in new_parts.items() if name not in renamed.values() and not _ITEM.search(name)}
+    neighbors = _beside_each_other(rest)
     for old_name, first in old_parts.items():
-        if old_name in renamed:
+        candidates = neighbors.get(parent_of(old_name), [])
+        if old_name in renamed or first.total() < _MIN_FACTS or len(candidates) > _MAX_NEIGHBORS:
             continue
-        for new_name, second in new_parts.items():
-            if new_name in renamed.values() or parent_of(old_name) != parent_of(new_name) or _ITEM.search(new_name):
-                continue
-            if first.total() >= _MIN_FACTS and _similarity(first, second) >= _MIN_SIMILARITY:
-                renamed[old_name] = new_name
-                break
+        new_name = next((name for name in candidates if _similarity(first, rest[name]) >= _MIN_SIMILARITY), None)
+        if new_name is not None:
+            renamed[old_name] = new_name
+            candidates.remove(new_name)
     old_rest = {name: facts for name, facts in old_parts.items() if name not in renamed}
-    new_rest = {name: facts for name, facts in new_parts.items() if name not in renamed.values()}
+    new_names = set(renamed.values())
+    new_rest = {name: facts for name, facts in new_parts.items() if name not in new_names}
     renamed |= dict(_moved(_with_inner_parts(old_rest, old), _with_inner_parts(new_rest, new)))
     return renamed
 
