@@ -21,7 +21,7 @@ from launch.actions import DeclareLaunchArgument
 def generate_launch_description():
     return LaunchDescription([DeclareLaunchArgument("hand", default_value="hand_controller")])
 """
-LOST = "names the controller 'hand_controller', which 'arm/config/c.yaml' has no more"
+LOST = "names the controller 'hand_controller', which 'arm/config/c.yaml' no longer has"
 
 
 @pytest.fixture

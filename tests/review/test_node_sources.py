@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.repositories import PACKAGE_XML
+from tests.repositories import PACKAGE_XML, Repository
 from tests.review.conftest import breaking, sentences, subject
 
 PYTHON = """import rclpy
@@ -93,6 +93,27 @@ def test_name_that_moves_to_another_source_of_the_package_is_not_reported(reposi
     moved = f"from driver import *\n\n\ndef publish(self):\n{line.replace('TOPIC', repr('state'))}"
     repository.commit({"arm/arm/driver.py": PYTHON.replace(line, ""), "arm/arm/state.py": moved})
     assert compare(repository, "HEAD~1..HEAD").subjects == []
+
+
+@pytest.mark.parametrize("folder", ["repository", "tests"])
+def test_name_that_an_unchanged_source_also_has_is_not_reported(tmp_path, compare, folder):
+    repository = Repository(tmp_path / folder)
+    other = "def publish(node):\n    node.create_publisher(String, 'arm_state', 10)\n"
+    changed = PYTHON.replace('"state"', "'arm_state'")
+    repository.commit({**FILES, "arm/arm/driver.py": changed, "arm/arm/state.py": other})
+    repository.commit({"arm/arm/driver.py": changed.replace("self.state = self.create_publisher", "self.publish")})
+    assert compare(repository, "HEAD~1..HEAD").subjects == []
+
+
+def test_similar_names_are_not_searched_among_many(repository, compare):
+    def source(prefix: str) -> str:
+        lines = [f'        self.declare_parameter("{prefix}{number}", {number})' for number in range(1500)]
+        return "\n".join([PYTHON.partition("        self.declare")[0], *lines, ""])
+
+    repository.commit({**FILES, "arm/arm/driver.py": source("left")})
+    repository.commit({"arm/arm/driver.py": source("right")})
+    found = subject(compare(repository, "HEAD~1..HEAD"), "arm/arm/driver.py")
+    assert any("parameters removed: 'left0' (0)" in sentence for sentence in sentences(found))
 
 
 def test_removed_source_of_a_node_is_breaking(repository, compare):

@@ -40,6 +40,19 @@ def test_commit_ranges_are_resolved(package, compare):
     assert masses(compare(package, "HEAD~1..")) == ["link 'upper': inertial mass 2 -> 3 kg"]
 
 
+def test_package_of_a_file_is_its_nearest_folder_with_a_manifest(repository):
+    manifest = "<package format='3'><name>a</name></package>"
+    repository.commit({"package.xml": manifest, ".hidden/arm/package.xml": manifest, "old/manifest.xml": "<package/>"})
+    versions = open_versions(repository.root, "HEAD")
+    try:
+        assert versions.new.package_of("launch/a.launch.py") == ""
+        assert versions.new.package_of(".hidden/arm/urdf/a.urdf") == ".hidden/arm"
+        assert versions.new.package_of("old/a.cpp") == ""
+        assert versions.old.package_of("old/a.cpp", ("package.xml", "manifest.xml")) == "old"
+    finally:
+        versions.close()
+
+
 def test_untracked_files_are_new(package, compare):
     package.write({"arm_description/urdf/b.urdf": "<robot name='b'><link name='b'/></robot>"})
     assert sentences(subject(compare(package), "arm_description/urdf/b.urdf")) == [

@@ -18,25 +18,19 @@ from linkwright.xacro.cache import read_document
 
 def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bool:
     """Return whether a package certainly installs a moved file of its own where it did, or never installed it."""
-    old_package, new_package = _package(versions.old, old_path), _package(versions.new, new_path)
+    old_package, new_package = versions.old.package_of(old_path), versions.new.package_of(new_path)
     if old_package is None or old_package != new_package:
         return False
     old_places = _places(versions.old, old_package, old_path)
     return old_places is not None and old_places == _places(versions.new, old_package, new_path)
 
 
-def _package(version: Version, path: str) -> PurePosixPath | None:
-    """Return the folder of the package of a file relative to the root, or None if there is none."""
-    parents = PurePosixPath(path).parents
-    return next((parent for parent in parents if version.file(f"{parent}/{MANIFEST}").is_file()), None)
-
-
-def _places(version: Version, package: PurePosixPath, path: str) -> frozenset[str] | None:
+def _places(version: Version, package: str, path: str) -> frozenset[str] | None:
     """Return the installed paths of a file without the name of its package, or None if they are not known."""
     folder = version.root / package
     if Manifest(read_document(str(folder / MANIFEST))).is_ros1:
         return None  # catkin also finds files in the source folder, whatever is installed
-    facts = package_facts(version, package.as_posix().removeprefix("."))
+    facts = package_facts(version, package)
     if facts is None or not facts.is_complete:
         return None
     source = PurePosixPath(path).relative_to(package).as_posix()
@@ -83,7 +77,7 @@ def python_packages(version: Version, package: str) -> list[str]:
 
 def is_exported_header(version: Version, package: str, path: str) -> bool:
     """Return whether other packages find a header: it is installed, or in a folder that catkin exports."""
-    facts = package_facts(version, package.removeprefix("."))
+    facts = package_facts(version, package)
     if facts is None:
         return False
     source = PurePosixPath(path).relative_to(package).as_posix()

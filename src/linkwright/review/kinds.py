@@ -37,10 +37,9 @@ from linkwright.review.launches.contents import launch_contents
 from linkwright.review.launches.files import compare_launch_files
 from linkwright.review.robots.descriptions import compare_descriptions
 from linkwright.review.robots.semantics import SUFFIX, compare_expanded_semantics
-from linkwright.review.versions import Version
+from linkwright.review.versions import TEST_FOLDERS, Version
 
 _YAML_SUFFIXES = (".yaml", ".yml")
-_TEST_FOLDERS = frozenset({"test", "tests"})
 
 
 @dataclass(frozen=True)
@@ -246,7 +245,7 @@ MAP = KindRule(
 def may_help_launch_files(path: str) -> bool:
     """Return whether the path of a file can be that of a module with functions for launch files."""
     pure_path = PurePosixPath(path)
-    return pure_path.suffix == ".py" and pure_path.name != "setup.py" and _TEST_FOLDERS.isdisjoint(pure_path.parts)
+    return pure_path.suffix == ".py" and pure_path.name != "setup.py" and TEST_FOLDERS.isdisjoint(pure_path.parts)
 
 
 def rule_of(path: str) -> KindRule | None:
@@ -257,7 +256,7 @@ def rule_of(path: str) -> KindRule | None:
     """
     name = PurePosixPath(path).name.lower()
     is_test = name.startswith("test_") and name.endswith(".py")
-    if is_test and not _TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
+    if is_test and not TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
         return None  # a test with launch_testing
     if is_launch_file_name(name):
         return next(rule for rule in _RULES if rule.kind is SubjectKind.LAUNCH_FILE)

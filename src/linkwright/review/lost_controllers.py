@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterator, Sequence
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.packages.manifest import SKIPPED_FOLDERS
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.parameter_names import all_controllers
 from linkwright.review.files.yaml_values import read_yaml_values
-from linkwright.review.versions import Version, Versions
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SETTINGS = (".yaml", ".yml")
 _READERS = (".py", ".sh", ".launch", ".launch.xml")
-_MAX_BYTES = 1 << 20
 _COMMENT = re.compile(r"^[ \t]*#[^\n]*|<!--.*?-->", re.MULTILINE | re.DOTALL)
 _CONTROLLER = re.compile(r"controller|broadcaster|spawner")
 """A word in the line or the name that tells that the name is that of a controller."""
@@ -30,13 +27,14 @@ def lost_controllers(versions: Versions, changed_files: Sequence[ChangedFile]) -
     lost = {name: path for name, path in old.items() if name not in new}
     if not lost:
         return
-    files = list(_files(versions.new.root))
+    paths = versions.new.paths((*_SETTINGS, *_READERS))
+    files = [path for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)]
     for path in files:
         if path.endswith(_SETTINGS):
             for name in _names(versions.new, path):
                 lost.pop(name, None)
     for path in files:
-        text = _text(versions.new.file(path)) if path.endswith(_READERS) else ""
+        text = versions.new.text(path) if path.endswith(_READERS) else ""
         text = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
         for name, source in lost.items():
             yield from ((path, change) for change in _uses(path, text, name, source))
@@ -49,7 +47,7 @@ def _uses(path: str, text: str, name: str, source: str) -> Iterator[Change]:
         start = text.rfind("\n", 0, match.start()) + 1
         line = text[start:].partition("\n")[0]
         if _CONTROLLER.search(line):
-            sentence = phrase("names the controller '{name}', which '{file}' has no more", name=name, file=source)
+            sentence = phrase("names the controller '{name}', which '{file}' no longer has", name=name, file=source)
             reason = phrase("the controller '{name}' is not found", name=name)
             location = Location(path, text.count("\n", 0, start) + 1, match.start() - start + 1)
             yield Change(sentence, Effect.BREAKING, reason, location)
@@ -64,26 +62,6 @@ def _controllers(version: Version, changed_files: Sequence[ChangedFile]) -> dict
 
 def _names(version: Version, path: str) -> set[str]:
     try:
-        return set(all_controllers(read_yaml_values(_text(version.file(path)))))
+        return set(all_controllers(read_yaml_values(version.text(path))))
     except UnreadableFileError:
         return set()
-
-
-def _text(file: Path) -> str:
-    try:
-        is_small = file.stat().st_size <= _MAX_BYTES
-        return file.read_bytes().decode("utf-8", errors="replace") if is_small else ""
-    except OSError:
-        return ""
-
-
-def _files(root: Path) -> Iterator[str]:
-    """Yield the parameter files, launch files and scripts of a version; no tests."""
-    for folder, folders, names in os.walk(root):
-        folders[:] = sorted(
-            name for name in folders if not name.startswith(".") and name not in {*SKIPPED_FOLDERS, "test", "tests"}
-        )
-        for name in sorted(names):
-            file = Path(folder, name)
-            if name.endswith((*_SETTINGS, *_READERS)) and not file.is_symlink():
-                yield PurePosixPath(file.relative_to(root)).as_posix()

@@ -7,17 +7,15 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import Change, Effect
 from linkwright.review.files.build_facts import BuildFacts, FactKind, files_and_folders, listed
 from linkwright.review.installed_paths import build_file, package_facts, python_packages
 from linkwright.review.kinds import rule_of
 from linkwright.review.renamed_packages import renamed_packages
 from linkwright.review.sources.reading import read_source_names
-from linkwright.review.versions import Version, Versions
+from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _HEADERS = "include/"
-_TEST_FOLDERS = frozenset({"test", "tests"})
 
 
 def lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
@@ -31,7 +29,7 @@ def lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iter
     for file in changed_files:
         if file.old_path is None or file.old_path == file.new_path or file.is_submodule:
             continue
-        package = package_of(versions.old, file.old_path)
+        package = versions.old.package_of(file.old_path)
         if package is not None and package not in moved_packages and _reports_nothing(file.old_path):
             packages.setdefault(package, []).append(file)
     for package, files in packages.items():
@@ -43,12 +41,6 @@ def lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iter
                 *_lost_modules(versions, files, old),
             ]
             yield from ((path, change) for change in changes)
-
-
-def package_of(version: Version, path: str) -> str | None:
-    """Return the folder of the package that contains a file relative to the root, or None if there is none."""
-    folders = (parent.as_posix().removeprefix(".") for parent in PurePosixPath(path).parents)
-    return next((folder for folder in folders if version.file(f"{folder}/{MANIFEST}".lstrip("/")).is_file()), None)
 
 
 def _reports_nothing(path: str) -> bool:
@@ -116,7 +108,7 @@ def _module_change(text: Phrase, *, is_program: bool) -> Change:
 def _module(facts: BuildFacts, path: str, packages: Collection[str]) -> str | None:
     """Return the name of the module in a file of an installed Python package, or None for another file."""
     pure_path = PurePosixPath(_within(facts, path))
-    if pure_path.suffix != ".py" or not _TEST_FOLDERS.isdisjoint(pure_path.parts):
+    if pure_path.suffix != ".py" or not TEST_FOLDERS.isdisjoint(pure_path.parts):
         return None
     for package in packages:
         folder = PurePosixPath(package)

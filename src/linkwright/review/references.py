@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Collection, Iterator, Sequence
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.packages.manifest import SKIPPED_FOLDERS
 from linkwright.packages.readers.launch_files import read_launch_file
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.versions import Versions
 
 _LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch.xml", "_launch.xml", ".launch", ".launch.yaml", ".launch.yml")
 _SHARED_PATH = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\s*\)/([\w./+-]+)")
-_MAX_BYTES = 1 << 20
 
 
 def lost_references(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
@@ -25,25 +22,13 @@ def lost_references(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     names = {PurePosixPath(path).name for path in lost}
     if not names:
         return
-    for path in _launch_files(versions.new.root):
-        file = versions.new.file(path)
-        if file.stat().st_size > _MAX_BYTES:
-            continue
-        text = file.read_bytes().decode("utf-8", errors="replace")
+    for path in versions.new.paths(_LAUNCH_SUFFIXES):
+        file, text = versions.new.file(path), versions.new.text(path)
         if not any(name in text for name in names):
             continue
         for package, subpath, span in _shared_paths(SourceText(str(file), text), path):
             if _is_lost(versions, path, package, subpath, lost):
                 yield path, _change(path, package, subpath, span)
-
-
-def _launch_files(root: Path) -> Iterator[str]:
-    for folder, folders, names in os.walk(root):
-        folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
-        for name in sorted(names):
-            file = Path(folder, name)
-            if name.endswith(_LAUNCH_SUFFIXES) and file.is_file() and not file.is_symlink():
-                yield file.relative_to(root).as_posix()
 
 
 def _shared_paths(source: SourceText, path: str) -> Iterator[tuple[str, str, Span]]:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from multiprocessing import get_context
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted, did_you_mean, phrase
@@ -17,7 +17,16 @@ from linkwright.lint.affected import TextFiles
 from linkwright.lint.targets import Targets, find_targets, included_robots, is_plain_robot
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
-from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind, ViewImages, nesting_problem
+from linkwright.review.changes import (
+    Change,
+    Effect,
+    PathChange,
+    Review,
+    Subject,
+    SubjectKind,
+    ViewImages,
+    nesting_problem,
+)
 from linkwright.review.drawings.images import lone_images
 from linkwright.review.drawings.scene_images import lone_world_images
 from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
@@ -58,7 +67,6 @@ _Pair = tuple[KindRule, "str | None", "str | None"]
 """The rule for a file, its old path and its new path."""
 _MIN_EXPANDED = 4
 """The minimum number of descriptions for which several processes are used."""
-_MOVED = "moved from {folder}, installed at the same place"
 _LISTED = (SubjectKind.BUILD, SubjectKind.MANIFEST, SubjectKind.LAUNCH_FILE, SubjectKind.PARAMETERS)
 """The kinds whose changed files are listed with the other files if no difference is found."""
 _EXPANDED = (SubjectKind.DESCRIPTION, SubjectKind.WORLD)
@@ -231,12 +239,12 @@ class _Reviewer:
     def _package_build_file(self, file: ChangedFile) -> tuple[str, str] | None:
         """Return the old and new path of the package's ``CMakeLists.txt`` if a file is another one in a subfolder."""
         path = PurePosixPath(file.path)
-        folder = _package_folder(self._versions.new, file.path, (MANIFEST, ROSBUILD_MANIFEST))
+        folder = self._versions.new.package_of(file.path, (MANIFEST, ROSBUILD_MANIFEST))
         if path.name != CMAKE_FILE or folder is None:
             return None
-        new_path = self._versions.new.relative(folder / CMAKE_FILE)
-        old_path = None if new_path is None else self._old_path(new_path)
-        if new_path is None or old_path is None or new_path == file.path or not (folder / CMAKE_FILE).is_file():
+        new_path = (PurePosixPath(folder) / CMAKE_FILE).as_posix()
+        old_path = self._old_path(new_path)
+        if old_path is None or new_path == file.path or not self._versions.new.file(new_path).is_file():
             return None
         return old_path, new_path
 
@@ -249,7 +257,7 @@ class _Reviewer:
             return False
         sides = ((self._versions.old, file.old_path), (self._versions.new, file.new_path))
         return rule.kind is not SubjectKind.PARAMETERS or any(
-            _package_folder(version, path) for version, path in sides if path
+            version.package_of(path) is not None for version, path in sides if path
         )
 
     def _affected(self) -> Iterator[set[str]]:
@@ -276,11 +284,11 @@ class _Reviewer:
         """
         paths = [old_path if version.is_old else new_path for _, old_path, new_path in pairs]
         folders = {
-            path
+            folder
             for side in (self._versions.old, self._versions.new)
             for file in self._changed_files
             if (changed := file.old_path if side.is_old else file.new_path)
-            if (folder := _package_folder(side, changed)) and (path := side.relative(folder)) is not None
+            if (folder := side.package_of(changed)) is not None
         }
         packages = [version.file(folder) for folder in sorted(folders) if (version.file(folder) / MANIFEST).is_file()]
         return Targets(tuple(version.file(path) for path in paths if path), tuple(packages))
@@ -363,9 +371,11 @@ def _renaming(versions: Versions, rule: KindRule, old_path: str, new_path: str) 
     """Return the change that reports a renamed or moved file."""
     old, new = PurePosixPath(old_path), PurePosixPath(new_path)
     if old.name == new.name and rule.removal_reason is not None and keeps_installed_path(versions, old_path, new_path):
-        return Change(phrase("moved from {folder}, installed at the same place", folder=f"{old.parent}/"))
+        text = phrase("moved from {folder}, installed at the same place", folder=f"{old.parent}/")
+        return Change(text, path_change=PathChange.MOVED)
+    effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
     text = phrase("renamed from {path}", path=old_path)
-    return Change(text, Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING, rule.removal_reason)
+    return Change(text, effect, rule.removal_reason, path_change=PathChange.RENAMED)
 
 
 def _text_with_contents(rule: KindRule, text: Phrase, version: Version, path: str) -> Phrase:
@@ -393,8 +403,8 @@ def _lone_contents(
 
 def _is_only_moved(subject: Subject) -> bool:
     """Return whether a file was only moved, and is installed at the same path as before."""
-    templates = [change.sentence.template for change in subject.changes]
-    return templates == [_MOVED] and not subject.figures and not subject.problems
+    path_changes = [change.path_change for change in subject.changes]
+    return path_changes == [PathChange.MOVED] and not subject.figures and not subject.problems
 
 
 def _with_changes(subjects: Sequence[Subject], changes: Iterator[tuple[str, Change]]) -> list[Subject]:
@@ -446,12 +456,6 @@ def _targets(version: Version) -> set[str]:
     started = [file for file in included_robots(version.root) if checker.calls(file, ())]
     files = (version.relative(file) for file in (*find_targets([version.root]).files, *started))
     return {path for path in files if path is not None} | semantic_files(version)
-
-
-def _package_folder(version: Version, path: str, manifests: Sequence[str] = (MANIFEST,)) -> Path | None:
-    """Return the folder of the package that contains a file, or None if there is none."""
-    folders = (folder for folder in version.file(path).parents if folder.is_relative_to(version.root))
-    return next((folder for folder in folders if any((folder / name).is_file() for name in manifests)), None)
 
 
 def _package_folders(versions: Versions, packages: Sequence[str]) -> list[str]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import takewhile
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from linkwright.descriptions.pairs import Model
 from linkwright.descriptions.revisions import CommitFiles, leads_outside
@@ -18,9 +18,12 @@ from linkwright.files.git_repository import SHALLOW_HINT, ChangedFile, GitReposi
 from linkwright.lint.checking import Checker
 from linkwright.lint.targets import find_targets
 from linkwright.packages import PackageFinder
-from linkwright.packages.manifest import SourceScan, package_name
+from linkwright.packages.manifest import MANIFEST, SKIPPED_FOLDERS, SourceScan, package_name
 from linkwright.packages.share_layout import share_of_sources
 
+TEST_FOLDERS = frozenset({"test", "tests"})
+"""The names of folders with tests, whose files are no part of a robot."""
+_MAX_SEARCHED_BYTES = 1 << 20
 _DEFAULT_BRANCHES = ("origin/HEAD", "origin/main", "origin/master", "main", "master")
 
 
@@ -48,6 +51,46 @@ class Version:
         """Return the path of a file relative to the root, or None for a file outside it."""
         real_path = Path(os.path.realpath(file))
         return real_path.relative_to(self.root).as_posix() if real_path.is_relative_to(self.root) else None
+
+    def text(self, path: str) -> str:
+        """Return the text of a file at a path relative to the root; empty if it is unreadable or larger than 1 MiB."""
+        file = self.file(path)
+        try:
+            is_small = file.stat().st_size <= _MAX_SEARCHED_BYTES
+            return file.read_bytes().decode("utf-8", errors="replace") if is_small else ""
+        except OSError:
+            return ""
+
+    def paths(self, suffixes: tuple[str, ...], folder: str = "") -> Iterator[str]:
+        """Yield the paths of files relative to the root, sorted by folder.
+
+        Symbolic links, hidden folders, and folders that builds write are skipped.
+
+        Args:
+            suffixes: the endings of the names.
+            folder: the folder to search, relative to the root; empty for all.
+        """
+        for parent, folders, names in os.walk(self.file(folder)):
+            folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
+            for name in sorted(names):
+                file = Path(parent, name)
+                if name.endswith(suffixes) and file.is_file() and not file.is_symlink():
+                    yield file.relative_to(self.root).as_posix()
+
+    def package_of(self, path: str, manifests: Collection[str] = (MANIFEST,)) -> str | None:
+        """Return the folder of the package that contains a file, or None if there is none.
+
+        Args:
+            path: the path of the file relative to the root.
+            manifests: the names of the files that make a folder a package.
+
+        Returns:
+            The nearest such folder relative to the root; empty for the root.
+        """
+        for parent in PurePosixPath(path).parents:
+            if any((self.root / parent / name).is_file() for name in manifests):
+                return "" if parent == PurePosixPath(".") else parent.as_posix()
+        return None
 
     def finder(self, folder: Path) -> PackageFinder:
         """Return the finder of packages for a file's folder."""

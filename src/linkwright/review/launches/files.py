@@ -106,7 +106,7 @@ def _add_lone_entries(
             continue
         written = renamed_entry(entry, old_names)
         text, location = removed_entry(written), pair.location(entry.span, is_old=True)
-        reader = reader_of(pair.versions.new.root, entry.name, pair.new_path) if entry.kind == READING else None
+        reader = reader_of(pair.versions.new, entry.name, pair.new_path) if entry.kind == READING else None
         if reader is not None:
             pair.add(phrase("{change}; {path} uses it", change=text, path=reader), location)
             continue

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from functools import cached_property
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
@@ -28,9 +28,8 @@ from linkwright.review.sources.names import (
 )
 from linkwright.review.sources.reading import is_program_text, read_source_names
 from linkwright.review.sources.reasons import is_used_by_others, removal_reason
-from linkwright.review.versions import Version, Versions
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
-_TEST_FOLDERS = frozenset({"test", "tests"})
 _SKIPPED = frozenset({"setup.py", "conf.py"})
 _MAX_NAMES = 40
 _MAX_FUNCTIONS = 3
@@ -40,6 +39,8 @@ _UNITS = re.compile(
 )
 _SIMILAR = 0.6
 """The ratio of equal characters from which two names of the same kind are similar."""
+_MAX_COMPARED = 10_000
+"""The number of pairs of names up to which similar names are searched."""
 _USED = (
     *(NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT),
     *(NameKind.ACTION, NameKind.ACTION_CLIENT),
@@ -70,7 +71,7 @@ def _is_source(versions: Versions, file: ChangedFile) -> bool:
     path = PurePosixPath(file.path)
     if path.name in _SKIPPED or path.name.startswith(("test_", ".")) or file.is_submodule:
         return False
-    if not _TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
+    if not TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
         return False
     version = versions.new if file.new_path else versions.old
     return is_program_text(version.file(file.path))
@@ -87,6 +88,7 @@ class _Side:
     def __init__(self, version: Version, paths: Sequence[str | None]) -> None:
         self.version = version
         self._names = {path: read_source_names(version.file(path)) for path in paths if path is not None}
+        self._texts: dict[str, list[str]] = {}
 
     def names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
@@ -134,33 +136,27 @@ class _Side:
         if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
             return False
         texts = (f'"{item.name}"', f"'{item.name}'")
-        for file in self.version.file(package).rglob("*"):
-            relative = self.version.relative(file)
-            if file.suffix not in (*CPP_SUFFIXES, PYTHON_SUFFIX) or relative in self._names or not file.is_file():
-                continue
-            if not _TEST_FOLDERS.isdisjoint(file.parts) or is_launch_file_name(file.name):
-                continue
-            content = file.read_text("utf-8", errors="replace")
-            if any(text in content for text in texts):
-                return False
-        return True
+        return not any(text in content for content in self._other_texts(package) for text in texts)
 
     def package(self, path: str) -> str | None:
         """Return the folder of the package of a file, or None if it is in none."""
-        parents = (parent.as_posix() for parent in PurePosixPath(path).parents)
-        names = (MANIFEST, "manifest.xml")
-        return next(
-            (parent for parent in parents if any((self.version.file(parent) / n).is_file() for n in names)), None
-        )
+        return self.version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST))
+
+    def _other_texts(self, package: str) -> list[str]:
+        """Return the texts of a package's unchanged sources, except tests and launch files."""
+        if package not in self._texts:
+            paths = self.version.paths((*CPP_SUFFIXES, PYTHON_SUFFIX), package)
+            self._texts[package] = [self.version.text(path) for path in paths if self._is_other(PurePosixPath(path))]
+        return self._texts[package]
+
+    def _is_other(self, path: PurePosixPath) -> bool:
+        is_part = TEST_FOLDERS.isdisjoint(path.parts) and not is_launch_file_name(path.name)
+        return is_part and path.as_posix() not in self._names
 
     def _generates(self, name: str, path: str) -> bool:
         """Return whether a description of parameters beside a source, from which code is generated, has a parameter."""
         files = self.version.file(path).parent.glob("*.y*ml")
         return any(f"{name.rpartition('.')[2]}:" in file.read_text("utf-8", errors="replace") for file in files)
-
-
-def _has_manifest(folder: Path) -> bool:
-    return any((folder / name).is_file() for name in (MANIFEST, ROSBUILD_MANIFEST))
 
 
 @dataclass(frozen=True)
@@ -266,24 +262,14 @@ class _Pair:
             if other is not None:
                 gone.remove(item)
                 come.remove(other)
-        for item in list(removed):
-            other = next((each for each in come if each.type == item.type or len(removed) == len(come) == 1), None)
-            if other is not None:
-                removed.remove(item)
-                come.remove(other)
-                text = phrase(
-                    "{kind} {name} has a computed name now: {new}", kind=kind.title, name=_name(item), new=other.name
-                )
-                yield self._change(text, other.span, self.new, None)
-        for item in list(added):
-            other = next((each for each in gone if each.type == item.type or len(added) == len(gone) == 1), None)
-            if other is not None:
-                added.remove(item)
-                gone.remove(other)
-                text = phrase(
-                    "{kind} {name} had a computed name: {old}", kind=kind.title, name=_name(item), old=other.name
-                )
-                yield self._change(text, item.span, self.new, None)
+        for item, other in _take_pairs(removed, come):
+            text = phrase(
+                "{kind} {name} has a computed name now: {new}", kind=kind.title, name=_name(item), new=other.name
+            )
+            yield self._change(text, other.span, self.new, None)
+        for item, other in _take_pairs(added, gone):
+            text = phrase("{kind} {name} had a computed name: {old}", kind=kind.title, name=_name(item), old=other.name)
+            yield self._change(text, item.span, self.new, None)
         come = [item for item in come if self.new.count(item) > self.old.count(item)]
         gone = [item for item in gone if self.old.count(item) > self.new.count(item)]
         if come:
@@ -361,8 +347,10 @@ def _renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list
         is_same = old.type == new.type and (has_types or bool(old.type))
         return [(old, new)] if is_same or _similarity(old, new) >= _SIMILAR else []
     rest = list(added)
+    is_compared = len(removed) * len(added) <= _MAX_COMPARED
     for item in removed:
-        candidates = [each for each in rest if _similarity(item, each) >= _SIMILAR and _fits(item, each)]
+        similar = [each for each in rest if _fits(item, each)] if is_compared else []
+        candidates = [each for each in similar if _similarity(item, each) >= _SIMILAR]
         same = [[each for each in items if each.type == item.type and item.type] for items in (removed, rest)]
         if item.kind is not NameKind.PARAMETER and len(same[0]) == len(same[1]) == 1:
             candidates = same[1]
@@ -371,6 +359,17 @@ def _renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list
             pairs.append((item, best))
             rest.remove(best)
     return pairs
+
+
+def _take_pairs(literals: list[SourceName], expressions: list[SourceName]) -> Iterator[tuple[SourceName, SourceName]]:
+    """Take the names and expressions that are probably the same thing from both lists, and yield them."""
+    for item in list(literals):
+        is_only = len(literals) == len(expressions) == 1
+        other = next((expression for expression in expressions if is_only or expression.type == item.type), None)
+        if other is not None:
+            literals.remove(item)
+            expressions.remove(other)
+            yield item, other
 
 
 def _fits(old: SourceName, new: SourceName) -> bool:
