@@ -12,6 +12,8 @@ from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.review.paths import PathComparison
 
 _QUOTED = re.compile("'[^']*'")
+MAX_NAMES = 40
+"""The number of names up to which a sentence lists all of them."""
 REMOVED_VALUE = "value"
 """The argument of a sentence that is the value of a removed property."""
 

@@ -7,13 +7,11 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import counted, joined_first, phrase
-from linkwright.review.changes import Change, Effect, PathChange, Subject, SubjectKind
+from linkwright.review.changes import MAX_NAMES, Change, Effect, PathChange, Subject, SubjectKind
 from linkwright.review.versions import Versions
 
 _MIN_FILES = 3
 """The number of files of a folder from which they are one line."""
-_MAX_NAMES = 40
-"""The number of files that the line names."""
 _Folders = tuple[str, str]
 """The old and the new path of a folder."""
 
@@ -63,7 +61,7 @@ def _folder(versions: Versions, folders: _Folders, group: Sequence[Subject]) -> 
         for change in subject.changes
         if change.path_change is PathChange.RENAMED
     )
-    names = joined_first((subject.path.removeprefix(new) for subject in group), _MAX_NAMES)
+    names = joined_first((subject.path.removeprefix(new) for subject in group), MAX_NAMES)
     if any(path.is_file() for path in versions.new.file(folders[0]).rglob("*")):
         text = counted(
             "{count} compared file moved from {path}: {names}",

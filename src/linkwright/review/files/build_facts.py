@@ -9,6 +9,7 @@ from enum import Enum
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, joined, phrase, quoted_names
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
 from linkwright.review.list_changes import EMPTY, change_text, shortened
 from linkwright.review.renamed_packages import PackageNames, renamed_packages
@@ -24,8 +25,6 @@ _LONG_LIST = 5
 _DOWNLOADS = ("externalproject_add", "fetchcontent_declare")
 """The commands that get the sources of other projects, from the address and version after their keywords."""
 _KEYWORD = re.compile(r"[A-Z][A-Z_]{2,}")
-_MAX_NAMES = 40
-"""The number of names that a line lists."""
 
 
 class FactKind(Enum):
@@ -357,10 +356,10 @@ def _list_sentence(title: Phrase, names: Sequence[str], *, is_added: bool) -> Ph
 
 def listed(names: Sequence[str]) -> Phrase:
     """Return the first names, and the number of the others."""
-    first = quoted_names(names[:_MAX_NAMES])
-    if len(names) <= _MAX_NAMES:
+    first = quoted_names(names[:MAX_NAMES])
+    if len(names) <= MAX_NAMES:
         return first
-    return phrase("{names} and {count} more", names=first, count=len(names) - _MAX_NAMES)
+    return phrase("{names} and {count} more", names=first, count=len(names) - MAX_NAMES)
 
 
 def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:

@@ -11,15 +11,13 @@ from linkwright.messages.definitions.interfaces import Constant, Definition, Fie
 from linkwright.messages.definitions.library import TrustedMessages, parse_source, read_source
 from linkwright.packages import MANIFEST, enclosing_package
 from linkwright.packages.readers.package_xml import Manifest
-from linkwright.review.changes import Location
+from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 
 _SEPARATOR = "---"
-_MAX_FIELDS = 10
-"""The number of fields that the line about an added interface names."""
 _MIN_RENUMBERED = 3
 """The minimum number of constants with other values that are summarized in one line. An inserted value renumbers those
 below."""
@@ -52,7 +50,7 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
         for field in structure.fields
     ]
     names += [f"{constant.name} = {constant.value!s}" for structure in parts for constant in structure.constants]
-    return joined_first(names, _MAX_FIELDS) if names else None
+    return joined_first(names, MAX_NAMES) if names else None
 
 
 def _read(file: Path) -> Definition:

@@ -9,6 +9,7 @@ from linkwright.diagnostics import Phrase, joined, joined_first, phrase
 from linkwright.lint.targets import find_targets
 from linkwright.packages.manifest import package_name
 from linkwright.packages.readers.package_xml import Manifest
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.dependencies import compare_dependencies
 from linkwright.review.list_changes import excerpts
@@ -18,7 +19,6 @@ from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element, Text
 
 _TEXTS = ("name", "version", "license", "maintainer", "author", "url", "member_of_group", "group_depend")
-_MAX_NAMES = 8
 _PLUGIN = "plugin"
 """The attribute of an export that names a plugin description."""
 _BLOCKS = frozenset({"p", "br", "li", "ul", "ol", "div", "tr", "h1", "h2", "h3"})
@@ -55,7 +55,7 @@ def manifest_contents(version: Version, path: str) -> Phrase:
                type=build_type)
     ]  # fmt: skip
     if names:
-        texts.append(phrase("depends on {names}", names=joined_first(names, _MAX_NAMES)))
+        texts.append(phrase("depends on {names}", names=joined_first(names, MAX_NAMES)))
     others = [folder for folder in find_targets([version.root]).packages if package_name(folder) == manifest.name]
     paths = [other for other in map(version.relative, others) if other != PurePosixPath(path).parent.as_posix()]
     if paths:

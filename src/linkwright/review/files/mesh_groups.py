@@ -7,10 +7,7 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, counted, joined_first
-from linkwright.review.changes import Change, Subject, SubjectKind
-
-_MAX_NAMES = 6
-"""The number of meshes that a line names."""
+from linkwright.review.changes import MAX_NAMES, Change, Subject, SubjectKind
 
 
 def grouped_meshes(subjects: Sequence[Subject]) -> list[Subject]:
@@ -39,7 +36,7 @@ def _as_one(subjects: Sequence[Subject]) -> Subject:
 
 
 def _sentence(subjects: Sequence[Subject]) -> Phrase:
-    count, names = len(subjects), joined_first((PurePosixPath(subject.path).name for subject in subjects), _MAX_NAMES)
+    count, names = len(subjects), joined_first((PurePosixPath(subject.path).name for subject in subjects), MAX_NAMES)
     first = subjects[0]
     if first.old_path is None:
         return counted("{count} mesh added: {names}", "{count} meshes added: {names}", count, names=names)
@@ -54,7 +51,7 @@ def _sentence(subjects: Sequence[Subject]) -> Phrase:
             folder=f"{old_folder}/",
             names=names,
         )
-    pairs = joined_first(_renames(subjects), _MAX_NAMES)
+    pairs = joined_first(_renames(subjects), MAX_NAMES)
     return counted("{count} mesh renamed: {names}", "{count} meshes renamed: {names}", count, names=pairs)
 
 

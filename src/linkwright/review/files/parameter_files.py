@@ -9,7 +9,7 @@ from pathlib import Path
 import yaml
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.files.bridges import compare_bridges, read_bridges
 from linkwright.review.files.parameter_names import (
@@ -28,8 +28,6 @@ from linkwright.review.list_changes import EMPTY, shortened
 from linkwright.review.versions import Version
 
 _MAX_BYTES = 4 << 20
-_MAX_NAMES = 8
-"""The number of nodes, topics or keys that the line about an added file names."""
 _MAX_VALUES = 32
 """The number of values that the line about an added file shows, divided among the nodes or keys."""
 _MIN_VALUES = 3
@@ -58,7 +56,7 @@ def parameter_contents(version: Version, path: str) -> Phrase | None:
     text = _read(version.file(path))
     bridges = read_bridges(text)
     if bridges:
-        return phrase("bridged topics {names}", names=joined_first([bridge.topic for bridge in bridges], _MAX_NAMES))
+        return phrase("bridged topics {names}", names=joined_first([bridge.topic for bridge in bridges], MAX_NAMES))
     root = _root(text)
     if not isinstance(root, yaml.MappingNode):
         return None
@@ -77,7 +75,7 @@ def parameter_contents(version: Version, path: str) -> Phrase | None:
 
 def _with_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
     """Return the names of nodes or keys with the first of their values."""
-    limit = max(_MIN_VALUES, _MAX_VALUES // min(len(parts), _MAX_NAMES))
+    limit = max(_MIN_VALUES, _MAX_VALUES // len(parts))
     texts: list[Phrase] = []
     for part, values in parts.items():
         items = [shortened(item, _MAX_VALUE) for item in _lone_content(part, values)]
@@ -85,7 +83,7 @@ def _with_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
             texts.append(phrase("{parameter} {value}", parameter=part, value=items[0] or EMPTY))
         else:
             texts.append(phrase("{entry} ({items})", entry=part, items=joined_first(items, limit)))
-    return joined_first(texts, _MAX_NAMES)
+    return joined_first(texts, MAX_NAMES)
 
 
 def _root(text: str) -> yaml.Node | None:

@@ -9,7 +9,7 @@ from linkwright.diagnostics import LinkwrightError, Phrase, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
-from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
+from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Subject, SubjectKind
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element
@@ -18,7 +18,6 @@ ROSBUILD_MANIFEST = "manifest.xml"
 _FILES = (ROSBUILD_MANIFEST, "stack.xml")
 _ROOTS = ("package", "stack")
 _TEXTS = ("version", "license", "author", "url")
-_MAX_NAMES = 12
 _Items = dict[tuple[str, str], Element]
 """Elements by tag and name."""
 
@@ -49,7 +48,7 @@ def _changes(versions: Versions, file: ChangedFile, old: Element | None, new: El
     if old is None and new is not None and file.old_path is None:
         names = list(dict.fromkeys(name for _, name in _dependencies(new)))
         text = phrase("stack added") if new.tag == "stack" else phrase("package of rosbuild added")
-        items = phrase("depends on {names}", names=joined_first(names, _MAX_NAMES))
+        items = phrase("depends on {names}", names=joined_first(names, MAX_NAMES))
         yield Change(phrase("{change}: {items}", change=text, items=items) if names else text)
     elif old is not None and new is None and file.new_path is None:
         yield from _removal(versions, file.path, old)
@@ -70,7 +69,7 @@ def _removal(versions: Versions, path: str, old: Element) -> Iterator[Change]:
             return
         removed = [name for tag, name in _dependencies(old) if tag == "depend" and name not in new_names]
         if removed:
-            text = phrase("{tags} removed: {packages}", tags="depend", packages=joined_first(removed, _MAX_NAMES))
+            text = phrase("{tags} removed: {packages}", tags="depend", packages=joined_first(removed, MAX_NAMES))
             yield Change(text)
     else:
         reason = phrase("packages that depend on the package do not build or start")
@@ -120,7 +119,7 @@ def _lone(file: ChangedFile, items: _Items, others: _Items, *, is_added: bool) -
         ]
         if not lone:
             continue
-        names = joined_first([name for name, _ in lone], _MAX_NAMES)
+        names = joined_first([name for name, _ in lone], MAX_NAMES)
         location = _location(file, lone[0][1], is_old=not is_added)
         if is_added:
             yield Change(phrase("{tags} added: {packages}", tags=tag, packages=names), location=location)

@@ -9,7 +9,7 @@ from pathlib import Path
 import yaml
 
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase, quoted_names
-from linkwright.review.changes import Location
+from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.files.yaml_values import composed, read_yaml_values
 from linkwright.review.versions import Version
@@ -21,8 +21,6 @@ _IGNORED = frozenset({"Class", "Name", "Value", "Displays", "Links", "Frames", "
 """The properties of displays that are shown elsewhere, or that RViz fills from the data that it received."""
 _COMPUTED = frozenset({"Min Intensity", "Max Intensity", "Min Value", "Max Value", "Min Color", "Max Color"})
 _TOPIC = "Topic"
-_MAX_DISPLAYS = 10
-"""The number of displays that the line about an added configuration names."""
 _MAX_PROPERTIES = 4
 """The number of properties of a display that a line shows."""
 
@@ -78,7 +76,7 @@ def rviz_contents(version: Version, path: str) -> Phrase | None:
     """Return the displays of a configuration with their topics, or None if there are none."""
     displays = _read(version.file(path)).displays
     names = [f"{display.name} {display.topic}".rstrip() for display in displays]
-    return phrase("displays {names}", names=joined_first(names, _MAX_DISPLAYS)) if names else None
+    return phrase("displays {names}", names=joined_first(names, MAX_NAMES)) if names else None
 
 
 def _read(file: Path) -> _Configuration:

@@ -6,12 +6,11 @@ from collections import Counter
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.element_values import own_content, values_text
 from linkwright.review.plugins import contents_text, plugin_parts
 from linkwright.xmltree import Element
 
-_MAX_NAMES = 40
-"""The number of models, links or joints that the line about an added world names."""
 _MAX_VALUES_OF_PLUGIN = 4
 """The number of values of each plugin or sensor that the line about an added world or model shows."""
 _NAMED_BY_CHILD = "include"
@@ -23,11 +22,11 @@ def names_in(element: Element) -> Iterator[Phrase]:
     names = {tag: [_name(child) for child in element.elements(tag)] for tag in ("model", "include", "link", "joint")}
     models = [*names["model"], *names["include"]]
     if models:
-        yield phrase("models {names}", names=joined_first(models, _MAX_NAMES))
+        yield phrase("models {names}", names=joined_first(models, MAX_NAMES))
     if names["link"]:
-        yield phrase("links {names}", names=joined_first(names["link"], _MAX_NAMES))
+        yield phrase("links {names}", names=joined_first(names["link"], MAX_NAMES))
     if names["joint"]:
-        yield phrase("joints {names}", names=joined_first(names["joint"], _MAX_NAMES))
+        yield phrase("joints {names}", names=joined_first(names["joint"], MAX_NAMES))
     yield from plugin_parts(element, _MAX_VALUES_OF_PLUGIN)
 
 
@@ -44,7 +43,7 @@ def shapes_and_mass(model: Element) -> Iterator[Phrase]:
         text = phrase("visual {shape}", shape=name) if tag == "visual" else phrase("collision {shape}", shape=name)
         texts.append(text if count == 1 else phrase("{part} ({count} times)", part=text, count=count))
     if texts:
-        yield joined_first(texts, _MAX_NAMES)
+        yield joined_first(texts, MAX_NAMES)
     masses = [element.text() for each in model.walk() if each.tag == "inertial" for element in each.elements("mass")]
     try:
         mass = sum(float(text) for text in masses)

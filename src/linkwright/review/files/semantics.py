@@ -10,6 +10,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined_first, phrase, term
 from linkwright.lint.targets import walk
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
@@ -18,8 +19,6 @@ from linkwright.xmltree import Element
 _NAMED = ("group", "group_state", "end_effector", "virtual_joint", "passive_joint")
 _PAIRS = ("disable_collisions", "enable_collisions")
 _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)")
-_MAX_PARTS = 8
-"""The number of joints, members or pairs of links that a line names."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
 def semantic_contents(version: Version, path: str) -> Phrase | None:
     """Return the groups, states and other named elements of a semantic description, or None if there are none."""
     titles = [_title(entry) for entry in _entries(_root(version.file(path)))]
-    return joined_first(titles, _MAX_PARTS) if titles else None
+    return joined_first(titles, MAX_NAMES) if titles else None
 
 
 def disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
@@ -157,7 +156,7 @@ def _compare_entries(pair: FilePair, old: _Entry, new: _Entry) -> None:
         elif not _are_equal(before, after):
             changes.append(f"{name} {before} -> {after}")
     if changes:
-        text = phrase("{entry}: {changes}", entry=_title(new), changes=joined_first(changes, _MAX_PARTS))
+        text = phrase("{entry}: {changes}", entry=_title(new), changes=joined_first(changes, MAX_NAMES))
         pair.add(text, pair.location(new.element.span()))
 
 
@@ -184,12 +183,12 @@ def _compare_pairs(
     if added:
         text = counted(
             "{tag}: {count} pair added: {pairs}", "{tag}: {count} pairs added: {pairs}", len(added), tag=term(tag),
-            pairs=joined_first(map(" - ".join, added), _MAX_PARTS),
+            pairs=joined_first(map(" - ".join, added), MAX_NAMES),
         )  # fmt: skip
         pair.add(text, pair.location(new[added[0]].span()))
     if removed:
         text = counted(
             "{tag}: {count} pair removed: {pairs}", "{tag}: {count} pairs removed: {pairs}", len(removed),
-            tag=term(tag), pairs=joined_first(map(" - ".join, removed), _MAX_PARTS),
+            tag=term(tag), pairs=joined_first(map(" - ".join, removed), MAX_NAMES),
         )  # fmt: skip
         pair.add(text, pair.location(old[removed[0]].span(), is_old=True))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
-from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.list_changes import change_text
 from linkwright.review.merging import common_reason, name_edit
 
@@ -16,8 +16,6 @@ _ITEM = re.compile(r"(?P<list>[^\[]*)\[(?:old )?\d+\]")
 """The path of a list, and an item of it that has no name."""
 _NAME = re.compile(r"[~/]?[A-Za-z_][\w./:-]*")
 """A value that is a name, such as that of a topic, a frame or a file."""
-_MAX_VALUES = 12
-"""The number of values of a part that a line shows."""
 _MIN_ALIKE = 4
 """The number of parts beside each other that gain or lose a value of the same name, from which they are one line."""
 _MAX_ITEM_CHANGES = 6
@@ -50,7 +48,7 @@ class ValueChange:
         if len(self.values) == 1:
             part = phrase("{parameter} {value}", parameter=self.name, value=self.values[0])
             return phrase("{part} added", part=part) if self.kind == "added" else phrase("{part} removed", part=part)
-        items = joined_first(self.values, _MAX_VALUES)
+        items = joined_first(self.values, MAX_NAMES)
         if self.kind == "added":
             return phrase("{parameter} added: {items}", parameter=self.name, items=items)
         return phrase("{parameter} removed: {items}", parameter=self.name, items=items)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, Entry
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.titles import settings_text, title
@@ -12,7 +13,6 @@ _KINDS = (
     "node", "process", "include", "parameters", "parameter", SERVER_PARAMETER, "remapping", "environment", READING,
     "argument",
 )  # fmt: skip
-_MAX_TITLES = 16
 _MAX_SETTINGS = 8
 """The number of settings of each action that the line shows."""
 
@@ -31,7 +31,7 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
     entries = [entry for entry in entries if entry.kind in _KINDS and not (entry.kind == READING and entry.settings)]
     shown = sorted(entries, key=lambda entry: _KINDS.index(entry.kind))
     titles = list(dict.fromkeys(map(_with_settings, shown)))
-    return joined_first(titles, _MAX_TITLES) if titles else None
+    return joined_first(titles, MAX_NAMES) if titles else None
 
 
 def _with_settings(entry: Entry) -> Phrase:

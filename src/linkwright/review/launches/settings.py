@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.breaking import name_reason
-from linkwright.review.changes import Location
+from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.conditional_settings import changed_settings
 from linkwright.review.launches.default_names import default_name
@@ -20,7 +20,6 @@ from linkwright.review.merging import name_edit
 
 _MIN_GROUP = 3
 """The minimum number of added or removed parameters or remappings of a node that are reported as one change."""
-_MAX_ITEMS = 8
 _MAX_VALUE = 60
 
 
@@ -135,7 +134,7 @@ class SettingChanges:
                 continue
             entries = [entry for entry, _, _ in places]
             names = list(dict.fromkeys(f"{setting.old} -> {setting.new}" for _, _, setting in places))
-            text = phrase("remappings {items}", items=joined_first(names, _MAX_ITEMS))
+            text = phrase("remappings {items}", items=joined_first(names, MAX_NAMES))
             text = phrase("{entry}: {change}", entry=joined_titles(entries), change=text)
             self._pair.add(text, places[0][1], _group_reason([setting for _, _, setting in places]))
 
@@ -174,7 +173,7 @@ def _joined_settings(settings: Sequence[_Setting]) -> Iterator[tuple[Phrase, Phr
 
 def _group_text(group: Sequence[_Setting]) -> Phrase:
     is_remapping, is_added = group[0].name.startswith(REMAPPING), group[0].new is not None
-    items = joined_first([_item(setting) for setting in group], _MAX_ITEMS)
+    items = joined_first([_item(setting) for setting in group], MAX_NAMES)
     if is_remapping:
         return (
             phrase("remappings added: {items}", items=items)
@@ -200,5 +199,5 @@ def _group_reason(group: Sequence[_Setting]) -> Phrase | None:
     names = [str(reason.arguments["name"]) for reason in reasons if reason.arguments.keys() == {"name"}]
     if len(names) == len(reasons) > 1:
         names = list(dict.fromkeys(names))
-        return name_reason(", ".join([*names[:_MAX_ITEMS], *["..."][: len(names) > _MAX_ITEMS]]))
+        return name_reason(", ".join([*names[:MAX_NAMES], *["..."][: len(names) > MAX_NAMES]]))
     return reasons[0] if reasons else None

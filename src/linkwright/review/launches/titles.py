@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
 from linkwright.diagnostics.phrase import as_phrase
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.launches.outlines import (
     CONDITION,
     DELETION,
@@ -19,7 +20,6 @@ from linkwright.review.launches.outlines import (
 )
 from linkwright.review.list_changes import EMPTY, list_items, shortened
 
-_MAX_TITLES = 4
 _ORDER = (CONDITION, "name", NAMESPACE, "default", "value", "arguments", REMAPPING, ENVIRONMENT, "parameter")
 """The beginnings of the names of settings in the order in which they are shown."""
 _MAX_SETTINGS = 16
@@ -131,7 +131,7 @@ def joined_titles(entries: Sequence[Entry]) -> Phrase:
 
 def joined_texts(titles: Sequence[Phrase]) -> Phrase:
     """Return different titles, or the first ones and the number of the others."""
-    return joined_first(list(dict.fromkeys(titles)), _MAX_TITLES)
+    return joined_first(list(dict.fromkeys(titles)), MAX_NAMES)
 
 
 def added_entry(entry: Entry) -> Phrase:

@@ -13,7 +13,7 @@ from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import MANIFEST
-from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
+from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Subject, SubjectKind
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.installed_paths import is_exported_header
 from linkwright.review.sources.details import detail_changes
@@ -31,7 +31,6 @@ from linkwright.review.sources.reasons import is_used_by_others, removal_reason
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SKIPPED = frozenset({"setup.py", "conf.py"})
-_MAX_NAMES = 40
 _MAX_FUNCTIONS = 3
 """The number of functions of a file with other arguments up to which each has a line."""
 _UNITS = re.compile(
@@ -217,7 +216,7 @@ class _Pair:
 
     def _merged_functions(self, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]]) -> Change:
         """Return one change for many functions with other arguments."""
-        names = joined_first(dict.fromkeys(item.name for item, _, _ in changed), _MAX_NAMES)
+        names = joined_first(dict.fromkeys(item.name for item, _, _ in changed), MAX_NAMES)
         text = phrase("functions with other arguments: {names}", names=names)
         reason = next((reason for _, _, reason in changed if reason is not None), None)
         if reason is not None:
@@ -316,7 +315,7 @@ def _name(item: SourceName) -> str:
 
 
 def _names(items: Sequence[SourceName]) -> Phrase:
-    return joined_first(map(_name, items), _MAX_NAMES)
+    return joined_first(map(_name, items), MAX_NAMES)
 
 
 def _required_reason(items: Sequence[SourceName]) -> Phrase | None:
@@ -326,7 +325,7 @@ def _required_reason(items: Sequence[SourceName]) -> Phrase | None:
         return None
     if items[0].kind is NameKind.FUNCTION:
         return phrase("classes that derive from the class and do not define it do not build")
-    return phrase("callers that do not pass '{name}' get an error", name=joined_first(names, _MAX_NAMES))
+    return phrase("callers that do not pass '{name}' get an error", name=joined_first(names, MAX_NAMES))
 
 
 def _has_class(function: SourceName, classes: Collection[str]) -> bool:

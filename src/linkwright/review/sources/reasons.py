@@ -7,10 +7,10 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.breaking import frame_reason, name_reason
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
 
 _CLIENTS = (NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME)
-_MAX_NAMES = 8
 _HEADERS = "include"
 
 
@@ -43,7 +43,7 @@ def removal_reason(items: Sequence[SourceName], names: SourceNames, path: str) -
     kind = items[0].kind
     if kind in _CLIENTS:
         return None
-    text = joined_first([item.name for item in items], _MAX_NAMES)
+    text = joined_first([item.name for item in items], MAX_NAMES)
     if kind is NameKind.PARAMETER:
         return phrase("values that launch files and parameter files give to '{name}' have no effect", name=text)
     if kind is NameKind.FRAME:
