@@ -192,7 +192,7 @@ def test_running_command_ends_on_interrupt(machine: Machine, words: tuple[str, .
 def test_topic_echo_interrupted_during_startup_exits_with_130(machine: Machine) -> None:
     machine.program(TALKER)
     for delay in sorted(random.Random(5).uniform(0.0, 0.9) for _ in range(10)):
-        running = machine.begun("topic", "echo", "/chatter")
+        running = machine.begun("topic", "echo", "/chatter", "std_msgs/msg/Int32")  # waits for a slow talker
         time.sleep(delay)
         status = running.interrupt()
         where = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
