@@ -12,6 +12,7 @@ from math import cos, isfinite, nan, sin
 from typing import Any
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
+from linkwright.control.controllers.drive_controller import DriveController
 from linkwright.control.controllers.drive_odometry import DriveOdometry, frame_prefix, variances
 from linkwright.control.controllers.husarion_mecanum_controller import HusarionMecanumController
 from linkwright.control.controllers.velocity_input import REFERENCE_QOS, VelocityInput
@@ -77,7 +78,7 @@ class Parameters:
 _CORNERS = ("front_left", "front_right", "rear_right", "rear_left")
 
 
-class MecanumDriveController(Controller[Parameters]):
+class MecanumDriveController(DriveController[Parameters]):
     """A controller of a mecanum drive.
 
     Wheel velocities are computed from velocity commands, sideways motion included, and odometry from the states of the
@@ -149,19 +150,6 @@ class MecanumDriveController(Controller[Parameters]):
         )
         self._odometry.create_reset_service(node)
         self._state = node.publisher("control_msgs/msg/MecanumDriveControllerState", "~/controller_state")
-
-    def on_activate(self) -> None:
-        """Reset the velocities to zero, and accept commands."""
-        for reference in self.references:
-            reference.value = nan
-        self._odometry.odometer.reset_velocity()
-        self._input.open()
-
-    def on_deactivate(self) -> None:
-        """Stop the wheels."""
-        self._input.close()
-        for command in self.commands:
-            command.value = 0.0
 
     def update_references(self, time_ns: int, period_s: float) -> None:
         """Copy the velocity command into the references, or NaN if there is no valid command."""
