@@ -12,6 +12,7 @@ from typing import Any, get_type_hints
 import pytest
 
 from linkwright.control.controllers.battery_state_broadcaster import BatteryStateBroadcaster
+from linkwright.control.controllers.chained_filter_controller import ChainedFilterController
 from linkwright.control.controllers.gpio_command_controller import GpioCommandController
 from linkwright.control.controllers.gripper_action_controller import EffortGripper, ParallelGripper, PositionGripper
 from linkwright.control.controllers.joint_trajectory_controller import JointTrajectoryController
@@ -39,6 +40,7 @@ DOCUMENTED = [
     *(JointTrajectoryController, PidController, PositionGripper, EffortGripper, ParallelGripper),
     *(ImuBroadcaster, ForceTorqueBroadcaster, RangeBroadcaster, PoseBroadcaster, GpsBroadcaster),
     *(MagnetometerBroadcaster, BatteryStateBroadcaster, StateInterfacesBroadcaster, GpioCommandController),
+    ChainedFilterController,
 ]
 
 
