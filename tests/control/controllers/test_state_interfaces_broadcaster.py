@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from linkwright.control.controllers.registry import controller_class
@@ -21,11 +23,12 @@ async def test_names_are_published_once_and_values_at_each_update(stand):
     broadcaster = stand.start(StateInterfacesBroadcaster, interfaces=names)
     values = stand.record("control_msgs/msg/Float64Values", "/controller/values")
     await stand.step(broadcaster, count=2)
-    keys: list[object] = []
+    keys: list[Any] = []
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     stand.node.create_subscription("control_msgs/msg/Keys", "/controller/names", keys.append, latched)
     await stand.step(broadcaster)
     assert [message.keys for message in keys] == [names]
+    assert keys[0].header.stamp.sec > 0
     assert [list(message.values) for message in values] == [[40.0, 1.5]] * 3
     assert values[0].header.stamp.nanosec == 10_000_000
 

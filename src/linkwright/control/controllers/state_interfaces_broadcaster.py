@@ -36,7 +36,7 @@ class StateInterfacesBroadcaster(Controller[StateInterfacesParameters]):
     def on_configure(self) -> None:
         """Create the publishers, and publish the names."""
         names = self.node.publisher("control_msgs/msg/Keys", "~/names", _LATCHED)
-        header = Header(stamp=Time.from_nanoseconds(self.time_ns), frame_id="")
+        header = Header(stamp=self.node.graph_node.get_clock().now().to_msg(), frame_id="")
         names.publish(get_message("control_msgs/msg/Keys")(header=header, keys=list(self.parameters.interfaces)))
         self._values = self.node.publisher("control_msgs/msg/Float64Values", "~/values")
 
