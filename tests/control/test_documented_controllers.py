@@ -11,16 +11,22 @@ from typing import Any, get_type_hints
 
 import pytest
 
+from linkwright.control.controllers.battery_state_broadcaster import BatteryStateBroadcaster
+from linkwright.control.controllers.chained_filter_controller import ChainedFilterController
+from linkwright.control.controllers.gpio_command_controller import GpioCommandController
 from linkwright.control.controllers.gripper_action_controller import EffortGripper, ParallelGripper, PositionGripper
 from linkwright.control.controllers.joint_trajectory_controller import JointTrajectoryController
 from linkwright.control.controllers.pid_controller import PidController
 from linkwright.control.controllers.registry import GROUP, controller_class
 from linkwright.control.controllers.sensor_broadcasters import (
     ForceTorqueBroadcaster,
+    GpsBroadcaster,
     ImuBroadcaster,
+    MagnetometerBroadcaster,
     PoseBroadcaster,
     RangeBroadcaster,
 )
+from linkwright.control.controllers.state_interfaces_broadcaster import StateInterfacesBroadcaster
 from linkwright.control.manager.switching import STRICT
 from linkwright.diagnostics import LinkwrightError
 from linkwright.loading import extensions
@@ -32,7 +38,9 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGES = [DOCS / "control.md", DOCS / "zh" / "control.md"]
 DOCUMENTED = [
     *(JointTrajectoryController, PidController, PositionGripper, EffortGripper, ParallelGripper),
-    *(ImuBroadcaster, ForceTorqueBroadcaster, RangeBroadcaster, PoseBroadcaster),
+    *(ImuBroadcaster, ForceTorqueBroadcaster, RangeBroadcaster, PoseBroadcaster, GpsBroadcaster),
+    *(MagnetometerBroadcaster, BatteryStateBroadcaster, StateInterfacesBroadcaster, GpioCommandController),
+    ChainedFilterController,
 ]
 
 

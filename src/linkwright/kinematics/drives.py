@@ -6,6 +6,7 @@ and rad/s also works with distances in m and angles in rad, if the steering angl
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import atan, atan2, copysign, cos, hypot, pi, sin, tan
 
 from linkwright.loading.lean_dataclasses import dataclass
@@ -75,6 +76,50 @@ class MecanumDrive:
             (-front_left + front_right + rear_left - rear_right) * quarter,
             (-front_left + front_right - rear_left + rear_right) * quarter / self.arm,
         )
+
+
+@dataclass(frozen=True, slots=True)
+class OmniDrive:
+    """A drive of three or more omni wheels at equal angles on a circle, with rollers across the wheels.
+
+    Attributes:
+        count: the number of wheels, at least 3.
+        robot_radius: the distance between the center and the wheels in m.
+        wheel_radius: the radius of the wheels in m.
+        offset: the angle of the first wheel from x in rad. The others follow counterclockwise.
+
+    Source: omni_wheel_drive_controller of ros2_controllers.
+    """
+
+    count: int
+    robot_radius: float
+    wheel_radius: float
+    offset: float = 0.0
+
+    def wheel_speeds(self, forward: float, sideways: float, angular: float) -> list[float]:
+        """Return the angular velocities of the wheels in rad/s."""
+        return [
+            (sin(angle) * forward - cos(angle) * sideways - self.robot_radius * angular) / self.wheel_radius
+            for angle in self._angles()
+        ]
+
+    def motion(self, speeds: Sequence[float]) -> tuple[float, float, float]:
+        """Return the velocities forward, to the left (m/s) and about z (rad/s) for wheel speeds.
+
+        If no motion without sliding has these speeds, the result is the nearest motion (least squares). With equal
+        angles between the wheels, the columns of the equations are orthogonal, so that each velocity is a sum.
+        """
+        rims = [speed * self.wheel_radius for speed in speeds]
+        pairs = list(zip(self._angles(), rims, strict=True))
+        half = self.count / 2.0
+        return (
+            sum(sin(angle) * rim for angle, rim in pairs) / half,
+            -sum(cos(angle) * rim for angle, rim in pairs) / half,
+            -sum(rims) / self.count / self.robot_radius,
+        )
+
+    def _angles(self) -> list[float]:
+        return [self.offset + 2.0 * pi * index / self.count for index in range(self.count)]
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ unchanged. Source: generate_parameter_library, which the controllers of ros2_con
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
-from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from dataclasses import MISSING, Field, dataclass, field, fields, is_dataclass
 from functools import cache
 from inspect import cleandoc
 from typing import Any, Generic, TypeVar, get_type_hints
@@ -97,14 +97,14 @@ def parameter(
     return field(default=default, metadata={_PROPERTIES: _Properties(description, read_only, check, only, later)})
 
 
-def for_each(names: str, table: type[Any], *, prefix: str = "") -> Any:
+def for_each(names: str, table: type[Any], *, prefix: str | None = None) -> Any:
     """Declare a group of parameters for each name in a parameter, such as ``gains.JOINT.p``.
 
     Args:
         names: the parameter that contains the names, which precedes this field in the same table; several parameters
             are separated by spaces.
         table: the dataclass with the parameters for one name.
-        prefix: the prefix of the parameters, if it differs from the name of the field.
+        prefix: the prefix of the parameters, empty for ``JOINT.p``; by default, the name of the field.
     """
     return field(default_factory=dict, metadata={_NAMES: tuple(names.split()), _TABLE: table, _PREFIX: prefix})
 
@@ -144,9 +144,9 @@ def entries(table: Any, prefix: str = "", keys: tuple[str, ...] = ()) -> Iterato
     """
     kinds, descriptions = _kinds(table), _attributes(table)
     for entry in fields(table):
-        name = f"{prefix}{entry.metadata.get(_PREFIX) or entry.name}"
+        name = f"{prefix}{entry.name}"
         if _NAMES in entry.metadata:
-            yield from entries(entry.metadata[_TABLE], f"{name}.*.", entry.metadata[_NAMES])
+            yield from entries(entry.metadata[_TABLE], f"{prefix}{_group_prefix(entry)}*.", entry.metadata[_NAMES])
         elif is_dataclass(kinds[entry.name]):
             yield from entries(kinds[entry.name], f"{name}.", keys)
         else:
@@ -258,8 +258,8 @@ class _Reader:
             if _NAMES in entry.metadata:
                 keys = dict.fromkeys(key for names in entry.metadata[_NAMES] for key in _names_in(values[names]))
                 name_table = entry.metadata[_TABLE]
-                name = f"{prefix}{entry.metadata[_PREFIX] or entry.name}"
-                values[entry.name] = {key: self.read(name_table, f"{name}.{key}.") for key in keys}
+                group = f"{prefix}{_group_prefix(entry)}"
+                values[entry.name] = {key: self.read(name_table, f"{group}{key}.") for key in keys}
             elif is_dataclass(kind):
                 values[entry.name] = self.read(kind, f"{name}.")
             else:
@@ -294,6 +294,12 @@ class _Reader:
     def _get(self, name: str) -> Any:
         value = self._node.get_parameter_or(name).value
         return tuple(value) if self.declared[name].kind.is_array and value is not None else value
+
+
+def _group_prefix(group: Field[Any]) -> str:
+    """Return the prefix of the parameters of a group, with a dot at its end; empty if they have none."""
+    prefix = group.name if group.metadata[_PREFIX] is None else group.metadata[_PREFIX]
+    return f"{prefix}." if prefix else ""
 
 
 def _distribution() -> str:

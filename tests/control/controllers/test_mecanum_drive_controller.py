@@ -91,6 +91,22 @@ async def test_command_expires_after_timeout_or_one_update(wheels):
     assert wheel_commands(wheels) == [0.0] * 4
 
 
+async def test_limits_apply_to_each_axis_until_command_expires(wheels):
+    limits = {"linear": {"x": {"max_acceleration": 1.0}, "y": {"max_velocity": 0.2}}, "angular": {"z": {}}}
+    controller = wheels.start(MecanumDriveController, NAME, **ROBOT, **limits, reference_timeout=0.25)
+    command(wheels, 1.0, 0.5, 0.0)
+    for forward in (0.1, 0.2):
+        await wheels.step(controller, 0.1)
+        assert wheel_commands(wheels) == pytest.approx(
+            [10.0 * (forward + sign * 0.2) for sign in (-1, 1, -1, 1)], abs=1e-9
+        )
+    await wheels.step(controller, 0.1, count=2)
+    assert wheel_commands(wheels) == [0.0, 0.0, 0.0, 0.0]
+    command(wheels, 1.0, 0.0, 0.0)
+    await wheels.step(controller, 0.1)
+    assert wheel_commands(wheels) == pytest.approx([1.0, 1.0, 1.0, 1.0])
+
+
 async def test_chained_mode_accepts_references_and_publishes_state(wheels):
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT)
     assert [reference.name for reference in controller.references] == [

@@ -43,6 +43,20 @@ async def test_command_follows_error(stand):
     assert stand.commands["wheel/effort"].value == pytest.approx(6.03)
 
 
+async def test_states_are_first_references_if_requested(stand):
+    controller = wheel(
+        stand, velocity=1.0, **WHEEL, gains={"wheel": {"p": 2.0}}, set_current_state_as_first_setpoint=True
+    )
+    await stand.step(controller)
+    assert stand.commands["wheel/effort"].value == 0.0
+    stand.states["wheel/velocity"].value = 0.5
+    await stand.step(controller)
+    assert stand.commands["wheel/effort"].value == pytest.approx(1.0)
+    publish_reference(stand, 2.5)
+    await stand.step(controller)
+    assert stand.commands["wheel/effort"].value == pytest.approx(4.0)
+
+
 async def test_error_derivative_uses_second_interface(stand):
     controller = wheel(stand, position=1.0, velocity=0.5, **BOTH, gains={"wheel": {"p": 10.0, "d": 2.0}})
     publish_reference(stand, 2.0, rates=(1.0,))

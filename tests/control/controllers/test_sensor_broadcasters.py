@@ -1,4 +1,4 @@
-"""Broadcasters of IMUs, force-torque sensors, range sensors and poses."""
+"""Broadcasters of sensors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from linkwright.control.controllers.controller import ControllerError
 from linkwright.control.controllers.registry import controller_class
 from linkwright.control.controllers.sensor_broadcasters import (
     ForceTorqueBroadcaster,
+    GpsBroadcaster,
     ImuBroadcaster,
+    MagnetometerBroadcaster,
     PoseBroadcaster,
     RangeBroadcaster,
 )
@@ -28,6 +30,8 @@ POSE = [*(f"position.{axis}" for axis in "xyz"), *(f"orientation.{axis}" for axi
         ("force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster", ForceTorqueBroadcaster),
         ("range_sensor_broadcaster/RangeSensorBroadcaster", RangeBroadcaster),
         ("pose_broadcaster/PoseBroadcaster", PoseBroadcaster),
+        ("gps_sensor_broadcaster/GPSSensorBroadcaster", GpsBroadcaster),
+        ("magnetometer_broadcaster/MagnetometerBroadcaster", MagnetometerBroadcaster),
     ],
 )
 def test_broadcasters_are_found_by_type(name, kind):
@@ -120,6 +124,35 @@ async def test_pose_and_transform_are_published(stand):
     for time_ns in (10**12, 10**6, 2 * 10**6):  # simulated time is reset after the first
         broadcaster.update(time_ns, 0.01)
     assert [message.transforms[0].header.stamp.sec for message in published] == [1000, 0]
+
+
+async def test_position_is_published_with_its_covariance(stand):
+    position = {"status": 0.0, "service": 1.0, "latitude": 48.1, "longitude": 11.6, "altitude": 520.0}
+    stand.joint("gps", **position, latitude_covariance=1.0, longitude_covariance=2.0, altitude_covariance=3.0)
+    fixed = [4.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 9.0]
+    broadcaster = stand.start(GpsBroadcaster, sensor_name="gps", frame_id="gps_link", static_position_covariance=fixed)
+    messages = stand.record("sensor_msgs/msg/NavSatFix", "/controller/gps/fix")
+    await stand.step(broadcaster)
+    fix = messages[-1]
+    assert (fix.status.status, fix.status.service, fix.latitude, fix.altitude) == (0, 1, 48.1, 520.0)
+    assert (list(fix.position_covariance), fix.position_covariance_type) == (fixed, fix.COVARIANCE_TYPE_KNOWN)
+    stand.states["gps/status"].value = nan
+    measured = stand.start(GpsBroadcaster, "b", sensor_name="gps", frame_id="g", read_covariance_from_interface=True)
+    messages = stand.record("sensor_msgs/msg/NavSatFix", "/b/gps/fix")
+    await stand.step(measured)
+    fix = messages[-1]
+    assert list(fix.position_covariance) == [1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0]
+    assert (fix.status.status, fix.position_covariance_type) == (-1, fix.COVARIANCE_TYPE_DIAGONAL_KNOWN)
+
+
+async def test_magnetic_field_is_published(stand):
+    stand.joint(
+        "compass", **{f"magnetic_field.{axis}": value for axis, value in zip("xyz", (1e-5, 2e-5, -4e-5), strict=True)}
+    )
+    broadcaster = stand.start(MagnetometerBroadcaster, sensor_name="compass", frame_id="compass_link")
+    messages = stand.record("sensor_msgs/msg/MagneticField", "/controller/magnetic_field")
+    await stand.step(broadcaster)
+    assert (messages[-1].header.frame_id, messages[-1].magnetic_field.z) == ("compass_link", -4e-5)
 
 
 @pytest.mark.parametrize(("kind", "name"), [(ForceTorqueBroadcaster, "sensor_name"), (PoseBroadcaster, "pose_name")])

@@ -115,9 +115,17 @@ class Controller(ABC, Generic[P]):
         self.time_ns = 0
         self.state: LifecycleState = UNCONFIGURED
         self._parameters: ParameterTable[P] = ParameterTable(context.node.graph_node, self.PARAMETERS)
+        self.declare_parameters()
         for name, hint in self._parameters.unknown_parameters():
             message = phrase("'{name}' is not a parameter of this controller", name=name)
             self.node.logger.warning(message if hint is None else joined((message, hint), "; "))
+
+    def declare_parameters(self) -> None:
+        """Declare parameters whose names follow from the values of others. The table is declared before this call.
+
+        Raises:
+            LinkwrightError: a parameter has a value that is not allowed.
+        """
 
     @classmethod
     def variant(cls, parameter_names: Collection[str]) -> type[Controller[Any]]:  # noqa: ARG003 - overrides use it

@@ -13,6 +13,7 @@ from typing import Any, Generic, TypeVar
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
+from linkwright.diagnostics import phrase
 from linkwright.nodes.parameter_tables import parameter
 
 P = TypeVar("P")
@@ -105,7 +106,7 @@ class _ForwardingController(Controller[P], Generic[P]):
             )
             return
         if any(value != value for value in values):
-            self.node.logger.error("a command with NaN is not forwarded", throttle_duration_sec=1.0)
+            self.node.logger.error(phrase("a command with NaN is not forwarded"), throttle_duration_sec=1.0)
             return
         self._command = values
 

@@ -8,10 +8,9 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import nan
 from typing import Generic, TypeVar
 
-from linkwright.control.controllers.controller import Controller
+from linkwright.control.controllers.drive_controller import DriveController
 from linkwright.control.controllers.drive_odometry import DriveOdometry, frame_prefix, variances
 from linkwright.control.controllers.speed_limits import NO_LIMITS, SpeedLimits
 from linkwright.control.controllers.velocity_input import VelocityInput
@@ -55,7 +54,7 @@ class LimitedDriveParameters:
 P = TypeVar("P", bound=LimitedDriveParameters)
 
 
-class LimitedDrive(Controller[P], Generic[P]):
+class LimitedDrive(DriveController[P], Generic[P]):
     """The base class of drives that follow ``~/cmd_vel`` within limits and publish odometry."""
 
     @abstractmethod
@@ -69,7 +68,7 @@ class LimitedDrive(Controller[P], Generic[P]):
             ControllerError: a limit is invalid, or a list of variances has the wrong length.
         """
         parameters, node = self.parameters, self.node
-        self._settings = parameters
+        self._settings, self._has_angles = parameters, parameters.position_feedback
         self._limiters = [limits.limiter(axis) for axis, limits in self.limits().items()]
         unstamped = "" if parameters.use_stamped_vel else "~/cmd_vel_unstamped"
         self._input = VelocityInput(node, "~/cmd_vel", timeout_s=parameters.cmd_vel_timeout, unstamped=unstamped)
@@ -95,29 +94,7 @@ class LimitedDrive(Controller[P], Generic[P]):
         """Reset the velocities to zero, and accept commands."""
         for limiter in self._limiters:
             limiter.restart()
-        for reference in self.references:
-            reference.value = nan
-        self._odometry.odometer.reset_velocity()
-        self._last_angles: list[float] | None = None
-        self._input.open()
-
-    def on_deactivate(self) -> None:
-        """Stop the wheels."""
-        self._input.close()
-        for command in self.commands:
-            command.value = 0.0
-
-    def _speeds(self, values: list[float], period_s: float) -> list[float] | None:
-        """Return the velocities of the wheels in rad/s, computed from the values of their states.
-
-        Returns None if the states are positions and no time has passed.
-        """
-        if not self._settings.position_feedback:
-            return values
-        last_angles, self._last_angles = self._last_angles or values, values
-        if period_s <= 0.0:
-            return None
-        return [(angle - last_angle) / period_s for angle, last_angle in zip(values, last_angles, strict=True)]
+        super().on_activate()
 
     def _publish(self, time_ns: int, forward: float, sideways: float, angular: float) -> None:
         """Publish the odometry and, if enabled, the limited velocity.

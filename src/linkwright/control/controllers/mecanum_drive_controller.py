@@ -12,8 +12,10 @@ from math import cos, isfinite, nan, sin
 from typing import Any
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
+from linkwright.control.controllers.drive_controller import DriveController
 from linkwright.control.controllers.drive_odometry import DriveOdometry, frame_prefix, variances
-from linkwright.control.controllers.husarion_mecanum_controller import HusarionMecanumController
+from linkwright.control.controllers.husarion_mecanum_controller import HusarionMecanumController, LinearLimits
+from linkwright.control.controllers.limited_drive import AngularLimits
 from linkwright.control.controllers.velocity_input import REFERENCE_QOS, VelocityInput
 from linkwright.control.hardware.interfaces import VELOCITY
 from linkwright.kinematics.drives import MecanumDrive
@@ -47,6 +49,8 @@ class Kinematics:
 
 
 _NO_KINEMATICS = Kinematics()
+_NO_LINEAR_LIMITS = LinearLimits()
+_NO_ANGULAR_LIMITS = AngularLimits()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,12 +76,14 @@ class Parameters:
         _DEFAULT_VARIANCES, description="the variances of the velocity"
     )
     pose_covariance_diagonal: tuple[float, ...] = parameter(_DEFAULT_VARIANCES, description="the variances of the pose")
+    linear: LinearLimits = _NO_LINEAR_LIMITS
+    angular: AngularLimits = _NO_ANGULAR_LIMITS
 
 
 _CORNERS = ("front_left", "front_right", "rear_right", "rear_left")
 
 
-class MecanumDriveController(Controller[Parameters]):
+class MecanumDriveController(DriveController[Parameters]):
     """A controller of a mecanum drive.
 
     Wheel velocities are computed from velocity commands, sideways motion included, and odometry from the states of the
@@ -117,7 +123,7 @@ class MecanumDriveController(Controller[Parameters]):
         """Check the parameters, and create the topics.
 
         Raises:
-            ControllerError: wheels or their dimensions are missing.
+            ControllerError: wheels or their dimensions are missing, or a limit is invalid.
         """
         parameters, node = self.parameters, self.node
         self._settings, kinematics = parameters, parameters.kinematics
@@ -133,6 +139,9 @@ class MecanumDriveController(Controller[Parameters]):
             if problem is not None:
                 raise ControllerError(problem)
         self._drive = MecanumDrive(kinematics.sum_of_robot_center_projection_on_X_Y_axis, kinematics.wheels_radius)
+        linear = parameters.linear
+        axes = {"linear.x": linear.x, "linear.y": linear.y, "angular.z": parameters.angular.z}
+        self._limiters = [limits.limiter(axis) for axis, limits in axes.items()]
         timeout = parameters.reference_timeout
         self._input = VelocityInput(node, "~/reference", timeout_s=timeout, qos=REFERENCE_QOS)
         prefix = frame_prefix(node, parameters.tf_frame_prefix, enabled=parameters.tf_frame_prefix_enable)
@@ -152,16 +161,12 @@ class MecanumDriveController(Controller[Parameters]):
 
     def on_activate(self) -> None:
         """Reset the velocities to zero, and accept commands."""
-        for reference in self.references:
-            reference.value = nan
-        self._odometry.odometer.reset_velocity()
-        self._input.open()
+        self._restart_limiters()
+        super().on_activate()
 
-    def on_deactivate(self) -> None:
-        """Stop the wheels."""
-        self._input.close()
-        for command in self.commands:
-            command.value = 0.0
+    def _restart_limiters(self) -> None:
+        for limiter in self._limiters:
+            limiter.restart()
 
     def update_references(self, time_ns: int, period_s: float) -> None:
         """Copy the velocity command into the references, or NaN if there is no valid command."""
@@ -176,12 +181,20 @@ class MecanumDriveController(Controller[Parameters]):
             motion = self._drive.motion(front_left, front_right, rear_left, rear_right)
             self._odometry.odometer.measure(self._base_velocity(*motion), period_s)
         requested = [reference.value for reference in self.references]
-        self._command_wheels(requested if all(map(isfinite, requested)) else [0.0, 0.0, 0.0])
+        self._command_wheels(self._limited(requested, period_s))
         self._odometry.publish(time_ns)
         if self._state.is_wanted:
             self._publish_state(time_ns, measured, requested)
         for reference in self.references:
             reference.value = nan
+
+    def _limited(self, requested: list[float], period_s: float) -> list[float]:
+        """Return the velocities within the limits; zeros, without limits, if a requested one is not a finite number."""
+        if not all(map(isfinite, requested)):
+            self._restart_limiters()
+            return [0.0] * len(requested)
+        pairs = zip(self._limiters, requested, strict=True)
+        return [limiter.approach(speed, period_s) for limiter, speed in pairs]
 
     def _command_wheels(self, velocity: list[float]) -> None:
         forward, sideways, angular = velocity

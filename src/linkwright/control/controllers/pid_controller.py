@@ -55,6 +55,9 @@ class Parameters:
         (), read_only=True, description="the measured interfaces: a value and its derivative", check=_check_interfaces
     )
     use_external_measured_states: bool = parameter(False, description="whether states are received on ~/measured_state")
+    set_current_state_as_first_setpoint: bool = parameter(
+        False, read_only=True, description="whether the states are the references until others arrive"
+    )
     enable_feedforward: bool = parameter(False, description="whether feedforward_gain applies at the start")
     gains: Mapping[str, Gains] = for_each("dof_names", Gains)
 
@@ -116,6 +119,7 @@ class PidController(Controller[Parameters]):
         """Discard earlier references, and reset the integrals that are not kept."""
         self._measured_values = [state.value for state in self.states] or [nan] * len(self._interface_names())
         self._export_states()
+        self._awaits_states = self.parameters.set_current_state_as_first_setpoint
         for reference in self.references:
             reference.value = nan
         for pid, gains in zip(self._pids, self.parameters.gains.values(), strict=True):
@@ -133,6 +137,8 @@ class PidController(Controller[Parameters]):
         if self.states:
             self._measured_values = [state.value for state in self.states]
         self._export_states()
+        if self._awaits_states and all(map(isfinite, self._measured_values)):
+            self._set_first_references()
         for number, (name, pid, command) in enumerate(
             zip(self.parameters.dof_names, self._pids, self.commands, strict=True)
         ):
@@ -141,6 +147,13 @@ class PidController(Controller[Parameters]):
                 command.value = self._command(number, pid, gains, period_s)
         if self._output.is_wanted:
             self._publish(time_ns, period_s)
+
+    def _set_first_references(self) -> None:
+        """Make the states the references that have no value yet."""
+        self._awaits_states = False
+        for reference, value in zip(self.references, self._measured_values, strict=True):
+            if not isfinite(reference.value):
+                reference.value = value
 
     def _export_states(self) -> None:
         for exported, value in zip(self.exported, self._measured_values, strict=True):

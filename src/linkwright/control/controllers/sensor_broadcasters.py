@@ -1,7 +1,8 @@
-"""Broadcasters of IMUs, force-torque sensors, range sensors and poses.
+"""Broadcasters of IMUs, force-torque sensors, range sensors, poses, GNSS receivers and magnetometers.
 
-Source: ``imu_sensor_broadcaster``, ``force_torque_sensor_broadcaster``, ``range_sensor_broadcaster`` and
-``pose_broadcaster`` of ros2_controllers (parameters, names of interfaces, topics).
+Source: ``imu_sensor_broadcaster``, ``force_torque_sensor_broadcaster``, ``range_sensor_broadcaster``,
+``pose_broadcaster``, ``gps_sensor_broadcaster`` and ``magnetometer_broadcaster`` of ros2_controllers (parameters, names
+of interfaces, topics).
 """
 
 from __future__ import annotations
@@ -155,6 +156,31 @@ class PoseParameters:
     pose_name: str = parameter("", description="the name of the pose sensor in ros2_control")
     interface_names: PoseNames = PoseNames()
     tf: TransformParameters = TransformParameters()
+
+
+@dataclass(frozen=True, kw_only=True)
+class GpsParameters:
+    """Parameters of the GNSS broadcaster."""
+
+    sensor_name: str = parameter("", description="the name of the sensor in ros2_control", check=not_empty)
+    frame_id: str = parameter("", description="the frame_id of the messages", check=not_empty)
+    static_position_covariance: tuple[float, ...] = parameter(
+        _UNKNOWN_COVARIANCE, description="the covariance of the position, 9 values in m²", check=_check_covariance
+    )
+    read_covariance_from_interface: bool = parameter(
+        False, description="whether the sensor has interfaces for the variances of the position"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class MagnetometerParameters:
+    """Parameters of the magnetometer broadcaster."""
+
+    sensor_name: str = parameter("", description="the name of the sensor in ros2_control", check=not_empty)
+    frame_id: str = parameter("", description="the frame_id of the messages", check=not_empty)
+    static_covariance: tuple[float, ...] = parameter(
+        _UNKNOWN_COVARIANCE, description="the covariance of the magnetic field, 9 values in T²", check=_check_covariance
+    )
 
 
 P = TypeVar("P")
@@ -374,3 +400,58 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
             header=self.header(time_ns), child_frame_id=self._child_frame, transform=transform
         )
         self._transforms.publish(get_message("tf2_msgs/msg/TFMessage")(transforms=[stamped_transform]))
+
+
+class GpsBroadcaster(SensorBroadcaster[GpsParameters]):
+    """``gps_sensor_broadcaster/GPSSensorBroadcaster``."""
+
+    PARAMETERS = GpsParameters
+    TYPE, TOPIC = "sensor_msgs/msg/NavSatFix", "~/gps/fix"
+
+    def state_interfaces(self) -> InterfaceNames:
+        """Return the interfaces of the status, the service and the position, and of its variances if they are read."""
+        angles = ("latitude", "longitude", "altitude")
+        names = ["status", "service", *angles]
+        if self.parameters.read_covariance_from_interface:
+            names += (f"{angle}_covariance" for angle in angles)
+        return [f"{self.parameters.sensor_name}/{name}" for name in names]
+
+    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
+        """Return a position message. A status or service that is not known is -1 or 0."""
+        status, service, latitude, longitude, altitude, *position_variances = values
+        covariance = list(self.parameters.static_position_covariance)
+        if position_variances:
+            covariance = [0.0] * 9
+            covariance[::4] = position_variances
+        return kind(
+            header=header,
+            status=get_message("sensor_msgs/msg/NavSatStatus")(
+                status=int(status) if isfinite(status) else -1, service=int(service) if isfinite(service) else 0
+            ),
+            latitude=latitude,
+            longitude=longitude,
+            altitude=altitude,
+            position_covariance=covariance,
+            position_covariance_type=kind.COVARIANCE_TYPE_DIAGONAL_KNOWN
+            if position_variances
+            else kind.COVARIANCE_TYPE_KNOWN,
+        )
+
+
+class MagnetometerBroadcaster(SensorBroadcaster[MagnetometerParameters]):
+    """``magnetometer_broadcaster/MagnetometerBroadcaster``."""
+
+    PARAMETERS = MagnetometerParameters
+    TYPE, TOPIC = "sensor_msgs/msg/MagneticField", "~/magnetic_field"
+
+    def state_interfaces(self) -> InterfaceNames:
+        """Return the interfaces of the magnetic field, in T."""
+        return [f"{self.parameters.sensor_name}/magnetic_field.{axis}" for axis in "xyz"]
+
+    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
+        """Return a message of the magnetic field with the covariance from the parameters."""
+        return kind(
+            header=header,
+            magnetic_field=_vector(values),
+            magnetic_field_covariance=self.parameters.static_covariance,
+        )
