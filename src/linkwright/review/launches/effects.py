@@ -28,7 +28,6 @@ from linkwright.review.list_changes import list_items
 
 _USER_INTERFACE = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
 """Programs that offer nothing to other programs."""
-_USER_INTERFACE_FILE = re.compile(r"rviz|rqt|[^/]*gui[^/]*$")
 _JOINT_STATES = "joint_state_publisher"
 """The beginning of the names of two packages that publish the same."""
 _SPAWNING = re.compile(
@@ -69,7 +68,7 @@ _INPUTS = re.compile(
 
 
 def removal_reason(
-    entry: Entry, outline: LaunchOutline, new: LaunchOutline, *, includes_nodes: bool = False
+    entry: Entry, outline: LaunchOutline, new: LaunchOutline, *, stops_nodes: bool = False
 ) -> Phrase | None:
     """Return why removing a launch action is a breaking change, or None if it is not.
 
@@ -77,7 +76,7 @@ def removal_reason(
         entry: the action.
         outline: the old file, which contains it.
         new: the new file.
-        includes_nodes: whether the action includes a file that is known to start nodes.
+        stops_nodes: whether the action includes a file with nodes that nothing else starts in the new version.
     """
     if entry.kind == "argument" and "value" not in entry.settings:
         return value_reason(entry.name, is_ros1=outline.is_ros1)
@@ -90,8 +89,7 @@ def removal_reason(
     if condition_holds(_condition(entry, outline)) is False:
         return None
     if entry.kind == "include":
-        is_used = includes_nodes and not _USER_INTERFACE_FILE.search(entry.name)
-        return phrase("its nodes do not start any more") if is_used else None
+        return phrase("its nodes do not start any more") if stops_nodes else None
     if any(_starts_same_node(entry, other, outline, new) for other in new.entries):
         return None
     if entry.name.startswith(_JOINT_STATES) and any(other.name.startswith(_JOINT_STATES) for other in new.entries):

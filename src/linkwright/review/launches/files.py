@@ -41,7 +41,11 @@ def compare_launch_files(pair: FilePair) -> None:
     renamed = renamed_names(old, new)
     old = with_new_names(old, renamed)
     old_names = {new_name: old_name for old_name, new_name in renamed.items()}
-    settings = SettingChanges(pair, old, new, renamed)
+    included = (
+        IncludedActions(pair.versions.old, pair.old_path, old),
+        IncludedActions(pair.versions.new, pair.new_path, new),
+    )
+    settings = SettingChanges(pair, old, new, renamed, included[1])
     settings.add_renamed()
     gone: list[Entry] = []
     come: list[Entry] = []
@@ -75,7 +79,7 @@ def compare_launch_files(pair: FilePair) -> None:
         pair.add(text, pair.location(entry.span), reason)
     _add_unused_arguments(pair, old, new)
     if gone or come:
-        _add_lone_entries(pair, gone, come, old, new, old_names)
+        _add_lone_entries(pair, gone, come, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
         _compare_code(pair, old, new)
 
@@ -84,13 +88,12 @@ def _add_lone_entries(
     pair: FilePair,
     gone: Sequence[Entry],
     come: Sequence[Entry],
-    old: LaunchOutline,
-    new: LaunchOutline,
+    included: tuple[IncludedActions, IncludedActions],
     old_names: Mapping[str, str],
 ) -> None:
     """Add the actions that only one version has, and those that are in an included file of the other version."""
-    old_included = IncludedActions(pair.versions.old, pair.old_path, old)
-    new_included = IncludedActions(pair.versions.new, pair.new_path, new)
+    old_included, new_included = included
+    stopped = old_included.all_started() - new_included.all_started()
     moved: dict[tuple[str, bool], list[Entry]] = {}
     for entry in come:
         file = old_included.lone_file(entry, new_included)
@@ -113,8 +116,10 @@ def _add_lone_entries(
         file = file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
         if file is not None:
             text = phrase("{entry} moved to {file}", entry=title(written), file=file)
-        includes_nodes = entry.kind == "include" and old_included.starts_nodes(entry)
-        pair.add(text, location, removal_reason(entry, old, new, includes_nodes=includes_nodes))
+        stops_nodes = entry.kind == "include" and bool(old_included.started(entry) & stopped)
+        pair.add(
+            text, location, removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes)
+        )
     for (file, is_old), entries in moved.items():
         titles = joined_titles(entries)
         text = phrase("{entry} moved from {file}", entry=titles, file=file)

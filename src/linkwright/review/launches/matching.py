@@ -55,8 +55,11 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
         old_name = PurePosixPath(old.name).name
         is_same = _file_key(new_names.get(old_name, old_name)) == _file_key(new.name)
         likeness = SequenceMatcher(None, _file_key(old.name), _file_key(new.name), autojunk=False).ratio()
-        is_like = bool(old.settings) and old.settings == new.settings and likeness >= _MIN_SIMILARITY_OF_FILES
-        return 1.0 + similarity if is_same else likeness * is_like
+        if likeness < _MIN_SIMILARITY_OF_FILES and not is_same:
+            return 0.0
+        is_like = bool(old.settings) and old.settings == new.settings
+        is_beside = old.kind == "include" and PurePosixPath(old.name).parent == PurePosixPath(new.name).parent
+        return 1.0 + similarity if is_same else likeness * (is_like or is_beside)
     if old.kind != "node":
         return 0.0
     (old_package, old_program), (new_package, new_program) = _program(old), _program(new)

@@ -125,12 +125,22 @@ class LaunchOutline:
             text = resolved
         return text
 
+    def with_defaults(self, values: Mapping[str, str]) -> LaunchOutline:
+        """Return the outline with the values that a caller passes in place of the defaults of arguments."""
+        entries = [
+            replace(entry, settings={**entry.settings, "default": values[entry.name]})
+            if entry.kind == "argument" and "value" not in entry.settings and entry.name in values
+            else entry
+            for entry in self.entries
+        ]
+        return replace(self, entries=entries)
+
     def _value(self, variable: re.Match[str]) -> str:
-        value = self._values.get(variable["name"], variable["default"])
+        value = self.values.get(variable["name"], variable["default"])
         return variable[0] if value is None else value
 
     @cached_property
-    def _values(self) -> dict[str, str]:
+    def values(self) -> dict[str, str]:
         """The defaults and values of arguments, and those of variables, if there is only one, by name.
 
         A name that several actions set under conditions has the value of the only one whose condition can hold.

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
 from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.conditional_settings import changed_settings
 from linkwright.review.launches.default_names import default_name
 from linkwright.review.launches.effects import setting_reason, value_reason
+from linkwright.review.launches.included import IncludedActions, Program
 from linkwright.review.launches.outlines import CONDITION, PARAMETER, READING, REMAPPING, Entry, LaunchOutline
 from linkwright.review.launches.renames import translated
 from linkwright.review.launches.titles import distinct_title, joined_texts, joined_titles, title
@@ -66,10 +67,19 @@ class SettingChanges:
         old: the old outline, with the new names of arguments.
         new: the new outline.
         renamed: the new names of arguments, by old name.
+        included: the new actions with those of the included files.
     """
 
-    def __init__(self, pair: FilePair, old: LaunchOutline, new: LaunchOutline, renamed: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        pair: FilePair,
+        old: LaunchOutline,
+        new: LaunchOutline,
+        renamed: Mapping[str, str],
+        included: IncludedActions,
+    ) -> None:
         self._pair = pair
+        self._included = included
         self._old = old
         self._new = new
         self._renamed = renamed
@@ -100,7 +110,7 @@ class SettingChanges:
                 continue
             defaults = each.old_default, each.new_default
             is_other = each.has_defaults and defaults[0] != defaults[1]
-            reason = setting_reason(new, each.name, *defaults, self._old, self._new) if is_other else None
+            reason = self._reason(new, each.name, *defaults) if is_other else None
             if new.kind == READING and reason is None:
                 continue
             old_text = None if each.old is None else translated(each.old, self._old_names)
@@ -113,6 +123,25 @@ class SettingChanges:
         for text, reason, name in _joined_settings(settings):
             # A group may give a condition to actions that other programs need and to those of a user interface.
             self._add(new, text, reason, is_apart=name != CONDITION)
+
+    def _reason(self, entry: Entry, setting: str, old: str | None, new: str | None) -> Phrase | None:
+        """Return why a changed setting is breaking: by the rules for names, or by the nodes that it stops."""
+        reason = setting_reason(entry, setting, old, new, self._old, self._new)
+        if entry.kind == "include":
+            if setting == CONDITION:
+                return reason if self._included.started(entry) else None
+            return reason or self._reason_of_passed(entry, setting, old)
+        if entry.kind == "argument" and setting == "default" and reason is None and old is not None:
+            lost = self._included.all_started({entry.name: old}) - self._included.all_started()
+            return _stopped_reason(lost) if lost else None
+        return reason
+
+    def _reason_of_passed(self, include: Entry, setting: str, old: str | None) -> Phrase | None:
+        """Return why another value for an argument of an included file is breaking, or None if it is not."""
+        others = {name: value for name, value in include.settings.items() if name != setting}
+        before = replace(include, settings=others if old is None else {**others, setting: old})
+        lost = self._included.started(before) - self._included.started(include)
+        return _stopped_reason(lost) if lost else None
 
     def _is_same_name(self, entry: Entry, setting: str, old: str | None, new: str | None) -> bool:
         """Return whether a setting gives the name that is used without it: of a node, or of a topic."""
@@ -151,6 +180,11 @@ class SettingChanges:
             if len(set(map(title, entries))) == 1:  # a report counts equal changes
                 for _, other_location, _, _ in places[1:]:
                     self._pair.add(text, other_location, reason)
+
+
+def _stopped_reason(programs: Collection[Program]) -> Phrase:
+    names = quoted_names(sorted({name for _, name in programs})[:MAX_NAMES])
+    return phrase("by default, {names} does not start any more", names=names)
 
 
 def _joined_settings(settings: Sequence[_Setting]) -> Iterator[tuple[Phrase, Phrase | None, str]]:
