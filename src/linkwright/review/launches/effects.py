@@ -54,6 +54,7 @@ _UNKNOWN_NAME = re.compile(r"\w\(|\w[.\[][a-z_\"']")
 """A call, attribute or item of Python in a name, whose value is unknown."""
 _FRAME_PREFIX = f"{PARAMETER}frame_prefix"
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
+_UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
 _NEVER = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
 _SUBSCRIBERS = re.compile(
@@ -306,9 +307,15 @@ def _renaming_reason(
     old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
     old_name, new_name = _resolved_name(old, old_outline), _resolved_name(new, new_outline)
-    if old_name == new_name or _UNKNOWN_NAME.search(new_name) or _has_new_variable(old_name, new_name):
+    if _after_unknown(old_name) == _after_unknown(new_name) or _UNKNOWN_NAME.search(new_name) or _has_new_variable(old_name, new_name):
         return None
     return phrase("programs that use the names of the node, its topics or its services do not find them")
+
+
+def _after_unknown(name: str) -> str:
+    """Return a name from the last variable without a known value, which may begin with ``/``, or the whole name."""
+    match = _UNKNOWN_NAMESPACE.search(name)
+    return name if match is None else match[1]
 
 
 def _is_name_of_program(entry: Entry, name: str) -> bool:

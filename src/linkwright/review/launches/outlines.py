@@ -26,6 +26,8 @@ _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*
 _ENVIRONMENT = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)")
 _CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")
 """The condition of a setting after its name."""
+_PUSH = "\n"
+"""What separates pushed namespaces until the defaults of arguments are known."""
 _MAX_DEPTH = 5
 """The number of variables whose values may contain variables."""
 _MAX_LENGTH = 10_000
@@ -204,13 +206,24 @@ class Scope:
             settings[CONDITION] = " and ".join(dict.fromkeys(conditions))
         key = NAMESPACE if kind == "node" else NAMESPACE_OF_INCLUDED
         if self.namespaces and kind in ("node", "include"):
-            settings[key] = _joined_namespace([*self.namespaces, *filter(None, [own.get(key)])])
+            settings[key] = _PUSH.join([*self.namespaces, *filter(None, [own.get(key)])])
         return settings
 
 
-def _joined_namespace(names: Sequence[str]) -> str:
-    """Return the namespace after pushes; a name that begins with ``/`` replaces those before it."""
-    text = ""
-    for name in names:
-        text = name if name.startswith("/") or not text else f"{text}/{name}"
-    return text
+def with_joined_namespaces(outline: LaunchOutline) -> LaunchOutline:
+    """Return an outline in which each namespace that groups push is one text."""
+    entries = [
+        replace(entry, settings={name: _joined_namespace(name, text, outline) for name, text in entry.settings.items()})
+        for entry in outline.entries
+    ]
+    return replace(outline, entries=entries)
+
+
+def _joined_namespace(setting: str, text: str, outline: LaunchOutline) -> str:
+    """Return the namespace after pushes; a name that begins with ``/`` by default replaces those before it."""
+    if setting not in (NAMESPACE, NAMESPACE_OF_INCLUDED):
+        return text
+    joined = ""
+    for name in text.split(_PUSH):
+        joined = name if not joined or outline.resolved(name).startswith("/") else f"{joined}/{name}"
+    return joined
