@@ -307,7 +307,11 @@ def _renaming_reason(
     old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
     old_name, new_name = _resolved_name(old, old_outline), _resolved_name(new, new_outline)
-    if _after_unknown(old_name) == _after_unknown(new_name) or _UNKNOWN_NAME.search(new_name) or _has_new_variable(old_name, new_name):
+    if (
+        _after_unknown(old_name) == _after_unknown(new_name)
+        or _UNKNOWN_NAME.search(new_name)
+        or _has_new_variable(old_name, new_name)
+    ):
         return None
     return phrase("programs that use the names of the node, its topics or its services do not find them")
 

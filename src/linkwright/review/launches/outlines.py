@@ -27,7 +27,7 @@ _ENVIRONMENT = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|opten
 _CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")
 """The condition of a setting after its name."""
 _PUSH = "\n"
-"""What separates pushed namespaces until the defaults of arguments are known."""
+"""The separator of pushed namespaces, which are joined when the defaults of arguments are known."""
 _MAX_DEPTH = 5
 """The number of variables whose values may contain variables."""
 _MAX_LENGTH = 10_000

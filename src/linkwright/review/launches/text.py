@@ -74,6 +74,22 @@ class ExpressionTexts:
             return None
         return [value.texts.value(item) for item in value.node.elts]
 
+    def list_parts(self, node: ast.expr) -> list[BoundExpression]:
+        """Return the items of a list, also of sums of lists and of lists in lists (``*items``).
+
+        A part whose items are not written in the file is an item itself.
+        """
+        value = self.value(node)
+        node, texts = value.node, value.texts
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            return [*texts.list_parts(node.left), *texts.list_parts(node.right)]
+        if not isinstance(node, (ast.List, ast.Tuple)):
+            return [value]
+        parts: list[BoundExpression] = []
+        for item in node.elts:
+            parts += texts.list_parts(item.value) if isinstance(item, ast.Starred) else [texts.value(item)]
+        return parts
+
     def text(self, node: ast.expr | None, depth: int = 0) -> str:
         """Return an expression as text, with the values of names that are assigned once."""
         if node is None:
@@ -129,14 +145,19 @@ class ExpressionTexts:
             return list(self._items(node, "", value_text))
         if not isinstance(node, (ast.List, ast.Tuple, ast.Set)):
             return None
-        pairs = [self._python.resolved(item) for item in node.elts]
-        if not all(isinstance(pair, (ast.Tuple, ast.List)) and len(pair.elts) == 2 for pair in pairs):
+        pairs = [self._pair(item, value_text) for item in node.elts]
+        known = [pair for pair in pairs if pair is not None]
+        return known if len(known) == len(pairs) else None
+
+    def pair(self, node: ast.expr) -> tuple[str, str] | None:
+        """Return the texts of a pair, or None for other expressions."""
+        return self._pair(node, self.joined_text)
+
+    def _pair(self, node: ast.expr, value_text: Callable[[ast.expr], str]) -> tuple[str, str] | None:
+        node = self._python.resolved(node)
+        if not isinstance(node, (ast.Tuple, ast.List)) or len(node.elts) != 2:
             return None
-        return [
-            (self.joined_text(pair.elts[0]), value_text(pair.elts[1]))
-            for pair in pairs
-            if isinstance(pair, (ast.Tuple, ast.List))
-        ]
+        return self.joined_text(node.elts[0]), value_text(node.elts[1])
 
     def _items(self, node: ast.Dict, path: str, value_text: Callable[[ast.expr], str]) -> Iterator[tuple[str, str]]:
         for key, value in zip(node.keys, node.values, strict=True):
