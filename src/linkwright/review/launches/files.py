@@ -11,6 +11,7 @@ from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import addition_reason, removal_reason, value_reason
+from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.included import IncludedActions, file_with_moved_action
 from linkwright.review.launches.matching import MIN_SIMILARITY, matched_entries, replacements
 from linkwright.review.launches.outlines import READING, CodePart, Entry, LaunchOutline
@@ -46,12 +47,14 @@ def compare_launch_files(pair: FilePair) -> None:
         IncludedActions(pair.versions.new, pair.new_path, new),
     )
     settings = SettingChanges(pair, old, new, renamed, included[1])
+    choices = FileChoices(pair, old, new)
     settings.add_renamed()
     gone: list[Entry] = []
     come: list[Entry] = []
     for old_entry, new_entry in matched_entries(old.entries, new.entries):
         if old_entry is not None and new_entry is not None:
             settings.compare(old_entry, new_entry)
+            choices.compare(old_entry, new_entry)
         elif old_entry is not None:
             gone.append(old_entry)
         elif new_entry is not None:
@@ -65,6 +68,7 @@ def compare_launch_files(pair: FilePair) -> None:
         text = phrase("{old} replaced by {new}", old=title(renamed_entry(old_entry, old_names)), new=title(new_entry))
         pair.add(text, pair.location(new_entry.span))
         settings.compare(old_entry, new_entry)
+        choices.compare(old_entry, new_entry)
     settings.add_groups()
     gone = [entry for entry in gone if all(entry is not other for other, _ in replaced)]
     come = [entry for entry in come if all(entry is not other for _, other in replaced)]

@@ -53,8 +53,8 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
     similarity = _similarity(old, new)
     if old.kind in ("include", "parameters"):
         old_name = PurePosixPath(old.name).name
-        is_same = _file_key(new_names.get(old_name, old_name)) == _file_key(new.name)
-        likeness = SequenceMatcher(None, _file_key(old.name), _file_key(new.name), autojunk=False).ratio()
+        is_same = launch_file_key(new_names.get(old_name, old_name)) == launch_file_key(new.name)
+        likeness = SequenceMatcher(None, launch_file_key(old.name), launch_file_key(new.name), autojunk=False).ratio()
         if likeness < _MIN_SIMILARITY_OF_FILES and not is_same:
             return 0.0
         is_like = bool(old.settings) and old.settings == new.settings
@@ -86,7 +86,7 @@ def _program(entry: Entry) -> tuple[str, str]:
     return package, program.removesuffix(".py")
 
 
-def _file_key(path: str) -> str:
+def launch_file_key(path: str) -> str:
     """Return the name of a launch file without the ends of such names."""
     name = PurePosixPath(path).name
     return re.sub(r"[._]launch(\.(py|xml|ya?ml))?$|\.(py|xml|ya?ml)$", "", name)
