@@ -52,6 +52,12 @@ _CODE = re.compile(r"\w\(")
 """A call in a name, whose result is unknown."""
 _UNKNOWN_NAME = re.compile(r"\w\(|\w[.\[][a-z_\"']")
 """A call, attribute or item of Python in a name, whose value is unknown."""
+_PUBLISHED_TOPIC = re.compile(
+    r"[ ._](\w+_)?(pub|publish|published|publisher|out|output)_(\w+_)?topic(_name)?$|"
+    r"[ ._](\w+_)?topic(_name)?_(pub|publish|publisher|out|output)$"
+)
+"""The parameters whose names say that they are the name of a topic that the node publishes."""
+_TOPIC = re.compile(r"[~/\w]+")
 _FRAME_PREFIX = f"{PARAMETER}frame_prefix"
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
@@ -208,7 +214,8 @@ def _parameter_reason(
         return None
     old_name, new_name = old_outline.resolved(old), new_outline.resolved(new)
     is_frame = offers_frame(setting.removeprefix(PARAMETER)) and "$(" not in old_name
-    if is_frame and old_name != new_name:
+    is_topic = _PUBLISHED_TOPIC.search(setting) is not None and _TOPIC.fullmatch(old_name) is not None
+    if (is_frame or is_topic) and old_name.strip("/") != new_name.strip("/") and not _UNKNOWN_NAME.search(new_name):
         return name_reason(old_name)
     if new_outline.is_ros1:
         return None  # ROS 1 converts numbers
