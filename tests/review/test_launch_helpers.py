@@ -76,3 +76,42 @@ def test_list_that_is_put_together_is_no_other_code(repository, compare, items):
     repository.commit({"arm/launch/arm.launch.py": LIST})
     repository.write({"arm/launch/arm.launch.py": LIST.replace("Description(nodes)", f"Description({items})")})
     assert not compare(repository).subjects
+
+
+LOOP = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.conditions import IfCondition, LaunchConfigurationEquals
+from launch.substitutions import EqualsSubstitution, LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    programs = [("arm", "driver"), ("arm", "hand")]
+    description = LaunchDescription([DeclareLaunchArgument("map", default_value="")])
+    for package, program in programs:
+        description.add_action(Node(package=package, executable=program))
+    description.add_action(Node(
+        package="tf2_ros",
+        executable="static_transform_publisher",
+        condition=LaunchConfigurationEquals("map", ""),
+        arguments=["0", "0", "0", "0", "0", "0", "map", [LaunchConfiguration("map"), "camera"]],
+    ))
+    return description
+"""
+
+
+def test_items_of_a_loop_over_pairs_are_actions(changes_of):
+    changes, found = changes_of("arm.launch.py", LOOP, ', ("arm", "hand")', "")
+    assert changes == found == ["node 'arm/hand' removed"]
+
+
+def test_substitutions_in_a_list_are_one_word_of_the_arguments(changes_of):
+    changes, found = changes_of("arm.launch.py", LOOP, '"camera"', '"lidar"')
+    assert len(changes) == 1
+    assert changes == found
+    assert changes[0].endswith("map, $(var map)camera] -> [0, 0, 0, 0, 0, 0, map, $(var map)lidar]")
+
+
+def test_comparison_of_an_argument_may_be_a_substitution(changes_of):
+    new = 'IfCondition(EqualsSubstitution(LaunchConfiguration("map"), ""))'
+    assert changes_of("arm.launch.py", LOOP, 'LaunchConfigurationEquals("map", "")', new) == ([], [])

@@ -21,8 +21,10 @@ from linkwright.review.launches.text import BoundExpression, ExpressionTexts
 
 _NODES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
 _PROCESSES = ("ExecuteProcess", "ExecuteLocal")
+_ARGUMENTS = ("DeclareLaunchArgument", "DeclareBooleanLaunchArg")
+"""The classes that declare arguments; the second is one of MoveIt."""
 _ENVIRONMENT = ("SetEnvironmentVariable", "AppendEnvironmentVariable", "UnsetEnvironmentVariable")
-_OTHERS = ("DeclareLaunchArgument", "IncludeLaunchDescription", "SetLaunchConfiguration", "SetRemap", "SetParameter")
+_OTHERS = (*_ARGUMENTS, "IncludeLaunchDescription", "SetLaunchConfiguration", "SetRemap", "SetParameter")
 ACTIONS = frozenset({*_NODES, *_PROCESSES, *_ENVIRONMENT, *_OTHERS})
 """The classes whose calls make actions."""
 _HANDLER = "RegisterEventHandler"
@@ -123,10 +125,10 @@ class _Reader:
             for item in node.elts:
                 scope = scope.pushed(self._pushed(item))
                 self.visit(item, scope)
-        elif isinstance(node, ast.For) and isinstance(node.target, ast.Name):
-            self._visit_loop(node.target.id, node.iter, node.body, scope)
-        elif isinstance(node, (ast.ListComp, ast.GeneratorExp)) and isinstance(node.generators[0].target, ast.Name):
-            self._visit_loop(node.generators[0].target.id, node.generators[0].iter, [node.elt], scope)
+        elif isinstance(node, ast.For):
+            self._visit_loop(node.target, node.iter, node.body, scope)
+        elif isinstance(node, (ast.ListComp, ast.GeneratorExp)):
+            self._visit_loop(node.generators[0].target, node.generators[0].iter, [node.elt], scope)
         elif isinstance(node, ast.If):
             self._visit_branches(node, scope)
         elif isinstance(node, ast.FunctionDef):
@@ -145,10 +147,13 @@ class _Reader:
         self.visit(value, scope)
         self.texts, self._loops = texts, loops
 
-    def _visit_loop(self, name: str, iterable: ast.expr, body: Sequence[ast.stmt | ast.expr], scope: Scope) -> None:
+    def _visit_loop(
+        self, target: ast.expr, iterable: ast.expr, body: Sequence[ast.stmt | ast.expr], scope: Scope
+    ) -> None:
         """Find the actions of a loop, for each item if the list is written in the file."""
         items = self.texts.items(iterable)
-        if items is None or not self.helpers.take_passes(len(items)):
+        passes = [self.texts.with_item(target, item) for item in items or ()]
+        if items is None or None in passes or not self.helpers.take_passes(len(items)):
             for statement in body:
                 self.visit(statement, scope)
             return
@@ -156,8 +161,8 @@ class _Reader:
         texts, loops = self.texts, self._loops
         lines = [line for node in body for line in (node.lineno, node.end_lineno or node.lineno)]
         self._outside.append((min(lines), max(lines), texts, loops))
-        for number, item in enumerate(items):
-            self.texts, self._loops = texts.with_value(name, item), (*loops, number)
+        for number, pass_texts in enumerate(filter(None, passes)):
+            self.texts, self._loops = pass_texts, (*loops, number)
             for statement in body:
                 self.visit(statement, scope)
         self.texts, self._loops = texts, loops
@@ -300,7 +305,7 @@ class _Reader:
         first_text = text(first.value if isinstance(first, ast.keyword) else first)
         second_text = text(call.args[1] if len(call.args) > 1 else _second_keyword(call))
         settings: dict[str, str] = {}
-        if function == "DeclareLaunchArgument":
+        if function in _ARGUMENTS:
             kind, name = "argument", text(call.args[0] if call.args else keywords.get("name"))
             names = {"default_value": "default", "choices": "choices"}
             settings = {names[key]: text(value) for key, value in keywords.items() if key in names}
@@ -387,6 +392,11 @@ class _Reader:
         """
         others = {key: BoundExpression(self.texts, value) for key, value in keywords.items()} | dict(extra or {})
         parts: dict[str, str] = {}
+        arguments = others.get("arguments")
+        if arguments is not None and isinstance(arguments.texts.value(arguments.node).node, (ast.List, ast.Tuple)):
+            words = arguments.texts.list_parts(arguments.node)
+            parts["arguments"] = f"[{', '.join(word.texts.joined_text(word.node) for word in words)}]"
+            del others["arguments"]
         if "remappings" in others:
             parts |= _remappings(others.pop("remappings"))
         if "parameters" in others:

@@ -15,6 +15,7 @@ _MAX_LENGTH = 10_000
 """The maximum number of characters kept of an expression. If names refer to names, the text can grow exponentially."""
 _Part = Callable[[ast.expr | None], str]
 _COMPARISONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
+_COMPARING = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
 _TEXT_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
 _PROGRAM = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
 """A command whose program is searched explicitly. The search is left out of the text, as commands always do it."""
@@ -56,10 +57,20 @@ class ExpressionTexts:
         self._values = values or {}
         self._texts: dict[int, str] = {}
 
-    def with_value(self, name: str, value: BoundExpression) -> ExpressionTexts:
-        """Return the texts with an expression for a variable of a loop."""
-        bindings = {**self._bindings, name: value.texts.text(value.node)}
-        return ExpressionTexts(self._python, bindings, {**self._values, name: value})
+    def with_item(self, target: ast.expr, item: BoundExpression) -> ExpressionTexts | None:
+        """Return the texts with an item for the variables of a loop, or None if they do not fit."""
+        if isinstance(target, ast.Name):
+            names, values = [target], [item]
+        elif isinstance(target, ast.Tuple) and isinstance(item.node, (ast.Tuple, ast.List)):
+            names = [name for name in target.elts if isinstance(name, ast.Name)]
+            values = [item.texts.value(value) for value in item.node.elts]
+            if not len(names) == len(target.elts) == len(values):
+                return None
+        else:
+            return None
+        found = {name.id: value for name, value in zip(names, values, strict=True)}
+        bindings = {name: value.texts.text(value.node) for name, value in found.items()}
+        return ExpressionTexts(self._python, {**self._bindings, **bindings}, {**self._values, **found})
 
     def value(self, node: ast.expr) -> BoundExpression:
         """Return the expression that is assigned or passed to a name, and any other expression unchanged."""
@@ -226,6 +237,8 @@ class ExpressionTexts:
             return part(owner) if is_share else None
         if first is None:
             return None
+        if function in _COMPARING and len(arguments) > 1:
+            return f"{part(first)} {_COMPARING[function]} {part(arguments[1])}"
         if function == "FindExecutable":
             return f"$(find-exec {part(first)})"
         if function in ("PathJoinSubstitution", "join"):
