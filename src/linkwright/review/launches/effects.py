@@ -89,11 +89,11 @@ def removal_reason(
         return value_reason(entry.name, is_ros1=outline.is_ros1)
     if entry.kind == READING:
         return phrase("a value that a user sets for '{name}' has no effect", name=entry.name)
+    if condition_holds(_condition(entry, outline)) is False:
+        return None
     if entry.kind == "remapping":
         return _remapping_reason(entry.name, entry.settings.get("to"), None, outline, outline)
     if entry.kind not in ("node", "include") or offers_nothing(entry):
-        return None
-    if condition_holds(_condition(entry, outline)) is False:
         return None
     if entry.kind == "include":
         return phrase("its nodes do not start any more") if stops_nodes else None

@@ -14,6 +14,7 @@ MIN_SIMILARITY = 0.5
 _MIN_SIMILARITY_OF_PROGRAMS = 0.75
 _MIN_SIMILARITY_OF_FILES = 0.6
 _SEPARATORS = re.compile(r"[\W_]+|node")
+_NODELET = re.compile(r"(?:load|standalone) (\S+)")
 Match = tuple["Entry | None", "Entry | None"]
 """The old and the new action; None for the version that does not have it."""
 
@@ -60,7 +61,7 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
         is_like = bool(old.settings) and old.settings == new.settings
         is_beside = old.kind == "include" and PurePosixPath(old.name).parent == PurePosixPath(new.name).parent
         return 1.0 + similarity if is_same else likeness * (is_like or is_beside)
-    if old.kind != "node":
+    if old.kind != "node" or _load_other_classes(old, new):
         return 0.0
     (old_package, old_program), (new_package, new_program) = _program(old), _program(new)
     name = old.settings.get("name")
@@ -99,6 +100,13 @@ def _by_name(entries: Sequence[Entry]) -> dict[tuple[str, str], list[Entry]]:
     return groups
 
 
+def _load_other_classes(old: Entry, new: Entry) -> bool:
+    """Return whether two nodelets are of different classes."""
+    nodelets = [_NODELET.match(entry.settings.get("arguments", "")) for entry in (old, new)]
+    classes = {match[1] for match in nodelets if match is not None}
+    return old.name == new.name == "nodelet/nodelet" and len(classes) > 1
+
+
 def _matched(old: list[Entry], new: list[Entry]) -> Iterator[Match]:
     """Match the entries of a group, and yield each pair, and each entry without a partner in a pair with None.
 
@@ -122,6 +130,8 @@ def _matched(old: list[Entry], new: list[Entry]) -> Iterator[Match]:
     old_left, new_left = set(range(len(old_rest))), set(range(len(new_rest)))
     for similarity, i, k in candidates:
         if new_rest[k].kind == "process" and similarity < MIN_SIMILARITY:
+            continue
+        if _load_other_classes(old_rest[i], new_rest[k]):
             continue
         if i in old_left and k in new_left:
             old_left.remove(i)

@@ -13,7 +13,16 @@ from linkwright.review.launches.conditional_settings import changed_settings
 from linkwright.review.launches.default_names import default_name
 from linkwright.review.launches.effects import setting_reason, value_reason
 from linkwright.review.launches.included import IncludedActions, Program
-from linkwright.review.launches.outlines import CONDITION, PARAMETER, READING, REMAPPING, Entry, LaunchOutline
+from linkwright.review.launches.outlines import (
+    CONDITION,
+    NAMESPACE,
+    NAMESPACE_OF_INCLUDED,
+    PARAMETER,
+    READING,
+    REMAPPING,
+    Entry,
+    LaunchOutline,
+)
 from linkwright.review.launches.renames import translated
 from linkwright.review.launches.titles import distinct_title, joined_texts, joined_titles, title
 from linkwright.review.list_changes import change_text, shortened
@@ -22,6 +31,8 @@ from linkwright.review.merging import name_edit
 _MIN_GROUP = 3
 """The minimum number of added or removed parameters or remappings of a node that are reported as one change."""
 _MAX_VALUE = 60
+_PASSED = "passed"
+"""The group of the arguments that an action passes to the file that it includes."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +131,7 @@ class SettingChanges:
             else:
                 place = new, self._pair.location(new.span), setting
                 self._remappings.setdefault((setting.edit, reason is None), []).append(place)
-        for text, reason, name in _joined_settings(settings):
+        for text, reason, name in _joined_settings(settings, is_include=new.kind == "include"):
             # A group may give a condition to actions that other programs need and to those of a user interface.
             self._add(new, text, reason, is_apart=name != CONDITION)
 
@@ -174,12 +185,24 @@ class SettingChanges:
             _, location, change, _ = places[0]
             reason = next((reason for _, _, _, reason in places if reason is not None), None)
             entries = [entry for entry, _, _, _ in places]
-            titles = [distinct_title(entry, self._new.entries) for entry in entries]
+            titles = [self._title(entry, entries, str(change)) for entry in entries]
             text = phrase("{entry}: {change}", entry=joined_texts(titles), change=change)
             self._pair.add(text, location, reason)
             if len(set(map(title, entries))) == 1:  # a report counts equal changes
                 for _, other_location, _, _ in places[1:]:
                     self._pair.add(text, other_location, reason)
+
+    def _title(self, entry: Entry, changed: Sequence[Entry], change: str) -> Phrase:
+        """Return the title of an action, with the name of the node if others with the title have not changed.
+
+        A change of the name itself shows it.
+        """
+        alike = [other for other in self._new.entries if other.kind == "node" and title(other) == title(entry)]
+        if entry.kind != "node" or all(any(other is each for each in changed) for other in alike):
+            return distinct_title(entry, self._new.entries)
+        name = "/".join(filter(None, (entry.settings.get(NAMESPACE), entry.settings.get("name"))))
+        is_shown = not name or f" {name}" in change
+        return title(entry) if is_shown else phrase("{entry} ({items})", entry=title(entry), items=name)
 
 
 def _stopped_reason(programs: Collection[Program]) -> Phrase:
@@ -187,14 +210,18 @@ def _stopped_reason(programs: Collection[Program]) -> Phrase:
     return phrase("by default, {names} does not start any more", names=names)
 
 
-def _joined_settings(settings: Sequence[_Setting]) -> Iterator[tuple[Phrase, Phrase | None, str]]:
+def _joined_settings(
+    settings: Sequence[_Setting], *, is_include: bool = False
+) -> Iterator[tuple[Phrase, Phrase | None, str]]:
     """Yield the changes of the settings of an action with their reasons and names.
 
-    Several added or removed parameters or remappings are one change.
+    Several added or removed parameters or remappings are one change, and so are the arguments of an included file.
     """
     groups: dict[object, list[_Setting]] = {}
     for setting in settings:
         prefix = next((word for word in (PARAMETER, REMAPPING) if setting.name.startswith(word)), "")
+        if is_include and setting.name not in (CONDITION, NAMESPACE_OF_INCLUDED):
+            prefix = _PASSED
         is_lone = not prefix or (setting.old is not None and setting.new is not None)
         key = setting.name if is_lone else (prefix, setting.new is None, setting.reason is None)
         groups.setdefault(key, []).append(setting)
@@ -202,12 +229,18 @@ def _joined_settings(settings: Sequence[_Setting]) -> Iterator[tuple[Phrase, Phr
         if len(group) < _MIN_GROUP:
             yield from ((setting.text, setting.reason, setting.name) for setting in group)
         else:
-            yield _group_text(group), _group_reason(group), group[0].name
+            yield _group_text(group, is_include=is_include), _group_reason(group), group[0].name
 
 
-def _group_text(group: Sequence[_Setting]) -> Phrase:
+def _group_text(group: Sequence[_Setting], *, is_include: bool) -> Phrase:
     is_remapping, is_added = group[0].name.startswith(REMAPPING), group[0].new is not None
     items = joined_first([_item(setting) for setting in group], MAX_NAMES)
+    if is_include:
+        added, removed = (
+            phrase("arguments added: {items}", items=items),
+            phrase("arguments removed: {items}", items=items),
+        )
+        return added if is_added else removed
     if is_remapping:
         return (
             phrase("remappings added: {items}", items=items)
