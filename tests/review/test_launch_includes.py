@@ -96,3 +96,67 @@ def test_value_that_switches_off_a_node_of_an_included_file_is_breaking(reasons,
 )
 def test_condition_that_does_not_hold_is_breaking_for_a_file_with_nodes(reasons, line, reason):
     assert list(reasons(line, line.replace("/>", ' if="false"/>')).values()) == [reason]
+
+
+CONDITIONAL = """from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from moveit_configs_utils.launch_utils import DeclareBooleanLaunchArg
+
+
+def generate_launch_description():
+    ld = LaunchDescription()
+    ld.add_action(DeclareBooleanLaunchArg("db", default_value=False))
+    ld.add_action(IncludeLaunchDescription("db.launch.py", condition=IfCondition(LaunchConfiguration("db"))))
+    return ld
+"""
+
+
+def test_boolean_argument_of_moveit_has_a_default(changes_of):
+    line = next(line for line in CONDITIONAL.splitlines() if "IncludeLaunchDescription(" in line)
+    assert changes_of("arm.launch.py", CONDITIONAL, f"{line}\n", "") == (
+        ["include of 'db.launch.py' removed: if $(var db)"],
+        [],
+    )
+
+
+def test_name_of_an_included_file_may_contain_an_argument(repository, compare):
+    file = '<launch><include file="$(dirname)/part.launch" if="true"><arg name="kind" value="a"/></include></launch>'
+    part = '<launch><arg name="kind"/><include file="$(dirname)/$(arg kind).launch"/></launch>'
+    files = {"arm/launch/part.launch": part, "arm/launch/a.launch": "<launch/>"}
+    repository.commit({"arm/launch/arm.launch": file, **files})
+    repository.write({"arm/launch/arm.launch": file.replace('if="true"', 'if="false"')})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert change.reason is None
+
+
+def test_many_arguments_that_an_include_passes_are_one_change(reasons):
+    arguments = "".join(f'<arg name="a{number}" value="{number}"/>' for number in range(3))
+    found = reasons('<arg name="scan" value="front"/>', f'<arg name="scan" value="front"/>{arguments}')
+    assert found == {
+        "include of '$(find elsewhere)/launch/laser_pipeline.launch': arguments added: a0 0, a1 1, a2 2": None
+    }
+
+
+def test_xml_file_that_others_include_is_a_launch_file(repository, compare):
+    text = '<?xml version="1.0"?>\n<!-- a - part -->\n<launch><node pkg="arm" type="driver" name="driver"/></launch>'
+    repository.commit({"arm/launch/parts/driver.xml": text, "arm/plugins.xml": "<library/>"})
+    repository.write(
+        {"arm/launch/parts/driver.xml": text.replace('"driver"/>', '"motor"/>'), "arm/plugins.xml": "<a/>"}
+    )
+    (result,) = [each for each in compare(repository).subjects if each.path == "arm/launch/parts/driver.xml"]
+    assert [str(change.sentence) for change in result.changes] == ["node 'arm/driver': name driver -> motor"]
+
+
+def test_argument_that_an_including_file_has_is_declared(repository, compare):
+    part = '<launch><node pkg="arm" exec="driver" name="driver"/></launch>'
+    file = """<launch>
+      <arg name="mode" default="online"/>
+      <include file="$(find-pkg-share arm)/launch/part.launch.xml"/>
+    </launch>"""
+    repository.commit({"arm/launch/arm.launch.xml": file, "arm/launch/part.launch.xml": part})
+    new = part.replace('"driver"/>', '"driver" args="$(var mode)"/>')
+    repository.write({"arm/launch/part.launch.xml": new})
+    (change,) = subject(compare(repository), "arm/launch/part.launch.xml").changes
+    assert (str(change.sentence), change.reason) == ("node 'arm/driver': arguments $(var mode) added", None)

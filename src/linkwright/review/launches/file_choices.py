@@ -5,18 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from linkwright.diagnostics import LinkwrightError, Phrase, phrase, quoted_names
-from linkwright.packages.launch_files import is_launch_file_name
-from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.launches.matching import launch_file_key
+from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.review.file_pair import FilePair
+from linkwright.review.launches.included import callers_of
 from linkwright.review.launches.outlines import Entry, LaunchOutline
-from linkwright.review.launches.reading import read_outline
 
 _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)[^()]*\)")
 _FOLDER = re.compile(r"\$\((find|find-pkg-share|dirname)[ )]")
 _FILE = re.compile(r"/.*\.(xacro|urdf|srdf|sdf|world|yaml|yml|rviz|xml|launch|json|pgm|png|stl|dae|py)$")
 _SEPARATORS = frozenset(" ,'\"[]=")
-_LAUNCH_SUFFIXES = (".launch", ".launch.py", "_launch.py", ".launch.xml", "_launch.xml", ".yaml", ".yml")
 
 
 class FileChoices:
@@ -71,19 +68,8 @@ class FileChoices:
 
     def _is_passed(self, name: str) -> bool:
         """Return whether another launch file passes an argument to this one."""
-        version, key = self._pair.versions.new, launch_file_key(self._pair.new_path)
-        for path in version.paths(_LAUNCH_SUFFIXES):
-            text = version.text(path) if is_launch_file_name(path) and path != self._pair.new_path else ""
-            if key not in text or name not in text:
-                continue
-            try:
-                entries = read_outline(version.file(path), version.root).entries
-            except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
-                continue
-            includes = (entry for entry in entries if entry.kind == "include")
-            if any(launch_file_key(each.name) == key and name in each.settings for each in includes):
-                return True
-        return False
+        callers = callers_of(self._pair.versions.new, self._pair.new_path, name)
+        return any(name in include.settings for _, include in callers)
 
 
 def _files(entry: Entry, outline: LaunchOutline) -> Iterator[str]:

@@ -12,7 +12,7 @@ from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import addition_reason, removal_reason, value_reason
 from linkwright.review.launches.file_choices import FileChoices
-from linkwright.review.launches.included import IncludedActions, file_with_moved_action
+from linkwright.review.launches.included import IncludedActions, callers_of, file_with_moved_action
 from linkwright.review.launches.matching import MIN_SIMILARITY, matched_entries, replacements
 from linkwright.review.launches.outlines import READING, CodePart, Entry, LaunchOutline
 from linkwright.review.launches.readers_of_environment import reader_of
@@ -138,7 +138,16 @@ def _undeclared_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline
         return {}
     old_names = IncludedActions(pair.versions.old, pair.old_path, old).undeclared()
     new_names = IncludedActions(pair.versions.new, pair.new_path, new).undeclared()
-    return {name: entry for name, entry in new_names.items() if name not in old_names}
+    names = {name: entry for name, entry in new_names.items() if name not in old_names}
+    return {name: entry for name, entry in names.items() if not _is_declared_by_caller(pair, name)}
+
+
+def _is_declared_by_caller(pair: FilePair, name: str) -> bool:
+    """Return whether a launch file that includes this one passes an argument, or has one of this name itself."""
+    return any(
+        name in include.settings or (not outline.is_ros1 and name in outline.values)
+        for outline, include in callers_of(pair.versions.new, pair.new_path, name)
+    )
 
 
 def _add_unused_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launches.conditions import condition_holds
 from linkwright.review.launches.effects import offers_nothing
+from linkwright.review.launches.formats import is_launch_file
+from linkwright.review.launches.matching import launch_file_key
 from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.titles import served_names
@@ -26,6 +28,7 @@ _MAX_DEPTH = 3
 _MAX_FILES = 30
 _MAX_BYTES = 1 << 20
 _MAX_CHANGED = 60
+_LAUNCH_SUFFIXES = (".launch", ".xml", "launch.py", "launch.yaml", "launch.yml")
 Program = tuple[str, str]
 """The kind and the name of an action that starts a program."""
 _FILE_WITHOUT_NODES = re.compile(
@@ -127,12 +130,12 @@ class IncludedActions:
                 yield entry.kind, outline.resolved(entry.name)
 
     def _started(self, entry: Entry, outline: LaunchOutline, file: Path, depth: int) -> Iterator[Program]:
-        inner_file = self._file_of(entry, file) if depth < _MAX_DEPTH else None
+        resolved = replace(entry, name=outline.resolved(entry.name))
+        inner_file = self._file_of(resolved, file) if depth < _MAX_DEPTH else None
         inner = None if inner_file is None else self._read(inner_file)
         if inner_file is None or inner is None:
-            name = outline.resolved(entry.name)
-            if not _FILE_WITHOUT_NODES.search(name):
-                yield entry.kind, name
+            if not _FILE_WITHOUT_NODES.search(resolved.name):
+                yield resolved.kind, resolved.name
             return
         passed = {name: outline.resolved(value) for name, value in entry.settings.items()}
         inherited = {} if outline.is_ros1 or inner.is_ros1 else outline.values
@@ -166,6 +169,23 @@ class IncludedActions:
         return undeclared
 
 
+def callers_of(version: Version, path: str, name: str) -> Iterator[tuple[LaunchOutline, Entry]]:
+    """Yield the launch files that include a file and contain a name, each with the action that includes it.
+
+    Args:
+        version: the version of the repository.
+        path: the path of the included file, relative to the root.
+        name: the name, such as that of an argument.
+    """
+    key = launch_file_key(path)
+    for other in version.paths(_LAUNCH_SUFFIXES):
+        text = version.text(other) if other != path else ""
+        outline = _read(version.file(other), version.root) if key in text and name in text else None
+        if outline is not None:
+            includes = (entry for entry in outline.entries if entry.kind == "include")
+            yield from ((outline, entry) for entry in includes if launch_file_key(entry.name) == key)
+
+
 def _file_below(share: Path, path: str) -> Path | None:
     """Return a file of a package, whose build may install it in another folder than that of its source."""
     if (share / path).is_file() or ".." in Path(path).parts:
@@ -187,7 +207,7 @@ def file_with_moved_action(entry: Entry, versions: Versions, path: str, *, is_re
         return None
     key = _key(entry)
     for file in versions.changed_files[:_MAX_CHANGED]:
-        if path in (file.old_path, file.new_path) or not is_launch_file_name(file.path):
+        if path in (file.old_path, file.new_path) or not is_launch_file(file.path):
             continue
         old = _keys(versions.old.file(file.old_path), versions.old.root) if file.old_path else frozenset()
         new = _keys(versions.new.file(file.new_path), versions.new.root) if file.new_path else frozenset()

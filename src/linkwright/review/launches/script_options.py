@@ -10,11 +10,11 @@ from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError, Phrase, SourceText, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launches.default_names import script_of
+from linkwright.review.launches.formats import is_launch_file
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.list_changes import list_items
@@ -93,7 +93,7 @@ def _launch_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> I
         if PurePosixPath(path).suffix in (".py", "") and _PARSER in versions.new.text(path)
     }
     for path in versions.new.paths(_LAUNCH_SUFFIXES) if scripts else sorted(changed):
-        if path.endswith(_LAUNCH_SUFFIXES) and is_launch_file_name(path):
+        if path.endswith(_LAUNCH_SUFFIXES) and is_launch_file(path):
             text = versions.new.text(path) if path not in changed else ""
             if path in changed or any(script in text for script in scripts):
                 yield path
