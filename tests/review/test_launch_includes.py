@@ -160,3 +160,14 @@ def test_argument_that_an_including_file_has_is_declared(repository, compare):
     repository.write({"arm/launch/part.launch.xml": new})
     (change,) = subject(compare(repository), "arm/launch/part.launch.xml").changes
     assert (str(change.sentence), change.reason) == ("node 'arm/driver': arguments $(var mode) added", None)
+
+
+def test_node_that_moves_into_a_file_of_a_package_without_manifest_is_moved(repository, compare):
+    node = '<node pkg="gazebo" type="gazebo" name="gazebo"/>'
+    repository.commit({"worlds/launch/arm.launch": f"<launch>{node}</launch>"})
+    include = '<include file="$(find worlds)/launch/start.launch"/>'
+    files = {"worlds/launch/arm.launch": f"<launch>{include}</launch>"}
+    repository.write({**files, "worlds/launch/start.launch": f"<launch>{node}</launch>"})
+    changes = subject(compare(repository), "worlds/launch/arm.launch").changes
+    assert [change.reason for change in changes] == [None, None]
+    assert str(changes[1].sentence) == "node 'gazebo/gazebo' moved to worlds/launch/start.launch"

@@ -140,3 +140,10 @@ def test_change_of_one_of_several_nodes_of_a_program_names_the_node(changes_of):
     assert changes_of("arm.launch", NODELETS, 'name="right"', 'name="right" output="screen"')[0] == [
         "node 'arm/driver' (arm/right): output screen added"
     ]
+
+
+def test_same_change_of_several_but_not_all_nodes_of_a_program_names_each(changes_of):
+    text = NODELETS.replace("</launch>", '<node pkg="arm" type="driver" name="back"/></launch>')
+    assert changes_of("arm.launch", text, 'ns="arm"', 'ns="arm" output="screen"')[0] == [
+        "node 'arm/driver' (arm/left), node 'arm/driver' (arm/right): output screen added"
+    ]

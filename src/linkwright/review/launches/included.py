@@ -97,6 +97,8 @@ class IncludedActions:
         shared = _SHARED.fullmatch(entry.name)
         if shared is not None:
             share = self._version.share_of(shared["package"], includer.parent)
+            if share is None:  # a package without package.xml, as rosbuild has
+                share = next((folder for folder in includer.parents if folder.name == shared["package"]), None)
             file = None if share is None else _file_below(share, shared["path"])
         elif entry.name.startswith(_BESIDE) and "$" not in entry.name.removeprefix(_BESIDE):
             file = includer.parent / entry.name.removeprefix(_BESIDE)

@@ -188,7 +188,7 @@ class SettingChanges:
             titles = [self._title(entry, entries, str(change)) for entry in entries]
             text = phrase("{entry}: {change}", entry=joined_texts(titles), change=change)
             self._pair.add(text, location, reason)
-            if len(set(map(title, entries))) == 1:  # a report counts equal changes
+            if len(set(titles)) == 1:  # a report counts equal changes
                 for _, other_location, _, _ in places[1:]:
                     self._pair.add(text, other_location, reason)
 
