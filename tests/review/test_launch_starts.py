@@ -105,3 +105,45 @@ def test_condition_of_an_added_parameter_file_is_shown(repository, compare):
     assert sentences(subject(compare(repository), "arm/launch/arm.launch")) == [
         "parameters of '$(find arm)/config/a.yaml' added: if $(arg rate)"
     ]
+
+
+NODELETS = """<launch>
+  <arg name="simulation" default="false"/>
+  <remap from="scan" to="front/scan" if="$(arg simulation)"/>
+  <node pkg="nodelet" type="nodelet" name="throttle" args="load laser/Throttle manager"/>
+  <node pkg="arm" type="driver" name="left" ns="arm"/>
+  <node pkg="arm" type="driver" name="right" ns="arm"/>
+</launch>
+"""
+THROTTLE = NODELETS.splitlines()[3]
+
+
+def test_nodelet_of_another_class_is_another_node(changes_of):
+    new = THROTTLE.replace("throttle", "to_scan").replace("laser/Throttle", "depth/ToScan")
+    changes, found = changes_of("arm.launch", NODELETS, THROTTLE, new)
+    assert changes == [
+        "node 'nodelet/nodelet' added: name to_scan, arguments load depth/ToScan manager",
+        "node 'nodelet/nodelet' removed: name throttle, arguments load laser/Throttle manager",
+    ]
+    assert found == changes[1:]
+
+
+def test_removed_remapping_that_did_not_hold_is_not_breaking(changes_of):
+    line = NODELETS.splitlines()[2]
+    assert changes_of("arm.launch", NODELETS, f"{line}\n", "") == (
+        ["remapping of 'scan' for the nodes that follow removed: if $(arg simulation), to front/scan"],
+        [],
+    )
+
+
+def test_change_of_one_of_several_nodes_of_a_program_names_the_node(changes_of):
+    assert changes_of("arm.launch", NODELETS, 'name="right"', 'name="right" output="screen"')[0] == [
+        "node 'arm/driver' (arm/right): output screen added"
+    ]
+
+
+def test_same_change_of_several_but_not_all_nodes_of_a_program_names_each(changes_of):
+    text = NODELETS.replace("</launch>", '<node pkg="arm" type="driver" name="back"/></launch>')
+    assert changes_of("arm.launch", text, 'ns="arm"', 'ns="arm" output="screen"')[0] == [
+        "node 'arm/driver' (arm/left), node 'arm/driver' (arm/right): output screen added"
+    ]

@@ -242,6 +242,10 @@ MAP = KindRule(
 """The rule for the YAML files of maps, with their images."""
 
 
+LAUNCH_FILE = next(rule for rule in _RULES if rule.kind is SubjectKind.LAUNCH_FILE)
+"""The rule for launch files, also for XML files that others include."""
+
+
 def may_help_launch_files(path: str) -> bool:
     """Return whether the path of a file can be that of a module with functions for launch files."""
     pure_path = PurePosixPath(path)
@@ -259,7 +263,7 @@ def rule_of(path: str) -> KindRule | None:
     if is_test and not TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
         return None  # a test with launch_testing
     if is_launch_file_name(name):
-        return next(rule for rule in _RULES if rule.kind is SubjectKind.LAUNCH_FILE)
+        return LAUNCH_FILE
     return next((rule for rule in _RULES if any(_has_name(name, suffix) for suffix in rule.suffixes)), None)
 
 

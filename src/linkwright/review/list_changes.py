@@ -24,7 +24,7 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
         old: the old value; a list is written as ``[a, b]``.
         new: the new value.
     """
-    old_items, new_items = list_items(old), list_items(new)
+    old_items, new_items = _nested_items(old), _nested_items(new)
     are_lists = all(value.startswith("[") and items != [value] for value, items in ((old, old_items), (new, new_items)))
     are_names = are_lists and all(len(item) <= _LONG_NAME for item in (*old_items, *new_items))
     is_cut = are_names and max(len(old), len(new)) > _LONG_VALUE
@@ -46,8 +46,13 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
 
 
 def shortened(text: str, limit: int) -> str:
-    """Return a text, or the beginning of one that is longer than a number of characters."""
-    return text if len(text) <= limit else f"{text[:limit]}..."
+    """Return a text, or the beginning of one that is longer than a number of characters, up to a whole item."""
+    if len(text) <= limit:
+        return text
+    item_end, word_end = text.rfind(", ", limit // 2, limit), text.rfind(" ", limit // 2, limit)
+    if item_end > 0:
+        return f"{text[:item_end]}, ..."
+    return f"{text[:word_end]} ..." if word_end > 0 else f"{text[:limit]}..."
 
 
 def excerpts(old: str, new: str) -> tuple[str, str]:
@@ -80,11 +85,18 @@ def list_items(text: str) -> list[str]:
     return [item.strip() for item in _split(content) if item.strip()]
 
 
-def _split(text: str) -> list[str]:
+def _nested_items(text: str) -> list[str]:
+    """Return the items of a value that is a list, also of lists, or the value itself."""
+    if not (text.startswith("[") and text.endswith("]")):
+        return [text]
+    return [item.strip() for item in _split(text[1:-1], "([{", ")]}") if item.strip()]
+
+
+def _split(text: str, opening: str = "(", closing: str = ")") -> list[str]:
     """Split a text at the commas outside of parentheses."""
     parts, start, depth = [], 0, 0
     for index, character in enumerate(text):
-        depth += (character == "(") - (character == ")")
+        depth += (character in opening) - (character in closing)
         if character == "," and depth <= 0:
             parts.append(text[start:index])
             start = index + 1

@@ -1,4 +1,4 @@
-"""Find paths in launch files to files that the new version lacks."""
+"""Find paths in launch files to files that the new version lacks, and options that its scripts do not accept."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.readers.launch_files import read_launch_file
 from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.launches.script_options import refused_options
 from linkwright.review.versions import Versions
 
 _LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch.xml", "_launch.xml", ".launch", ".launch.yaml", ".launch.yml")
@@ -17,7 +18,11 @@ _SHARED_PATH = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\s*\)/([\w./+-]+)
 
 
 def lost_references(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the launch files of the new version that name files that only the old version has, each with a change."""
+    """Yield the launch files of the new version that name what it does not have, each with a change.
+
+    These are files that only the old version has, and options that a script does not accept.
+    """
+    yield from refused_options(versions, changed_files)
     lost = {file.old_path for file in changed_files if file.old_path and file.old_path != file.new_path}
     names = {PurePosixPath(path).name for path in lost}
     if not names:

@@ -39,6 +39,7 @@ from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
 from linkwright.review.installed_paths import keeps_installed_path
 from linkwright.review.kinds import (
+    LAUNCH_FILE,
     LAUNCH_HELPER,
     MAP,
     PARAMETERS,
@@ -48,7 +49,7 @@ from linkwright.review.kinds import (
     rule_of,
     rule_of_contents,
 )
-from linkwright.review.launches.formats import is_launch_yaml, with_other_formats
+from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, with_other_formats
 from linkwright.review.launches.helpers import makes_actions
 from linkwright.review.lost_controllers import lost_controllers
 from linkwright.review.lost_files import lost_files
@@ -231,6 +232,8 @@ class _Reviewer:
             rule = rule if any(is_launch_yaml(version.file(name)) for version, name in sides if name) else PARAMETERS
         if rule is not None and rule.kind is SubjectKind.PARAMETERS:
             return MAP if any(is_map(version.file(path)) for version, path in sides if path) else rule
+        if rule is None and any(is_launch_xml(version.file(name)) for version, name in sides if name):
+            return LAUNCH_FILE
         if rule is None and may_help_launch_files(path):
             is_helper = any(makes_actions(version.file(path)) for version, path in sides if path)
             return LAUNCH_HELPER if is_helper else None

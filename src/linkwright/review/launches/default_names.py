@@ -1,4 +1,4 @@
-"""The names that nodes have without being given one, in the sources of the repository."""
+"""The names that nodes have without being given one, and their scripts, in the sources of the repository."""
 
 from __future__ import annotations
 
@@ -29,6 +29,24 @@ def default_name(root: Path, program: str) -> str | None:
     files = _sources_of_class(folder, name.rpartition("::")[2]) if "::" in name else _modules(folder, name)
     names = {item.name for file in files for item in read_source_names(file).names if item.kind is NameKind.NODE}
     return names.pop() if len(names) == 1 else None
+
+
+@lru_cache(maxsize=256)
+def script_of(root: Path, program: str) -> Path | None:
+    """Return the script in Python that a node runs, or None if the repository does not have it, or several.
+
+    Args:
+        root: the folder of the repository.
+        program: the package and the executable, such as ``arm/driver.py``.
+    """
+    package, _, name = program.partition("/")
+    folder = _packages(root).get(package)
+    if folder is None or not name or "/" in name or "$" in name or "*" in name:
+        return None
+    modules = _modules(folder, name)
+    names = (name,) if name.endswith(".py") else (name, f"{name}.py")
+    scripts = modules or [file for each in names for file in sorted(folder.rglob(each)) if file.is_file()]
+    return scripts[0] if len(scripts) == 1 else None
 
 
 @lru_cache(maxsize=4)

@@ -28,7 +28,6 @@ from linkwright.review.list_changes import list_items
 
 _USER_INTERFACE = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
 """Programs that offer nothing to other programs."""
-_USER_INTERFACE_FILE = re.compile(r"rviz|rqt|[^/]*gui[^/]*$")
 _JOINT_STATES = "joint_state_publisher"
 """The beginning of the names of two packages that publish the same."""
 _SPAWNING = re.compile(
@@ -53,8 +52,15 @@ _CODE = re.compile(r"\w\(")
 """A call in a name, whose result is unknown."""
 _UNKNOWN_NAME = re.compile(r"\w\(|\w[.\[][a-z_\"']")
 """A call, attribute or item of Python in a name, whose value is unknown."""
+_PUBLISHED_TOPIC = re.compile(
+    r"[ ._](\w+_)?(pub|publish|published|publisher|out|output)_(\w+_)?topic(_name)?$|"
+    r"[ ._](\w+_)?topic(_name)?_(pub|publish|publisher|out|output)$"
+)
+"""The parameters whose names say that they are the name of a topic that the node publishes."""
+_TOPIC = re.compile(r"[~/\w]+")
 _FRAME_PREFIX = f"{PARAMETER}frame_prefix"
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
+_UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
 _NEVER = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
 _SUBSCRIBERS = re.compile(
@@ -69,7 +75,7 @@ _INPUTS = re.compile(
 
 
 def removal_reason(
-    entry: Entry, outline: LaunchOutline, new: LaunchOutline, *, includes_nodes: bool = False
+    entry: Entry, outline: LaunchOutline, new: LaunchOutline, *, stops_nodes: bool = False
 ) -> Phrase | None:
     """Return why removing a launch action is a breaking change, or None if it is not.
 
@@ -77,21 +83,20 @@ def removal_reason(
         entry: the action.
         outline: the old file, which contains it.
         new: the new file.
-        includes_nodes: whether the action includes a file that is known to start nodes.
+        stops_nodes: whether the action includes a file with nodes that nothing else starts in the new version.
     """
     if entry.kind == "argument" and "value" not in entry.settings:
         return value_reason(entry.name, is_ros1=outline.is_ros1)
     if entry.kind == READING:
         return phrase("a value that a user sets for '{name}' has no effect", name=entry.name)
+    if condition_holds(_condition(entry, outline)) is False:
+        return None
     if entry.kind == "remapping":
         return _remapping_reason(entry.name, entry.settings.get("to"), None, outline, outline)
     if entry.kind not in ("node", "include") or offers_nothing(entry):
         return None
-    if condition_holds(_condition(entry, outline)) is False:
-        return None
     if entry.kind == "include":
-        is_used = includes_nodes and not _USER_INTERFACE_FILE.search(entry.name)
-        return phrase("its nodes do not start any more") if is_used else None
+        return phrase("its nodes do not start any more") if stops_nodes else None
     if any(_starts_same_node(entry, other, outline, new) for other in new.entries):
         return None
     if entry.name.startswith(_JOINT_STATES) and any(other.name.startswith(_JOINT_STATES) for other in new.entries):
@@ -209,7 +214,8 @@ def _parameter_reason(
         return None
     old_name, new_name = old_outline.resolved(old), new_outline.resolved(new)
     is_frame = offers_frame(setting.removeprefix(PARAMETER)) and "$(" not in old_name
-    if is_frame and old_name != new_name:
+    is_topic = _PUBLISHED_TOPIC.search(setting) is not None and _TOPIC.fullmatch(old_name) is not None
+    if (is_frame or is_topic) and old_name.strip("/") != new_name.strip("/") and not _UNKNOWN_NAME.search(new_name):
         return name_reason(old_name)
     if new_outline.is_ros1:
         return None  # ROS 1 converts numbers
@@ -308,9 +314,19 @@ def _renaming_reason(
     old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
     old_name, new_name = _resolved_name(old, old_outline), _resolved_name(new, new_outline)
-    if old_name == new_name or _UNKNOWN_NAME.search(new_name) or _has_new_variable(old_name, new_name):
+    if (
+        _after_unknown(old_name) == _after_unknown(new_name)
+        or _UNKNOWN_NAME.search(new_name)
+        or _has_new_variable(old_name, new_name)
+    ):
         return None
     return phrase("programs that use the names of the node, its topics or its services do not find them")
+
+
+def _after_unknown(name: str) -> str:
+    """Return a name from the last variable without a known value, which may begin with ``/``, or the whole name."""
+    match = _UNKNOWN_NAMESPACE.search(name)
+    return name if match is None else match[1]
 
 
 def _is_name_of_program(entry: Entry, name: str) -> bool:

@@ -11,7 +11,8 @@ from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import addition_reason, removal_reason, value_reason
-from linkwright.review.launches.included import IncludedActions, file_with_moved_action
+from linkwright.review.launches.file_choices import FileChoices
+from linkwright.review.launches.included import IncludedActions, callers_of, file_with_moved_action
 from linkwright.review.launches.matching import MIN_SIMILARITY, matched_entries, replacements
 from linkwright.review.launches.outlines import READING, CodePart, Entry, LaunchOutline
 from linkwright.review.launches.readers_of_environment import reader_of
@@ -41,13 +42,19 @@ def compare_launch_files(pair: FilePair) -> None:
     renamed = renamed_names(old, new)
     old = with_new_names(old, renamed)
     old_names = {new_name: old_name for old_name, new_name in renamed.items()}
-    settings = SettingChanges(pair, old, new, renamed)
+    included = (
+        IncludedActions(pair.versions.old, pair.old_path, old),
+        IncludedActions(pair.versions.new, pair.new_path, new),
+    )
+    settings = SettingChanges(pair, old, new, renamed, included[1])
+    choices = FileChoices(pair, old, new)
     settings.add_renamed()
     gone: list[Entry] = []
     come: list[Entry] = []
     for old_entry, new_entry in matched_entries(old.entries, new.entries):
         if old_entry is not None and new_entry is not None:
             settings.compare(old_entry, new_entry)
+            choices.compare(old_entry, new_entry)
         elif old_entry is not None:
             gone.append(old_entry)
         elif new_entry is not None:
@@ -61,6 +68,7 @@ def compare_launch_files(pair: FilePair) -> None:
         text = phrase("{old} replaced by {new}", old=title(renamed_entry(old_entry, old_names)), new=title(new_entry))
         pair.add(text, pair.location(new_entry.span))
         settings.compare(old_entry, new_entry)
+        choices.compare(old_entry, new_entry)
     settings.add_groups()
     gone = [entry for entry in gone if all(entry is not other for other, _ in replaced)]
     come = [entry for entry in come if all(entry is not other for _, other in replaced)]
@@ -75,7 +83,7 @@ def compare_launch_files(pair: FilePair) -> None:
         pair.add(text, pair.location(entry.span), reason)
     _add_unused_arguments(pair, old, new)
     if gone or come:
-        _add_lone_entries(pair, gone, come, old, new, old_names)
+        _add_lone_entries(pair, gone, come, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
         _compare_code(pair, old, new)
 
@@ -84,13 +92,12 @@ def _add_lone_entries(
     pair: FilePair,
     gone: Sequence[Entry],
     come: Sequence[Entry],
-    old: LaunchOutline,
-    new: LaunchOutline,
+    included: tuple[IncludedActions, IncludedActions],
     old_names: Mapping[str, str],
 ) -> None:
     """Add the actions that only one version has, and those that are in an included file of the other version."""
-    old_included = IncludedActions(pair.versions.old, pair.old_path, old)
-    new_included = IncludedActions(pair.versions.new, pair.new_path, new)
+    old_included, new_included = included
+    stopped = old_included.all_started() - new_included.all_started()
     moved: dict[tuple[str, bool], list[Entry]] = {}
     for entry in come:
         file = old_included.lone_file(entry, new_included)
@@ -113,8 +120,10 @@ def _add_lone_entries(
         file = file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
         if file is not None:
             text = phrase("{entry} moved to {file}", entry=title(written), file=file)
-        includes_nodes = entry.kind == "include" and old_included.starts_nodes(entry)
-        pair.add(text, location, removal_reason(entry, old, new, includes_nodes=includes_nodes))
+        stops_nodes = entry.kind == "include" and bool(old_included.started(entry) & stopped)
+        pair.add(
+            text, location, removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes)
+        )
     for (file, is_old), entries in moved.items():
         titles = joined_titles(entries)
         text = phrase("{entry} moved from {file}", entry=titles, file=file)
@@ -129,7 +138,16 @@ def _undeclared_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline
         return {}
     old_names = IncludedActions(pair.versions.old, pair.old_path, old).undeclared()
     new_names = IncludedActions(pair.versions.new, pair.new_path, new).undeclared()
-    return {name: entry for name, entry in new_names.items() if name not in old_names}
+    names = {name: entry for name, entry in new_names.items() if name not in old_names}
+    return {name: entry for name, entry in names.items() if not _is_declared_by_caller(pair, name)}
+
+
+def _is_declared_by_caller(pair: FilePair, name: str) -> bool:
+    """Return whether a launch file that includes this one passes an argument, or has one of this name itself."""
+    return any(
+        name in include.settings or (not outline.is_ros1 and name in outline.values)
+        for outline, include in callers_of(pair.versions.new, pair.new_path, name)
+    )
 
 
 def _add_unused_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:

@@ -7,7 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 
 from linkwright.files.git_repository import ChangedFile
+from linkwright.packages.launch_files import is_launch_file_name
 
+_LAUNCH_ROOT = re.compile(rb"\s*(<\?[^>]*>\s*)?(<!--(?:[^-]|-(?!->))*-->\s*)*<launch[\s>]")
 _SUFFIX = re.compile(r"[._]launch(\.(py|xml|ya?ml))?$")
 
 
@@ -35,6 +37,19 @@ def _key(path: str | None) -> tuple[str, str]:
     if not _SUFFIX.search(pure_path.name):
         return "", ""
     return str(pure_path.parent), _SUFFIX.sub("", pure_path.name)
+
+
+def is_launch_file(path: str) -> bool:
+    """Return whether the path is that of a launch file of ROS 1 or ROS 2."""
+    return path.endswith(".launch") or is_launch_file_name(path)
+
+
+def is_launch_xml(file: Path) -> bool:
+    """Return whether an XML file has the root of a launch file, as files that others include may have."""
+    try:
+        return file.suffix == ".xml" and _LAUNCH_ROOT.match(file.read_bytes()) is not None
+    except OSError:
+        return False
 
 
 def is_launch_yaml(file: Path) -> bool:

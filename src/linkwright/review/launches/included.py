@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.launches.outlines import Entry, LaunchOutline
+from linkwright.review.launches.conditions import condition_holds
+from linkwright.review.launches.effects import offers_nothing
+from linkwright.review.launches.formats import is_launch_file
+from linkwright.review.launches.matching import launch_file_key
+from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.titles import served_names
 from linkwright.review.versions import Version, Versions
@@ -22,6 +28,13 @@ _MAX_DEPTH = 3
 _MAX_FILES = 30
 _MAX_BYTES = 1 << 20
 _MAX_CHANGED = 60
+_LAUNCH_SUFFIXES = (".launch", ".xml", "launch.py", "launch.yaml", "launch.yml")
+Program = tuple[str, str]
+"""The kind and the name of an action that starts a program."""
+_FILE_WITHOUT_NODES = re.compile(
+    r"rviz|rqt|[^/]*gui[^/]*$|(^|[/_])(machines?|upload(_\w+)?|params?|parameters)[._]launch"
+)
+"""The files whose names say that they start nothing that other programs use."""
 _Key = tuple[str, str, "str | None", tuple[str, ...]]
 """The kind, the name, the name of the node and the names that it serves."""
 _USED = re.compile(r"\$\((?:var|arg) (?P<name>[\w./-]+)\)")
@@ -34,12 +47,16 @@ class IncludedActions:
         version: the version of the repository.
         path: the path of the launch file, relative to the root.
         outline: the actions of the file.
+
+    Attributes:
+        outline: the actions of the file.
     """
 
     def __init__(self, version: Version, path: str, outline: LaunchOutline) -> None:
         self._version = version
         self._path = path
-        self._outline = outline
+        self.outline = outline
+        self._outlines: dict[Path, LaunchOutline | None] = {}
 
     def lone_file(self, entry: Entry, other: IncludedActions) -> str | None:
         """Return the included file with an action, or None if there is none, or if the other version also has one."""
@@ -60,14 +77,14 @@ class IncludedActions:
     def _included(self) -> dict[str, LaunchOutline]:
         """The outlines of the included files, by path."""
         found: dict[str, LaunchOutline] = {}
-        waiting = [(self._version.file(self._path), self._outline, 0)]
+        waiting = [(self._version.file(self._path), self.outline, 0)]
         for file, outline, depth in waiting:
             for entry in outline.entries if depth < _MAX_DEPTH else ():
                 inner = self._file_of(entry, file)
                 path = None if inner is None else self._version.relative(inner)
                 if inner is None or path is None or path in found or len(found) >= _MAX_FILES:
                     continue
-                inner_outline = _read(inner, self._version.root)
+                inner_outline = self._read(inner)
                 if inner_outline is not None:
                     found[path] = inner_outline
                     waiting.append((inner, inner_outline, depth + 1))
@@ -80,6 +97,8 @@ class IncludedActions:
         shared = _SHARED.fullmatch(entry.name)
         if shared is not None:
             share = self._version.share_of(shared["package"], includer.parent)
+            if share is None:  # a package without package.xml, as rosbuild has
+                share = next((folder for folder in includer.parents if folder.name == shared["package"]), None)
             file = None if share is None else _file_below(share, shared["path"])
         elif entry.name.startswith(_BESIDE) and "$" not in entry.name.removeprefix(_BESIDE):
             file = includer.parent / entry.name.removeprefix(_BESIDE)
@@ -87,21 +106,57 @@ class IncludedActions:
             file = None
         return None if file is None or ".." in file.parts or not file.is_file() else file
 
-    def starts_nodes(self, entry: Entry) -> bool:
-        """Return whether an action includes a file of the repository that starts nodes, or includes further files."""
-        file = self._file_of(entry, self._version.file(self._path))
-        outline = None if file is None else _read(file, self._version.root)
-        return outline is not None and any(other.kind in _STARTING for other in outline.entries)
+    def started(self, entry: Entry) -> Counter[Program]:
+        """Return what an included file starts by default and other programs use; the file itself if it is unknown."""
+        return Counter(self._started(entry, self.outline, self._version.file(self._path), 0))
+
+    def all_started(self, values: Mapping[str, str] | None = None) -> Counter[Program]:
+        """Return what the launch file starts by default and other programs use, with the files that it includes.
+
+        Args:
+            values: other defaults of arguments, by name.
+        """
+        outline = self.outline.with_defaults(values) if values else self.outline
+        return Counter(self._started_by(outline, self._version.file(self._path), 0))
+
+    def _started_by(self, outline: LaunchOutline, file: Path, depth: int) -> Iterator[Program]:
+        for entry in outline.entries:
+            if (
+                entry.kind in _STARTING
+                and condition_holds(outline.resolved(entry.settings.get(CONDITION, ""))) is False
+            ):
+                continue
+            if entry.kind == "include":
+                yield from self._started(entry, outline, file, depth)
+            elif entry.kind in _STARTING and not offers_nothing(entry):
+                yield entry.kind, outline.resolved(entry.name)
+
+    def _started(self, entry: Entry, outline: LaunchOutline, file: Path, depth: int) -> Iterator[Program]:
+        resolved = replace(entry, name=outline.resolved(entry.name))
+        inner_file = self._file_of(resolved, file) if depth < _MAX_DEPTH else None
+        inner = None if inner_file is None else self._read(inner_file)
+        if inner_file is None or inner is None:
+            if not _FILE_WITHOUT_NODES.search(resolved.name):
+                yield resolved.kind, resolved.name
+            return
+        passed = {name: outline.resolved(value) for name, value in entry.settings.items()}
+        inherited = {} if outline.is_ros1 or inner.is_ros1 else outline.values
+        yield from self._started_by(inner.with_defaults({**inherited, **passed}), inner_file, depth + 1)
+
+    def _read(self, file: Path) -> LaunchOutline | None:
+        if file not in self._outlines:
+            self._outlines[file] = _read(file, self._version.root)
+        return self._outlines[file]
 
     def undeclared(self) -> dict[str, Entry]:
         """Return the arguments without a default that nothing declares, each with the first action that uses it.
 
         An argument that a file of another package may declare, or an action that cannot be read, is left out.
         """
-        entries = self._outline.entries
+        entries = self.outline.entries
         if any(entry.kind == "action" or (entry.has_value and "$(" in entry.name) for entry in entries):
             return {}
-        outlines = [self._outline, *self._included.values()]
+        outlines = [self.outline, *self._included.values()]
         declared = {entry.name for outline in outlines for entry in outline.entries if entry.has_value}
         file = self._version.file(self._path)
         unknown = [e.span.line for e in entries if e.kind == "include" and self._file_of(e, file) is None]
@@ -114,6 +169,23 @@ class IncludedActions:
                     if match["name"] not in declared:
                         undeclared.setdefault(match["name"], entry)
         return undeclared
+
+
+def callers_of(version: Version, path: str, name: str) -> Iterator[tuple[LaunchOutline, Entry]]:
+    """Yield the launch files that include a file and contain a name, each with the action that includes it.
+
+    Args:
+        version: the version of the repository.
+        path: the path of the included file, relative to the root.
+        name: the name, such as that of an argument.
+    """
+    key = launch_file_key(path)
+    for other in version.paths(_LAUNCH_SUFFIXES):
+        text = version.text(other) if other != path else ""
+        outline = _read(version.file(other), version.root) if key in text and name in text else None
+        if outline is not None:
+            includes = (entry for entry in outline.entries if entry.kind == "include")
+            yield from ((outline, entry) for entry in includes if launch_file_key(entry.name) == key)
 
 
 def _file_below(share: Path, path: str) -> Path | None:
@@ -137,7 +209,7 @@ def file_with_moved_action(entry: Entry, versions: Versions, path: str, *, is_re
         return None
     key = _key(entry)
     for file in versions.changed_files[:_MAX_CHANGED]:
-        if path in (file.old_path, file.new_path) or not is_launch_file_name(file.path):
+        if path in (file.old_path, file.new_path) or not is_launch_file(file.path):
             continue
         old = _keys(versions.old.file(file.old_path), versions.old.root) if file.old_path else frozenset()
         new = _keys(versions.new.file(file.new_path), versions.new.root) if file.new_path else frozenset()

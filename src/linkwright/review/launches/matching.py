@@ -14,6 +14,7 @@ MIN_SIMILARITY = 0.5
 _MIN_SIMILARITY_OF_PROGRAMS = 0.75
 _MIN_SIMILARITY_OF_FILES = 0.6
 _SEPARATORS = re.compile(r"[\W_]+|node")
+_NODELET = re.compile(r"(?:load|standalone) (\S+)")
 Match = tuple["Entry | None", "Entry | None"]
 """The old and the new action; None for the version that does not have it."""
 
@@ -53,11 +54,14 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
     similarity = _similarity(old, new)
     if old.kind in ("include", "parameters"):
         old_name = PurePosixPath(old.name).name
-        is_same = _file_key(new_names.get(old_name, old_name)) == _file_key(new.name)
-        likeness = SequenceMatcher(None, _file_key(old.name), _file_key(new.name), autojunk=False).ratio()
-        is_like = bool(old.settings) and old.settings == new.settings and likeness >= _MIN_SIMILARITY_OF_FILES
-        return 1.0 + similarity if is_same else likeness * is_like
-    if old.kind != "node":
+        is_same = launch_file_key(new_names.get(old_name, old_name)) == launch_file_key(new.name)
+        likeness = SequenceMatcher(None, launch_file_key(old.name), launch_file_key(new.name), autojunk=False).ratio()
+        if likeness < _MIN_SIMILARITY_OF_FILES and not is_same:
+            return 0.0
+        is_like = bool(old.settings) and old.settings == new.settings
+        is_beside = old.kind == "include" and PurePosixPath(old.name).parent == PurePosixPath(new.name).parent
+        return 1.0 + similarity if is_same else likeness * (is_like or is_beside)
+    if old.kind != "node" or _load_other_classes(old, new):
         return 0.0
     (old_package, old_program), (new_package, new_program) = _program(old), _program(new)
     name = old.settings.get("name")
@@ -83,7 +87,7 @@ def _program(entry: Entry) -> tuple[str, str]:
     return package, program.removesuffix(".py")
 
 
-def _file_key(path: str) -> str:
+def launch_file_key(path: str) -> str:
     """Return the name of a launch file without the ends of such names."""
     name = PurePosixPath(path).name
     return re.sub(r"[._]launch(\.(py|xml|ya?ml))?$|\.(py|xml|ya?ml)$", "", name)
@@ -94,6 +98,13 @@ def _by_name(entries: Sequence[Entry]) -> dict[tuple[str, str], list[Entry]]:
     for entry in entries:
         groups.setdefault((entry.kind, "" if entry.kind == "process" else entry.name), []).append(entry)
     return groups
+
+
+def _load_other_classes(old: Entry, new: Entry) -> bool:
+    """Return whether two nodelets are of different classes."""
+    nodelets = [_NODELET.match(entry.settings.get("arguments", "")) for entry in (old, new)]
+    classes = {match[1] for match in nodelets if match is not None}
+    return old.name == new.name == "nodelet/nodelet" and len(classes) > 1
 
 
 def _matched(old: list[Entry], new: list[Entry]) -> Iterator[Match]:
@@ -119,6 +130,8 @@ def _matched(old: list[Entry], new: list[Entry]) -> Iterator[Match]:
     old_left, new_left = set(range(len(old_rest))), set(range(len(new_rest)))
     for similarity, i, k in candidates:
         if new_rest[k].kind == "process" and similarity < MIN_SIMILARITY:
+            continue
+        if _load_other_classes(old_rest[i], new_rest[k]):
             continue
         if i in old_left and k in new_left:
             old_left.remove(i)

@@ -26,6 +26,8 @@ _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*
 _ENVIRONMENT = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)")
 _CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")
 """The condition of a setting after its name."""
+_PUSH = "\n"
+"""The separator of pushed namespaces, which are joined when the defaults of arguments are known."""
 _MAX_DEPTH = 5
 """The number of variables whose values may contain variables."""
 _MAX_LENGTH = 10_000
@@ -125,12 +127,22 @@ class LaunchOutline:
             text = resolved
         return text
 
+    def with_defaults(self, values: Mapping[str, str]) -> LaunchOutline:
+        """Return the outline with the values that a caller passes in place of the defaults of arguments."""
+        entries = [
+            replace(entry, settings={**entry.settings, "default": values[entry.name]})
+            if entry.kind == "argument" and "value" not in entry.settings and entry.name in values
+            else entry
+            for entry in self.entries
+        ]
+        return replace(self, entries=entries)
+
     def _value(self, variable: re.Match[str]) -> str:
-        value = self._values.get(variable["name"], variable["default"])
+        value = self.values.get(variable["name"], variable["default"])
         return variable[0] if value is None else value
 
     @cached_property
-    def _values(self) -> dict[str, str]:
+    def values(self) -> dict[str, str]:
         """The defaults and values of arguments, and those of variables, if there is only one, by name.
 
         A name that several actions set under conditions has the value of the only one whose condition can hold.
@@ -194,13 +206,24 @@ class Scope:
             settings[CONDITION] = " and ".join(dict.fromkeys(conditions))
         key = NAMESPACE if kind == "node" else NAMESPACE_OF_INCLUDED
         if self.namespaces and kind in ("node", "include"):
-            settings[key] = _joined_namespace([*self.namespaces, *filter(None, [own.get(key)])])
+            settings[key] = _PUSH.join([*self.namespaces, *filter(None, [own.get(key)])])
         return settings
 
 
-def _joined_namespace(names: Sequence[str]) -> str:
-    """Return the namespace after pushes; a name that begins with ``/`` replaces those before it."""
-    text = ""
-    for name in names:
-        text = name if name.startswith("/") or not text else f"{text}/{name}"
-    return text
+def with_joined_namespaces(outline: LaunchOutline) -> LaunchOutline:
+    """Return an outline in which each namespace that groups push is one text."""
+    entries = [
+        replace(entry, settings={name: _joined_namespace(name, text, outline) for name, text in entry.settings.items()})
+        for entry in outline.entries
+    ]
+    return replace(outline, entries=entries)
+
+
+def _joined_namespace(setting: str, text: str, outline: LaunchOutline) -> str:
+    """Return the namespace after pushes; a name that begins with ``/`` by default replaces those before it."""
+    if setting not in (NAMESPACE, NAMESPACE_OF_INCLUDED):
+        return text
+    joined = ""
+    for name in text.split(_PUSH):
+        joined = name if not joined or outline.resolved(name).startswith("/") else f"{joined}/{name}"
+    return joined

@@ -21,8 +21,10 @@ from linkwright.review.launches.text import BoundExpression, ExpressionTexts
 
 _NODES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
 _PROCESSES = ("ExecuteProcess", "ExecuteLocal")
+_ARGUMENTS = ("DeclareLaunchArgument", "DeclareBooleanLaunchArg")
+"""The classes that declare arguments; the second is one of MoveIt."""
 _ENVIRONMENT = ("SetEnvironmentVariable", "AppendEnvironmentVariable", "UnsetEnvironmentVariable")
-_OTHERS = ("DeclareLaunchArgument", "IncludeLaunchDescription", "SetLaunchConfiguration", "SetRemap", "SetParameter")
+_OTHERS = (*_ARGUMENTS, "IncludeLaunchDescription", "SetLaunchConfiguration", "SetRemap", "SetParameter")
 ACTIONS = frozenset({*_NODES, *_PROCESSES, *_ENVIRONMENT, *_OTHERS})
 """The classes whose calls make actions."""
 _HANDLER = "RegisterEventHandler"
@@ -64,7 +66,7 @@ class _Reader:
         python: the file.
         helpers: the functions of the repository that make actions.
         texts: the texts of expressions.
-        extra: the keyword arguments that the caller of a function passes on with ``**``, as texts.
+        extra: the keyword arguments that the caller of a function passes on with ``**``.
         depth: the number of functions that call the function that is read.
         scopes: each call that makes an action, with its scope and its texts, by the identity of its syntax tree and
             the passes of the loops around it.
@@ -75,7 +77,7 @@ class _Reader:
     python: PythonFile
     helpers: HelperFunctions
     texts: ExpressionTexts
-    extra: Mapping[str, str] = field(default_factory=dict)
+    extra: Mapping[str, BoundExpression] = field(default_factory=dict)
     depth: int = 0
     scopes: dict[_Place, tuple[ast.Call, Scope, ExpressionTexts]] = field(default_factory=dict)
     covered: set[int] = field(default_factory=set)
@@ -123,10 +125,10 @@ class _Reader:
             for item in node.elts:
                 scope = scope.pushed(self._pushed(item))
                 self.visit(item, scope)
-        elif isinstance(node, ast.For) and isinstance(node.target, ast.Name):
-            self._visit_loop(node.target.id, node.iter, node.body, scope)
-        elif isinstance(node, (ast.ListComp, ast.GeneratorExp)) and isinstance(node.generators[0].target, ast.Name):
-            self._visit_loop(node.generators[0].target.id, node.generators[0].iter, [node.elt], scope)
+        elif isinstance(node, ast.For):
+            self._visit_loop(node.target, node.iter, node.body, scope)
+        elif isinstance(node, (ast.ListComp, ast.GeneratorExp)):
+            self._visit_loop(node.generators[0].target, node.generators[0].iter, [node.elt], scope)
         elif isinstance(node, ast.If):
             self._visit_branches(node, scope)
         elif isinstance(node, ast.FunctionDef):
@@ -145,10 +147,13 @@ class _Reader:
         self.visit(value, scope)
         self.texts, self._loops = texts, loops
 
-    def _visit_loop(self, name: str, iterable: ast.expr, body: Sequence[ast.stmt | ast.expr], scope: Scope) -> None:
+    def _visit_loop(
+        self, target: ast.expr, iterable: ast.expr, body: Sequence[ast.stmt | ast.expr], scope: Scope
+    ) -> None:
         """Find the actions of a loop, for each item if the list is written in the file."""
         items = self.texts.items(iterable)
-        if items is None or not self.helpers.take_passes(len(items)):
+        passes = [self.texts.with_item(target, item) for item in items or ()]
+        if items is None or None in passes or not self.helpers.take_passes(len(items)):
             for statement in body:
                 self.visit(statement, scope)
             return
@@ -156,8 +161,8 @@ class _Reader:
         texts, loops = self.texts, self._loops
         lines = [line for node in body for line in (node.lineno, node.end_lineno or node.lineno)]
         self._outside.append((min(lines), max(lines), texts, loops))
-        for number, item in enumerate(items):
-            self.texts, self._loops = texts.with_value(name, item), (*loops, number)
+        for number, pass_texts in enumerate(filter(None, passes)):
+            self.texts, self._loops = pass_texts, (*loops, number)
             for statement in body:
                 self.visit(statement, scope)
         self.texts, self._loops = texts, loops
@@ -262,8 +267,8 @@ class _Reader:
 
     def _arguments(
         self, call: ast.Call, function: Function
-    ) -> tuple[dict[str, str], dict[str, BoundExpression], dict[str, str]]:
-        """Return the texts and expressions of a function's parameters, and the texts of its ``**`` parameter."""
+    ) -> tuple[dict[str, str], dict[str, BoundExpression], dict[str, BoundExpression]]:
+        """Return the texts and expressions of a function's parameters, and the expressions of its ``**`` parameter."""
         arguments = function.node.args
         names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
         defaults = dict(zip(names[len(names) - len(arguments.defaults) :], arguments.defaults, strict=True))
@@ -275,15 +280,17 @@ class _Reader:
             names = names[1:]
         given = dict(zip(names, call.args, strict=False))
         bindings |= {name: self.texts.text(value) for name, value in given.items()}
-        extra: dict[str, str] = {}
+        extra: dict[str, BoundExpression] = {}
         known = {*names, *(argument.arg for argument in arguments.kwonlyargs)}
         for keyword in call.keywords:
             if keyword.arg is None:
                 extra |= self.extra
+            elif keyword.arg not in known:
+                extra[keyword.arg] = self.texts.value(keyword.value)
             elif keyword.arg == CONDITION:
-                (bindings if keyword.arg in known else extra)[keyword.arg] = self.texts.condition(keyword.value)
+                bindings[keyword.arg] = self.texts.condition(keyword.value)
             else:
-                (bindings if keyword.arg in known else extra)[keyword.arg] = self.texts.text(keyword.value)
+                bindings[keyword.arg] = self.texts.text(keyword.value)
         given |= {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg in known}
         values = {name: self.texts.value(value) for name, value in given.items()}
         return bindings, values, extra
@@ -298,7 +305,7 @@ class _Reader:
         first_text = text(first.value if isinstance(first, ast.keyword) else first)
         second_text = text(call.args[1] if len(call.args) > 1 else _second_keyword(call))
         settings: dict[str, str] = {}
-        if function == "DeclareLaunchArgument":
+        if function in _ARGUMENTS:
             kind, name = "argument", text(call.args[0] if call.args else keywords.get("name"))
             names = {"default_value": "default", "choices": "choices"}
             settings = {names[key]: text(value) for key, value in keywords.items() if key in names}
@@ -323,8 +330,10 @@ class _Reader:
         else:
             kind = "node"
             name = "/".join(text(keywords[key]) for key in ("package", "executable", "plugin") if key in keywords)
-            name, settings = name or text(call.func), {**self._node_settings(keywords), **extra}
-        condition = self.texts.condition(keywords.get(CONDITION)) or extra.get(CONDITION, "")
+            name, settings = name or text(call.func), self._node_settings(keywords, extra)
+        condition = self.texts.condition(keywords.get(CONDITION))
+        if not condition and CONDITION in extra:
+            condition = extra[CONDITION].texts.condition(extra[CONDITION].node)
         if condition:
             settings[CONDITION] = condition
         return Entry(kind, name, scope.settings(kind, settings), self.python.span(call))
@@ -354,7 +363,7 @@ class _Reader:
 
     def _foreign_action(self, call: ast.Call, scope: Scope) -> Entry:
         keywords = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
-        settings = self._other_settings(keywords)
+        settings = self._node_settings(keywords)
         if call.args:
             settings["arguments"] = f"[{', '.join(map(self.texts.text, call.args))}]"
         condition = self.texts.condition(keywords.get(CONDITION))
@@ -370,44 +379,71 @@ class _Reader:
         return {"launch_arguments": self.texts.text(node)} if pairs is None else dict(pairs)
 
     def _other_settings(self, keywords: Mapping[str, ast.expr]) -> dict[str, str]:
-        ignored = {*_NOT_COMPARED, *_INNER_ACTIONS, CONDITION}
-        return {key: self.texts.text(value) for key, value in keywords.items() if key not in ignored}
+        return _texts({key: BoundExpression(self.texts, value) for key, value in keywords.items()})
 
-    def _node_settings(self, keywords: Mapping[str, ast.expr]) -> dict[str, str]:
-        """Return the settings of a node, with each parameter and remapping alone."""
+    def _node_settings(
+        self, keywords: Mapping[str, ast.expr], extra: Mapping[str, BoundExpression] | None = None
+    ) -> dict[str, str]:
+        """Return the settings of a node, with each parameter and remapping alone.
+
+        Args:
+            keywords: the keyword arguments of the call.
+            extra: those that the call passes on with ``**``.
+        """
+        others = {key: BoundExpression(self.texts, value) for key, value in keywords.items()} | dict(extra or {})
         parts: dict[str, str] = {}
-        others = dict(keywords)
-        if "remappings" in keywords:
-            pairs = self._remappings(keywords["remappings"])
-            if pairs is not None:
-                del others["remappings"]
-                parts |= {f"{REMAPPING}{source}": target for source, target in pairs}
-        if "parameters" in keywords:
-            value = self.python.resolved(keywords["parameters"])
-            if isinstance(value, (ast.List, ast.Tuple)):
-                del others["parameters"]
-                parts |= self._parameters(value.elts)
-        return {**self._other_settings(others), **parts}
+        arguments = others.get("arguments")
+        if arguments is not None and isinstance(arguments.texts.value(arguments.node).node, (ast.List, ast.Tuple)):
+            words = arguments.texts.list_parts(arguments.node)
+            parts["arguments"] = f"[{', '.join(word.texts.joined_text(word.node) for word in words)}]"
+            del others["arguments"]
+        if "remappings" in others:
+            parts |= _remappings(others.pop("remappings"))
+        if "parameters" in others:
+            parts |= _parameters(others.pop("parameters"))
+        return {**_texts(others), **parts}
 
-    def _remappings(self, node: ast.expr) -> list[tuple[str, str]] | None:
-        node = self.python.resolved(node)
-        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-            sides = [self._remappings(side) for side in (node.left, node.right)]
-            return None if None in sides else [pair for side in sides if side for pair in side]
-        return self.texts.pairs(node)
 
-    def _parameters(self, items: list[ast.expr]) -> dict[str, str]:
-        parameters: dict[str, str] = {}
-        files = []
-        for item in items:
-            resolved = self.python.resolved(item)
-            is_mapping = isinstance(resolved, (ast.Dict, ast.Call))
-            pairs = self.texts.pairs(resolved, of_parameters=True) if is_mapping else None
-            if pairs is None:
-                files.append(self.texts.text(item))
-            else:
-                parameters |= {f"{PARAMETER}{name}": value for name, value in pairs}
-        return {**({"parameters": f"[{', '.join(files)}]"} if files else {}), **parameters}
+def _texts(values: Mapping[str, BoundExpression]) -> dict[str, str]:
+    ignored = {*_NOT_COMPARED, *_INNER_ACTIONS, CONDITION}
+    return {key: value.texts.text(value.node) for key, value in values.items() if key not in ignored}
+
+
+def _remappings(value: BoundExpression) -> dict[str, str]:
+    """Return each remapping of a list, and the parts of the list that are not known."""
+    remappings: dict[str, str] = {}
+    others: list[BoundExpression] = []
+    for part in value.texts.list_parts(value.node):
+        pair = part.texts.pair(part.node)
+        pairs = [pair] if pair is not None else part.texts.pairs(part.node)
+        if pairs is None:
+            others.append(part)
+        else:
+            remappings |= {f"{REMAPPING}{source}": target for source, target in pairs}
+    return _unknown_parts("remappings", value, others) | remappings
+
+
+def _parameters(value: BoundExpression) -> dict[str, str]:
+    """Return each parameter of a list, and the files and other parts of the list."""
+    parameters: dict[str, str] = {}
+    others: list[BoundExpression] = []
+    for part in value.texts.list_parts(value.node):
+        is_mapping = isinstance(part.node, (ast.Dict, ast.Call))
+        pairs = part.texts.pairs(part.node, of_parameters=True) if is_mapping else None
+        if pairs is None:
+            others.append(part)
+        else:
+            parameters |= {f"{PARAMETER}{name}": text for name, text in pairs}
+    return _unknown_parts("parameters", value, others) | parameters
+
+
+def _unknown_parts(name: str, value: BoundExpression, parts: Sequence[BoundExpression]) -> dict[str, str]:
+    """Return the parts of a list as one setting, or the value itself if it is not a list."""
+    if not parts:
+        return {}
+    texts = [part.texts.text(part.node) for part in parts]
+    is_list = len(parts) > 1 or isinstance(value.texts.value(value.node).node, (ast.List, ast.Tuple))
+    return {name: f"[{', '.join(texts)}]" if is_list else texts[0]}
 
 
 def _unused_values(tree: ast.AST) -> frozenset[int]:

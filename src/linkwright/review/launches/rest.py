@@ -129,6 +129,10 @@ class _Rest:
             return ""
         if isinstance(node, (ast.List, ast.Tuple)):
             return self._items(node.elts)
+        if isinstance(node, ast.Starred):
+            return self.text(node.value)
+        if isinstance(node, ast.BinOp) and not self.text(node.left) and not self.text(node.right):
+            return ""  # a sum of lists of actions
         if isinstance(node, ast.Return):
             value = "" if node.value is None else self.text(node.value)
             return f"return {value}" if value else ""

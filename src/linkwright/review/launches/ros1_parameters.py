@@ -8,9 +8,11 @@ from collections.abc import Mapping
 import yaml
 
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.yaml_values import composed, yaml_values
+from linkwright.review.files.yaml_values import YamlValue, composed, yaml_values
 
 _DEFAULT_COMMAND = "load"
+_NULL = "null"
+_NULL_TEXTS = ("", "~", _NULL)
 WRITTEN_TEXT = "YAML text"
 """The name of parameters whose text is not YAML before substitution."""
 
@@ -42,7 +44,12 @@ def written_parameters(attributes: Mapping[str, str], text: str) -> dict[str, st
         values = {}
     if not values or (not path and not isinstance(root, yaml.MappingNode)):
         return {path or WRITTEN_TEXT: " ".join(text.split())}
-    return {_joined(path, name): value.text for name, value in values.items()}
+    return {_joined(path, name): _text(value) for name, value in values.items()}
+
+
+def _text(value: YamlValue) -> str:
+    """Return the text of a value; an empty one is null, which is not an empty text."""
+    return _NULL if value.type is None and not value.is_list and value.text in _NULL_TEXTS else value.text
 
 
 def _joined(path: str, name: str) -> str:

@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
 from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.conditional_settings import changed_settings
 from linkwright.review.launches.default_names import default_name
 from linkwright.review.launches.effects import setting_reason, value_reason
-from linkwright.review.launches.outlines import CONDITION, PARAMETER, READING, REMAPPING, Entry, LaunchOutline
+from linkwright.review.launches.included import IncludedActions, Program
+from linkwright.review.launches.outlines import (
+    CONDITION,
+    NAMESPACE,
+    NAMESPACE_OF_INCLUDED,
+    PARAMETER,
+    READING,
+    REMAPPING,
+    Entry,
+    LaunchOutline,
+)
 from linkwright.review.launches.renames import translated
 from linkwright.review.launches.titles import distinct_title, joined_texts, joined_titles, title
 from linkwright.review.list_changes import change_text, shortened
@@ -21,6 +31,8 @@ from linkwright.review.merging import name_edit
 _MIN_GROUP = 3
 """The minimum number of added or removed parameters or remappings of a node that are reported as one change."""
 _MAX_VALUE = 60
+_PASSED = "passed"
+"""The group of the arguments that an action passes to the file that it includes."""
 
 
 @dataclass(frozen=True)
@@ -66,10 +78,19 @@ class SettingChanges:
         old: the old outline, with the new names of arguments.
         new: the new outline.
         renamed: the new names of arguments, by old name.
+        included: the new actions with those of the included files.
     """
 
-    def __init__(self, pair: FilePair, old: LaunchOutline, new: LaunchOutline, renamed: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        pair: FilePair,
+        old: LaunchOutline,
+        new: LaunchOutline,
+        renamed: Mapping[str, str],
+        included: IncludedActions,
+    ) -> None:
         self._pair = pair
+        self._included = included
         self._old = old
         self._new = new
         self._renamed = renamed
@@ -100,7 +121,7 @@ class SettingChanges:
                 continue
             defaults = each.old_default, each.new_default
             is_other = each.has_defaults and defaults[0] != defaults[1]
-            reason = setting_reason(new, each.name, *defaults, self._old, self._new) if is_other else None
+            reason = self._reason(new, each.name, *defaults) if is_other else None
             if new.kind == READING and reason is None:
                 continue
             old_text = None if each.old is None else translated(each.old, self._old_names)
@@ -110,9 +131,28 @@ class SettingChanges:
             else:
                 place = new, self._pair.location(new.span), setting
                 self._remappings.setdefault((setting.edit, reason is None), []).append(place)
-        for text, reason, name in _joined_settings(settings):
+        for text, reason, name in _joined_settings(settings, is_include=new.kind == "include"):
             # A group may give a condition to actions that other programs need and to those of a user interface.
             self._add(new, text, reason, is_apart=name != CONDITION)
+
+    def _reason(self, entry: Entry, setting: str, old: str | None, new: str | None) -> Phrase | None:
+        """Return why a changed setting is breaking: by the rules for names, or by the nodes that it stops."""
+        reason = setting_reason(entry, setting, old, new, self._old, self._new)
+        if entry.kind == "include":
+            if setting == CONDITION:
+                return reason if self._included.started(entry) else None
+            return reason or self._reason_of_passed(entry, setting, old)
+        if entry.kind == "argument" and setting == "default" and reason is None and old is not None:
+            lost = self._included.all_started({entry.name: old}) - self._included.all_started()
+            return _stopped_reason(lost) if lost else None
+        return reason
+
+    def _reason_of_passed(self, include: Entry, setting: str, old: str | None) -> Phrase | None:
+        """Return why another value for an argument of an included file is breaking, or None if it is not."""
+        others = {name: value for name, value in include.settings.items() if name != setting}
+        before = replace(include, settings=others if old is None else {**others, setting: old})
+        lost = self._included.started(before) - self._included.started(include)
+        return _stopped_reason(lost) if lost else None
 
     def _is_same_name(self, entry: Entry, setting: str, old: str | None, new: str | None) -> bool:
         """Return whether a setting gives the name that is used without it: of a node, or of a topic."""
@@ -145,22 +185,43 @@ class SettingChanges:
             _, location, change, _ = places[0]
             reason = next((reason for _, _, _, reason in places if reason is not None), None)
             entries = [entry for entry, _, _, _ in places]
-            titles = [distinct_title(entry, self._new.entries) for entry in entries]
+            titles = [self._title(entry, entries, str(change)) for entry in entries]
             text = phrase("{entry}: {change}", entry=joined_texts(titles), change=change)
             self._pair.add(text, location, reason)
-            if len(set(map(title, entries))) == 1:  # a report counts equal changes
+            if len(set(titles)) == 1:  # a report counts equal changes
                 for _, other_location, _, _ in places[1:]:
                     self._pair.add(text, other_location, reason)
 
+    def _title(self, entry: Entry, changed: Sequence[Entry], change: str) -> Phrase:
+        """Return the title of an action, with the name of the node if others with the title have not changed.
 
-def _joined_settings(settings: Sequence[_Setting]) -> Iterator[tuple[Phrase, Phrase | None, str]]:
+        A change of the name itself shows it.
+        """
+        alike = [other for other in self._new.entries if other.kind == "node" and title(other) == title(entry)]
+        if entry.kind != "node" or all(any(other is each for each in changed) for other in alike):
+            return distinct_title(entry, self._new.entries)
+        name = "/".join(filter(None, (entry.settings.get(NAMESPACE), entry.settings.get("name"))))
+        is_shown = not name or f" {name}" in change
+        return title(entry) if is_shown else phrase("{entry} ({items})", entry=title(entry), items=name)
+
+
+def _stopped_reason(programs: Collection[Program]) -> Phrase:
+    names = quoted_names(sorted({name for _, name in programs})[:MAX_NAMES])
+    return phrase("by default, {names} does not start any more", names=names)
+
+
+def _joined_settings(
+    settings: Sequence[_Setting], *, is_include: bool = False
+) -> Iterator[tuple[Phrase, Phrase | None, str]]:
     """Yield the changes of the settings of an action with their reasons and names.
 
-    Several added or removed parameters or remappings are one change.
+    Several added or removed parameters or remappings are one change, and so are the arguments of an included file.
     """
     groups: dict[object, list[_Setting]] = {}
     for setting in settings:
         prefix = next((word for word in (PARAMETER, REMAPPING) if setting.name.startswith(word)), "")
+        if is_include and setting.name not in (CONDITION, NAMESPACE_OF_INCLUDED):
+            prefix = _PASSED
         is_lone = not prefix or (setting.old is not None and setting.new is not None)
         key = setting.name if is_lone else (prefix, setting.new is None, setting.reason is None)
         groups.setdefault(key, []).append(setting)
@@ -168,12 +229,18 @@ def _joined_settings(settings: Sequence[_Setting]) -> Iterator[tuple[Phrase, Phr
         if len(group) < _MIN_GROUP:
             yield from ((setting.text, setting.reason, setting.name) for setting in group)
         else:
-            yield _group_text(group), _group_reason(group), group[0].name
+            yield _group_text(group, is_include=is_include), _group_reason(group), group[0].name
 
 
-def _group_text(group: Sequence[_Setting]) -> Phrase:
+def _group_text(group: Sequence[_Setting], *, is_include: bool) -> Phrase:
     is_remapping, is_added = group[0].name.startswith(REMAPPING), group[0].new is not None
     items = joined_first([_item(setting) for setting in group], MAX_NAMES)
+    if is_include:
+        added, removed = (
+            phrase("arguments added: {items}", items=items),
+            phrase("arguments removed: {items}", items=items),
+        )
+        return added if is_added else removed
     if is_remapping:
         return (
             phrase("remappings added: {items}", items=items)

@@ -15,6 +15,7 @@ _MAX_LENGTH = 10_000
 """The maximum number of characters kept of an expression. If names refer to names, the text can grow exponentially."""
 _Part = Callable[[ast.expr | None], str]
 _COMPARISONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
+_COMPARING = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
 _TEXT_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
 _PROGRAM = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
 """A command whose program is searched explicitly. The search is left out of the text, as commands always do it."""
@@ -56,10 +57,20 @@ class ExpressionTexts:
         self._values = values or {}
         self._texts: dict[int, str] = {}
 
-    def with_value(self, name: str, value: BoundExpression) -> ExpressionTexts:
-        """Return the texts with an expression for a variable of a loop."""
-        bindings = {**self._bindings, name: value.texts.text(value.node)}
-        return ExpressionTexts(self._python, bindings, {**self._values, name: value})
+    def with_item(self, target: ast.expr, item: BoundExpression) -> ExpressionTexts | None:
+        """Return the texts with an item for the variables of a loop, or None if they do not fit."""
+        if isinstance(target, ast.Name):
+            names, values = [target], [item]
+        elif isinstance(target, ast.Tuple) and isinstance(item.node, (ast.Tuple, ast.List)):
+            names = [name for name in target.elts if isinstance(name, ast.Name)]
+            values = [item.texts.value(value) for value in item.node.elts]
+            if not len(names) == len(target.elts) == len(values):
+                return None
+        else:
+            return None
+        found = {name.id: value for name, value in zip(names, values, strict=True)}
+        bindings = {name: value.texts.text(value.node) for name, value in found.items()}
+        return ExpressionTexts(self._python, {**self._bindings, **bindings}, {**self._values, **found})
 
     def value(self, node: ast.expr) -> BoundExpression:
         """Return the expression that is assigned or passed to a name, and any other expression unchanged."""
@@ -73,6 +84,22 @@ class ExpressionTexts:
         if not isinstance(value.node, (ast.List, ast.Tuple)):
             return None
         return [value.texts.value(item) for item in value.node.elts]
+
+    def list_parts(self, node: ast.expr) -> list[BoundExpression]:
+        """Return the items of a list, also of sums of lists and of lists in lists (``*items``).
+
+        A part whose items are not written in the file is an item itself.
+        """
+        value = self.value(node)
+        node, texts = value.node, value.texts
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            return [*texts.list_parts(node.left), *texts.list_parts(node.right)]
+        if not isinstance(node, (ast.List, ast.Tuple)):
+            return [value]
+        parts: list[BoundExpression] = []
+        for item in node.elts:
+            parts += texts.list_parts(item.value) if isinstance(item, ast.Starred) else [texts.value(item)]
+        return parts
 
     def text(self, node: ast.expr | None, depth: int = 0) -> str:
         """Return an expression as text, with the values of names that are assigned once."""
@@ -129,14 +156,19 @@ class ExpressionTexts:
             return list(self._items(node, "", value_text))
         if not isinstance(node, (ast.List, ast.Tuple, ast.Set)):
             return None
-        pairs = [self._python.resolved(item) for item in node.elts]
-        if not all(isinstance(pair, (ast.Tuple, ast.List)) and len(pair.elts) == 2 for pair in pairs):
+        pairs = [self._pair(item, value_text) for item in node.elts]
+        known = [pair for pair in pairs if pair is not None]
+        return known if len(known) == len(pairs) else None
+
+    def pair(self, node: ast.expr) -> tuple[str, str] | None:
+        """Return the texts of a pair, or None for other expressions."""
+        return self._pair(node, self.joined_text)
+
+    def _pair(self, node: ast.expr, value_text: Callable[[ast.expr], str]) -> tuple[str, str] | None:
+        node = self._python.resolved(node)
+        if not isinstance(node, (ast.Tuple, ast.List)) or len(node.elts) != 2:
             return None
-        return [
-            (self.joined_text(pair.elts[0]), value_text(pair.elts[1]))
-            for pair in pairs
-            if isinstance(pair, (ast.Tuple, ast.List))
-        ]
+        return self.joined_text(node.elts[0]), value_text(node.elts[1])
 
     def _items(self, node: ast.Dict, path: str, value_text: Callable[[ast.expr], str]) -> Iterator[tuple[str, str]]:
         for key, value in zip(node.keys, node.values, strict=True):
@@ -205,6 +237,8 @@ class ExpressionTexts:
             return part(owner) if is_share else None
         if first is None:
             return None
+        if function in _COMPARING and len(arguments) > 1:
+            return f"{part(first)} {_COMPARING[function]} {part(arguments[1])}"
         if function == "FindExecutable":
             return f"$(find-exec {part(first)})"
         if function in ("PathJoinSubstitution", "join"):

@@ -1,0 +1,180 @@
+"""Options that launch files pass to scripts which do not accept them, and required ones that they do not pass."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+
+from linkwright.diagnostics import LinkwrightError, Phrase, SourceText, phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
+from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.launches.default_names import script_of
+from linkwright.review.launches.formats import is_launch_file
+from linkwright.review.launches.outlines import Entry, LaunchOutline
+from linkwright.review.launches.reading import read_outline
+from linkwright.review.list_changes import list_items
+from linkwright.review.sources.python2 import as_python3
+from linkwright.review.versions import Version, Versions
+
+_LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.yml")
+_OPTION = re.compile(r"--[A-Za-z][\w-]*")
+_END = "--ros-args"
+_HELP = "--help"
+_ADDITION = "add_argument"
+_PARSER = "ArgumentParser"
+_OPEN_PARSERS = ("parse_known_args", "parse_known_intermixed_args", "add_subparsers")
+"""The calls after which a script can have other options, or accepts any."""
+
+
+@dataclass(frozen=True)
+class _Options:
+    """The options of a script.
+
+    Attributes:
+        names: the options that it accepts.
+        required: those that it requires.
+    """
+
+    names: frozenset[str]
+    required: frozenset[str]
+
+
+@dataclass(frozen=True)
+class _Fault:
+    """An option with which a script does not start.
+
+    Attributes:
+        program: the name of the script.
+        option: the option.
+        is_missing: whether the script requires it, and the launch file does not pass it.
+    """
+
+    program: str
+    option: str
+    is_missing: bool
+
+    @property
+    def text(self) -> Phrase:
+        if self.is_missing:
+            return phrase("'{option}' is not passed to '{program}'", option=self.option, program=self.program)
+        return phrase("'{option}' is passed to '{program}'", option=self.option, program=self.program)
+
+    @property
+    def reason(self) -> Phrase:
+        if self.is_missing:
+            return phrase("'{program}' requires '{option}'", option=self.option, program=self.program)
+        return phrase("'{program}' does not accept '{option}'", option=self.option, program=self.program)
+
+
+def refused_options(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the launch files with options that scripts of the new version do not accept, each with a change."""
+    old_paths = {file.new_path: file.old_path for file in changed_files if file.new_path}
+    for path in _launch_files(versions, changed_files):
+        new = _faults(versions.new, path)
+        old_path = old_paths.get(path, path)
+        old = _faults(versions.old, old_path) if new and old_path else {}
+        for fault, entry in new.items():
+            if fault not in old:
+                location = Location(path, entry.span.line, entry.span.column)
+                yield path, Change(fault.text, Effect.BREAKING, fault.reason, location)
+
+
+def _launch_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[str]:
+    """Yield the launch files of the new version that changed, or that name a changed script with options."""
+    changed = {file.new_path for file in changed_files if file.new_path}
+    scripts = {
+        PurePosixPath(path).stem
+        for path in changed
+        if PurePosixPath(path).suffix in (".py", "") and _PARSER in versions.new.text(path)
+    }
+    for path in versions.new.paths(_LAUNCH_SUFFIXES) if scripts else sorted(changed):
+        if path.endswith(_LAUNCH_SUFFIXES) and is_launch_file(path):
+            text = versions.new.text(path) if path not in changed else ""
+            if path in changed or any(script in text for script in scripts):
+                yield path
+
+
+def _faults(version: Version, path: str) -> dict[_Fault, Entry]:
+    """Return the options of a launch file with which scripts do not start, each with the node."""
+    try:
+        outline = read_outline(version.file(path), version.root)
+    except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
+        return {}
+    faults: dict[_Fault, Entry] = {}
+    for entry in outline.entries:
+        script = script_of(version.root, entry.name) if entry.kind == "node" else None
+        options = None if script is None else _read_options(script)
+        if script is None or options is None:
+            continue
+        passed, are_known = _passed_options(entry, outline)
+        refused = [name for name in passed if not _accepts(options.names, name)]
+        missing = options.required - set(passed) if are_known else frozenset()
+        faults |= {_Fault(script.name, name, is_missing=False): entry for name in refused}
+        faults |= {_Fault(script.name, name, is_missing=True): entry for name in sorted(missing)}
+    return faults
+
+
+def _accepts(options: Collection[str], name: str) -> bool:
+    """Return whether a script accepts an option; argparse accepts the beginning of one, too."""
+    return name == _HELP or any(option.startswith(name) for option in options)
+
+
+def _passed_options(entry: Entry, outline: LaunchOutline) -> tuple[list[str], bool]:
+    """Return the options that an action passes to its program, and whether these are certainly all."""
+    text = entry.settings.get("arguments", "")
+    words = list_items(text) if text.startswith("[") else text.split()
+    words = [part for word in words for part in outline.resolved(word).split()]
+    are_known = not any("$(" in word or "(" in word for word in words) and not text.startswith("[[")
+    if _END in words:
+        words = words[: words.index(_END)]
+    names = [word.partition("=")[0] for word in words]
+    return [name for name in names if _OPTION.fullmatch(name)], are_known
+
+
+def _read_options(script: Path) -> _Options | None:
+    """Return the options of a script, or None if it has no parser of options, or accepts others."""
+    try:
+        text = script.read_text("utf-8", errors="replace")
+        if _PARSER not in text or any(name in text for name in _OPEN_PARSERS):
+            return None
+        python = _parsed(SourceText(str(script), text))
+    except (OSError, ValueError, SyntaxError, RecursionError):
+        return None
+    names: set[str] = set()
+    required: set[str] = set()
+    for call in (node for node in ast.walk(python.tree) if isinstance(node, ast.Call)):
+        function = called_name(call).rpartition(".")[2]
+        if function == _PARSER and argument_of(call, "parents") is not None:
+            return None
+        if _is_passed_on(python, call):
+            return None
+        if function != _ADDITION:
+            continue
+        texts = [python.text(argument) for argument in call.args]
+        if not texts or None in texts:
+            return None  # a name that is not written in the script
+        options = [text for text in texts if text is not None and text.startswith("--")]
+        names.update(options)
+        value = argument_of(call, "required")
+        if options and isinstance(value, ast.Constant) and value.value is True and len(texts) == 1:
+            required.add(options[0])
+    return _Options(frozenset(names), frozenset(required))
+
+
+def _is_passed_on(python: PythonFile, call: ast.Call) -> bool:
+    """Return whether a call passes a parser to a function, which may add other options."""
+    values = [*call.args, *(keyword.value for keyword in call.keywords)]
+    values = [python.resolved(value) for value in values if isinstance(value, ast.Name)]
+    return any(isinstance(value, ast.Call) and called_name(value).endswith(_PARSER) for value in values)
+
+
+def _parsed(source: SourceText) -> PythonFile:
+    try:
+        return PythonFile(source)
+    except SyntaxError:
+        return PythonFile(SourceText(source.name, as_python3(source.text)))

@@ -1,0 +1,62 @@
+"""Arguments that choose the files of the actions of a launch file, in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import subject
+
+FILE = """<launch>
+  <arg name="description" default="arm_description"/>
+  <arg name="viewer" default="{viewer}"/>
+  <arg name="robot" default="arm"/>
+  <node pkg="rviz2" exec="rviz2" args="-d $(find-pkg-share $(var description))/config/view.rviz"/>
+  <node pkg="arm" exec="driver" args="$(var viewer) $(var description)">
+    <param name="model" value="$(command 'xacro $(find-pkg-share arm)/urdf/arm.xacro a:=$(var robot)')"/>
+  </node>
+</launch>
+"""
+CALLER = """<launch>
+  <include file="$(find-pkg-share arm)/launch/arm.launch.xml"><arg name="description" value="x"/></include>
+</launch>
+"""
+SENTENCE = "'description' does not choose the file '$(find-pkg-share $(var viewer))/config/view.rviz' any more"
+
+
+@pytest.fixture
+def reasons(repository, compare):
+    """Review a replacement in a launch file, and return its changes with their reasons."""
+
+    def run(text: str, old: str, new: str, other: str = "<launch/>"):
+        assert old in text
+        repository.commit({"arm/launch/arm.launch.xml": text, "arm/launch/other.launch.xml": other})
+        repository.write({"arm/launch/arm.launch.xml": text.replace(old, new)})
+        changes = subject(compare(repository), "arm/launch/arm.launch.xml").changes
+        return {str(each.sentence): None if each.reason is None else str(each.reason) for each in changes}
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("viewer", "caller", "is_breaking"),
+    [("arm_description", "<launch/>", False), ("viewer", "<launch/>", True), ("arm_description", CALLER, True)],
+)
+def test_path_that_another_argument_begins(reasons, viewer, caller, is_breaking):
+    text = FILE.format(viewer=viewer)
+    found = reasons(text, "$(var description))", "$(var viewer))", caller)
+    reason = "the value that a caller passes for 'description' chooses another file"
+    assert found[SENTENCE] == (reason if is_breaking else None)
+
+
+@pytest.mark.parametrize(
+    ("path", "end"),
+    [
+        ("$(var robot)", "the same as before"),
+        ("$(var viewer)", "'$(find-pkg-share arm)/urdf/v.xacro'"),
+    ],
+)
+def test_fixed_path_that_depends_on_an_argument_now(reasons, path, end):
+    name = path.removeprefix("$(var ").removesuffix(")")
+    found = reasons(FILE.format(viewer="v"), "/arm.xacro", f"/{path}.xacro")
+    text = f"the file '$(find-pkg-share arm)/urdf/{path}.xacro' depends on '{name}' now; by default, it is {end}"
+    assert found[text] is None

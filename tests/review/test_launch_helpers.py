@@ -1,0 +1,117 @@
+"""Lists that launch files in Python pass to functions, and lists that are put together, in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import sentences
+
+MIXIN = """from launch_ros.actions import Node
+
+
+class Mixin:
+    @staticmethod
+    def viewer(file, **kwargs):
+        return Node(package="arm", executable="viewer", arguments=["-d", file], **kwargs)
+
+    @staticmethod
+    def driver(parameters, remappings=None):
+        return Node(package="arm", executable="driver", parameters=parameters, remappings=remappings)
+"""
+FILE = """from arm.mixin import Mixin
+from arm_moveit import settings
+from elsewhere import make_node
+from launch import LaunchDescription
+
+NAME = "left"
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        Mixin.viewer("a", remappings=[("b", NAME + "/b"), ("c", NAME + "/c")], parameters=settings(1)),
+        Mixin.driver([{"rate": 1}, "a.yaml"], remappings=[("d", "e"), ("f", "g")]),
+        make_node(remappings=[("h", "i"), ("j", "k")]),
+    ])
+"""
+LIST = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    arguments = [DeclareLaunchArgument("rate", default_value="1")]
+    nodes = []
+    nodes.append(Node(package="arm", executable="driver"))
+    nodes.append(Node(package="arm", executable="hand"))
+    return LaunchDescription(nodes)
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('("b", NAME + "/b"), ("c", NAME + "/c")', '("c", NAME + "/c"), ("b", NAME + "/b")', []),
+        ('("d", "e"), ("f", "g")', '("f", "g"), ("d", "e")', []),
+        ('("h", "i"), ("j", "k")', '("j", "k"), ("h", "i")', []),
+        ('("b", NAME + "/b"), ', '("b", NAME + "/b"), ("z", NAME + "/z"), ',
+         ["node 'arm/viewer': remapping z left/z added"]),
+        ("parameters=settings(1)", 'parameters=settings(1) + [{"use_sim_time": True}]',
+         ["node 'arm/viewer': parameter use_sim_time True added"]),
+        ('{"rate": 1}', '{"rate": 2}', ["node 'arm/driver': parameter rate 1 -> 2"]),
+        ('("d", "e")', '("d", "x")', ["node 'arm/driver': remapping d e -> x"]),
+        ('("h", "i")', '("h", "x")', ["action 'make_node': remapping h i -> x"]),
+    ],
+)  # fmt: skip
+def test_lists_that_functions_get_are_compared_by_their_items(repository, compare, old, new, expected):
+    assert old in FILE
+    files = {"arm/arm/mixin.py": MIXIN, "arm/arm/__init__.py": ""}
+    repository.commit({"arm/launch/arm.launch.py": FILE, **files})
+    repository.write({"arm/launch/arm.launch.py": FILE.replace(old, new)})
+    subjects = [each for each in compare(repository).subjects if each.path == "arm/launch/arm.launch.py"]
+    assert [text for each in subjects for text in sentences(each)] == expected
+
+
+@pytest.mark.parametrize("items", ["[*arguments, *nodes]", "arguments + nodes", "[*arguments] + nodes"])
+def test_list_that_is_put_together_is_no_other_code(repository, compare, items):
+    repository.commit({"arm/launch/arm.launch.py": LIST})
+    repository.write({"arm/launch/arm.launch.py": LIST.replace("Description(nodes)", f"Description({items})")})
+    assert not compare(repository).subjects
+
+
+LOOP = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.conditions import IfCondition, LaunchConfigurationEquals
+from launch.substitutions import EqualsSubstitution, LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    programs = [("arm", "driver"), ("arm", "hand")]
+    description = LaunchDescription([DeclareLaunchArgument("map", default_value="")])
+    for package, program in programs:
+        description.add_action(Node(package=package, executable=program))
+    description.add_action(Node(
+        package="tf2_ros",
+        executable="static_transform_publisher",
+        condition=LaunchConfigurationEquals("map", ""),
+        arguments=["0", "0", "0", "0", "0", "0", "map", [LaunchConfiguration("map"), "camera"]],
+    ))
+    return description
+"""
+
+
+def test_items_of_a_loop_over_pairs_are_actions(changes_of):
+    changes, found = changes_of("arm.launch.py", LOOP, ', ("arm", "hand")', "")
+    assert changes == found == ["node 'arm/hand' removed"]
+
+
+def test_substitutions_in_a_list_are_one_word_of_the_arguments(changes_of):
+    changes, found = changes_of("arm.launch.py", LOOP, '"camera"', '"lidar"')
+    assert len(changes) == 1
+    assert changes == found
+    assert changes[0].endswith("map, $(var map)camera] -> [0, 0, 0, 0, 0, 0, map, $(var map)lidar]")
+
+
+def test_comparison_of_an_argument_may_be_a_substitution(changes_of):
+    new = 'IfCondition(EqualsSubstitution(LaunchConfiguration("map"), ""))'
+    assert changes_of("arm.launch.py", LOOP, 'LaunchConfigurationEquals("map", "")', new) == ([], [])

@@ -1,0 +1,173 @@
+"""Changes of what launch files start through the files that they include, in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import subject
+
+PART = """<launch>
+  <arg name="camera" default="true"/>
+  <node pkg="arm" type="camera.py" name="camera" if="$(arg camera)"/>
+</launch>
+"""
+MODEL = '<launch><param name="robot_description" textfile="arm.urdf"/></launch>'
+FILE = """<launch>
+  <arg name="camera" default="true"/>
+  <include file="$(find elsewhere)/launch/safety.launch"/>
+  <include file="$(dirname)/part.launch"><arg name="camera" value="$(arg camera)"/></include>
+  <include file="$(dirname)/model.launch"/>
+  <include file="$(find elsewhere)/launch/laser_pipeline.launch"><arg name="scan" value="front"/></include>
+  <include file="$(find elsewhere)/launch/rviz.launch"/>
+</launch>
+"""
+SAFETY, PART_INCLUDE, MODEL_INCLUDE, LASER, RVIZ = (line + "\n" for line in FILE.splitlines()[2:7])
+STOPS = "its nodes do not start any more"
+CAMERA_STOPS = "by default, 'arm/camera.py' does not start any more"
+
+
+@pytest.fixture
+def reasons(repository, compare):
+    """Review a replacement in a launch file that includes others; return the changes with their reasons."""
+
+    def run(old: str, new: str):
+        assert old in FILE
+        files = {"arm/launch/part.launch": PART, "arm/launch/model.launch": MODEL}
+        repository.commit({"arm/launch/arm.launch": FILE, **files})
+        repository.write({"arm/launch/arm.launch": FILE.replace(old, new)})
+        changes = subject(compare(repository), "arm/launch/arm.launch").changes
+        return {str(each.sentence): None if each.reason is None else str(each.reason) for each in changes}
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("line", "reason"),
+    [(SAFETY, STOPS), (PART_INCLUDE, STOPS), (MODEL_INCLUDE, None), (LASER, STOPS), (RVIZ, None)],
+)
+def test_removed_include_is_breaking_if_its_nodes_start_by_default(reasons, line, reason):
+    assert list(reasons(line, "").values()) == [reason]
+
+
+def test_removed_include_is_not_breaking_if_its_nodes_were_switched_off(repository, compare):
+    text = FILE.replace('default="true"', 'default="false"')
+    repository.commit({"arm/launch/arm.launch": text, "arm/launch/part.launch": PART})
+    repository.write({"arm/launch/arm.launch": text.replace(PART_INCLUDE, "")})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert change.reason is None
+
+
+def test_removed_include_is_not_breaking_if_the_file_starts_its_nodes(reasons):
+    node = '  <node pkg="arm" type="camera.py" name="camera"/>\n'
+    assert set(reasons(PART_INCLUDE, node).values()) == {None}
+
+
+def test_include_of_a_file_with_the_same_role_replaces_another(reasons):
+    found = reasons(LASER, '  <include file="$(find elsewhere)/launch/pipeline.launch"/>\n')
+    assert set(found.values()) == {None}
+    assert (
+        "include of '$(find elsewhere)/launch/laser_pipeline.launch' replaced by "
+        "include of '$(find elsewhere)/launch/pipeline.launch'"
+    ) in found
+
+
+def test_include_of_a_file_with_another_role_does_not_replace_it(reasons):
+    found = reasons(SAFETY, '  <include file="$(find elsewhere)/launch/mux.launch"/>\n')
+    assert list(found.values()) == [None, STOPS]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (
+            'value="$(arg camera)"',
+            'value="false"',
+            "include of '$(dirname)/part.launch': camera $(arg camera) -> false",
+        ),
+        ('default="true"', 'default="false"', "argument 'camera': default true -> false"),
+    ],
+)
+def test_value_that_switches_off_a_node_of_an_included_file_is_breaking(reasons, old, new, expected):
+    assert reasons(old, new) == {expected: CAMERA_STOPS}
+
+
+@pytest.mark.parametrize(
+    ("line", "reason"), [(SAFETY, "by default, it does not start any more"), (MODEL_INCLUDE, None)]
+)
+def test_condition_that_does_not_hold_is_breaking_for_a_file_with_nodes(reasons, line, reason):
+    assert list(reasons(line, line.replace("/>", ' if="false"/>')).values()) == [reason]
+
+
+CONDITIONAL = """from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from moveit_configs_utils.launch_utils import DeclareBooleanLaunchArg
+
+
+def generate_launch_description():
+    ld = LaunchDescription()
+    ld.add_action(DeclareBooleanLaunchArg("db", default_value=False))
+    ld.add_action(IncludeLaunchDescription("db.launch.py", condition=IfCondition(LaunchConfiguration("db"))))
+    return ld
+"""
+
+
+def test_boolean_argument_of_moveit_has_a_default(changes_of):
+    line = next(line for line in CONDITIONAL.splitlines() if "IncludeLaunchDescription(" in line)
+    assert changes_of("arm.launch.py", CONDITIONAL, f"{line}\n", "") == (
+        ["include of 'db.launch.py' removed: if $(var db)"],
+        [],
+    )
+
+
+def test_name_of_an_included_file_may_contain_an_argument(repository, compare):
+    file = '<launch><include file="$(dirname)/part.launch" if="true"><arg name="kind" value="a"/></include></launch>'
+    part = '<launch><arg name="kind"/><include file="$(dirname)/$(arg kind).launch"/></launch>'
+    files = {"arm/launch/part.launch": part, "arm/launch/a.launch": "<launch/>"}
+    repository.commit({"arm/launch/arm.launch": file, **files})
+    repository.write({"arm/launch/arm.launch": file.replace('if="true"', 'if="false"')})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert change.reason is None
+
+
+def test_many_arguments_that_an_include_passes_are_one_change(reasons):
+    arguments = "".join(f'<arg name="a{number}" value="{number}"/>' for number in range(3))
+    found = reasons('<arg name="scan" value="front"/>', f'<arg name="scan" value="front"/>{arguments}')
+    assert found == {
+        "include of '$(find elsewhere)/launch/laser_pipeline.launch': arguments added: a0 0, a1 1, a2 2": None
+    }
+
+
+def test_xml_file_that_others_include_is_a_launch_file(repository, compare):
+    text = '<?xml version="1.0"?>\n<!-- a - part -->\n<launch><node pkg="arm" type="driver" name="driver"/></launch>'
+    repository.commit({"arm/launch/parts/driver.xml": text, "arm/plugins.xml": "<library/>"})
+    repository.write(
+        {"arm/launch/parts/driver.xml": text.replace('"driver"/>', '"motor"/>'), "arm/plugins.xml": "<a/>"}
+    )
+    (result,) = [each for each in compare(repository).subjects if each.path == "arm/launch/parts/driver.xml"]
+    assert [str(change.sentence) for change in result.changes] == ["node 'arm/driver': name driver -> motor"]
+
+
+def test_argument_that_an_including_file_has_is_declared(repository, compare):
+    part = '<launch><node pkg="arm" exec="driver" name="driver"/></launch>'
+    file = """<launch>
+      <arg name="mode" default="online"/>
+      <include file="$(find-pkg-share arm)/launch/part.launch.xml"/>
+    </launch>"""
+    repository.commit({"arm/launch/arm.launch.xml": file, "arm/launch/part.launch.xml": part})
+    new = part.replace('"driver"/>', '"driver" args="$(var mode)"/>')
+    repository.write({"arm/launch/part.launch.xml": new})
+    (change,) = subject(compare(repository), "arm/launch/part.launch.xml").changes
+    assert (str(change.sentence), change.reason) == ("node 'arm/driver': arguments $(var mode) added", None)
+
+
+def test_node_that_moves_into_a_file_of_a_package_without_manifest_is_moved(repository, compare):
+    node = '<node pkg="gazebo" type="gazebo" name="gazebo"/>'
+    repository.commit({"worlds/launch/arm.launch": f"<launch>{node}</launch>"})
+    include = '<include file="$(find worlds)/launch/start.launch"/>'
+    files = {"worlds/launch/arm.launch": f"<launch>{include}</launch>"}
+    repository.write({**files, "worlds/launch/start.launch": f"<launch>{node}</launch>"})
+    changes = subject(compare(repository), "worlds/launch/arm.launch").changes
+    assert [change.reason for change in changes] == [None, None]
+    assert str(changes[1].sentence) == "node 'gazebo/gazebo' moved to worlds/launch/start.launch"

@@ -1,0 +1,44 @@
+"""Namespaces that groups of a launch file push, in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+XML = """<launch>
+  <arg name="namespace"{default}/>
+  <group ns="$(arg namespace)">
+    <include file="$(find elsewhere)/launch/impedance.launch" ns="$(arg namespace)"/>
+    <node pkg="arm" type="driver" name="driver" ns="$(arg namespace)"/>
+  </group>
+</launch>
+"""
+PYTHON = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node, PushRosNamespace
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("namespace", default_value="/hero"),
+        PushRosNamespace("outer"),
+        PushRosNamespace(LaunchConfiguration("namespace")),
+        Node(package="arm", executable="driver"),
+    ])
+"""
+
+
+def test_namespace_that_begins_with_a_slash_by_default_replaces_the_outer_one(changes_of):
+    text = XML.format(default=' default="/hero"')
+    assert changes_of("arm.launch", text, '<group ns="$(arg namespace)">', "<group>") == ([], [])
+
+
+def test_pushed_namespace_that_begins_with_a_slash_by_default_replaces_the_outer_one(changes_of):
+    assert changes_of("arm.launch.py", PYTHON, '        PushRosNamespace("outer"),\n', "") == ([], [])
+
+
+@pytest.mark.parametrize(("default", "is_breaking"), [(' default="hero"', True), ("", False)])
+def test_lost_outer_namespace_is_breaking_if_the_inner_one_is_known(changes_of, default, is_breaking):
+    changes, found = changes_of("arm.launch", XML.format(default=default), '<group ns="$(arg namespace)">', "<group>")
+    assert len(changes) == 2
+    assert (found == changes) is is_breaking
