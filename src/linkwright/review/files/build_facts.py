@@ -152,10 +152,12 @@ class TargetParts:
     Attributes:
         libraries: the names of packages and libraries that are linked to it, with their locations.
         sources: its sources relative to the package, with their locations.
+        is_test: whether it is a test.
     """
 
     libraries: dict[str, Span] = field(default_factory=dict)
     sources: dict[str, Span] = field(default_factory=dict)
+    is_test: bool = False
 
 
 @dataclass
