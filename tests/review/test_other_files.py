@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.reports.text import as_text
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
@@ -395,11 +396,11 @@ def test_renamed_meshes_of_a_folder_are_one_breaking_line(repository, compare):
 
 
 def test_removed_and_added_meshes_are_grouped(repository, compare):
-    repository.commit({f"a/meshes/m{number}.stl": _stl(number) for number in range(1, 9)})
-    repository.commit({f"a/meshes/m{number}.stl": None for number in range(1, 9)})
+    repository.commit({f"a/meshes/m{number}.stl": _stl(number) for number in range(MAX_NAMES + 2)})
+    repository.commit({f"a/meshes/m{number}.stl": None for number in range(MAX_NAMES + 2)})
     result = compare(repository, "HEAD~1..HEAD")
     (change,) = result.subjects[0].changes
-    assert str(change.sentence).endswith("m6.stl and 2 more")
+    assert str(change.sentence).endswith(" and 2 more")
     assert result.breaking_changes
     assert not compare(repository, "HEAD..HEAD~1").breaking_changes
 
