@@ -24,7 +24,7 @@ from linkwright.review.files.renamed_parts import edit_of, parent_of, renamed_pa
 from linkwright.review.files.value_changes import ValueChange, merged_values
 from linkwright.review.files.yaml_lists import item_labels
 from linkwright.review.files.yaml_values import YamlType, YamlValue, composed, yaml_values
-from linkwright.review.list_changes import EMPTY, shortened
+from linkwright.review.list_changes import shortened
 from linkwright.review.versions import Version
 
 _MAX_BYTES = 4 << 20
@@ -80,7 +80,7 @@ def _with_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
     for part, values in parts.items():
         items = [shortened(item, _MAX_VALUE) for item in _lone_content(part, values)]
         if part in values:
-            texts.append(phrase("{parameter} {value}", parameter=part, value=items[0] or EMPTY))
+            texts.append(phrase("{parameter} {value}", parameter=part, value=items[0]))
         else:
             texts.append(phrase("{entry} ({items})", entry=part, items=joined_first(items, limit)))
     return joined_first(texts, MAX_NAMES)
@@ -124,8 +124,8 @@ def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | N
 
 def _shown_values(old: YamlValue, new: YamlValue) -> tuple[str, str]:
     """Return the texts of two values, with quotes if only these tell them apart."""
-    if old.text != new.text:
-        return old.text, new.text
+    if old.shown != new.shown:
+        return old.shown, new.shown
     old_text, new_text = (f'"{value.text}"' if value.type is YamlType.TEXT else value.text for value in (old, new))
     return old_text, new_text
 
@@ -133,9 +133,9 @@ def _shown_values(old: YamlValue, new: YamlValue) -> tuple[str, str]:
 def _lone_content(part: str, values: Mapping[str, YamlValue]) -> tuple[str, ...]:
     """Return the value of a part that is one, or the names and values in a part."""
     if part in values:
-        return (values[part].text,)
+        return (values[part].shown,)
     names = {name: name.removeprefix(part).lstrip(".").removeprefix("ros__parameters.") for name in values}
-    return tuple(f"{names[name]} {value.text or EMPTY}" for name, value in values.items() if not _is_label(name, value))
+    return tuple(f"{names[name]} {value.shown}" for name, value in values.items() if not _is_label(name, value))
 
 
 def _is_label(name: str, value: YamlValue) -> bool:
@@ -196,6 +196,8 @@ def _are_equal(name: str, old: YamlValue, new: YamlValue) -> bool:
     """
     if is_parameter(name) and has_other_type(old, new):
         return False
+    if old.is_null or new.is_null:
+        return old.is_null and new.is_null
     if old.text == new.text:
         return True
     if old.type is new.type is YamlType.TRUTH:
