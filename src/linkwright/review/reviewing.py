@@ -67,7 +67,10 @@ _Pair = tuple[KindRule, "str | None", "str | None"]
 """The rule for a file, its old path and its new path."""
 _MIN_EXPANDED = 4
 """The minimum number of descriptions for which several processes are used."""
-_LISTED = (SubjectKind.BUILD, SubjectKind.MANIFEST, SubjectKind.LAUNCH_FILE, SubjectKind.PARAMETERS)
+_LISTED = (
+    *(SubjectKind.BUILD, SubjectKind.MANIFEST, SubjectKind.LAUNCH_FILE, SubjectKind.PARAMETERS),
+    SubjectKind.DEPENDENCIES,
+)
 """The kinds whose changed files are listed with the other files if no difference is found."""
 _EXPANDED = (SubjectKind.DESCRIPTION, SubjectKind.WORLD)
 """The kinds that include other files. Parts of them are not compared on their own."""
