@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 from multiprocessing import get_context
 from pathlib import PurePosixPath
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted, did_you_mean, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.lint.affected import TextFiles
+from linkwright.lint.affected import TextFiles, may_be_read
 from linkwright.lint.targets import Targets, find_targets, included_robots, is_plain_robot
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
@@ -125,9 +125,12 @@ class _Reviewer:
             file.old_path: file.new_path for file in self._changed_files if file.old_path and file.new_path
         }
         self._maps = dict(_maps_of_images(versions, self._changed_files))
-        self._targets = {
-            version.is_old: _targets(version) | self._plain_robots(version) for version in (versions.old, versions.new)
-        }
+
+    @cached_property
+    def _targets(self) -> dict[bool, set[str]]:
+        """The paths of the complete descriptions and worlds, by whether the version is the old one."""
+        versions = (self._versions.old, self._versions.new)
+        return {version.is_old: _targets(version) | self._plain_robots(version) for version in versions}
 
     def run(self, workers: int) -> Review:
         pairs = list(self._pairs())
@@ -266,6 +269,10 @@ class _Reviewer:
     def _affected(self) -> Iterator[set[str]]:
         """Yield the complete descriptions and worlds of both versions that changed files can affect."""
         changed = {path for file in self._versions.changed_files for path in (file.old_path, file.new_path) if path}
+        changed = {path for path in changed if may_be_read(path)}
+        if not changed:
+            yield from (set(), set())
+            return
         files = None
         for version in (self._versions.old, self._versions.new):
             files = TextFiles(version.root, files, changed)
