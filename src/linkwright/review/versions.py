@@ -22,7 +22,7 @@ from linkwright.packages.manifest import MANIFEST, SKIPPED_FOLDERS, SourceScan, 
 from linkwright.packages.share_layout import share_of_sources
 
 TEST_FOLDERS = frozenset({"test", "tests"})
-"""The names of folders with tests, whose files are no part of a robot."""
+"""The names of folders with tests, whose files do not belong to a robot."""
 _MAX_SEARCHED_BYTES = 1 << 20
 _DEFAULT_BRANCHES = ("origin/HEAD", "origin/main", "origin/master", "main", "master")
 

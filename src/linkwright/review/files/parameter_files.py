@@ -12,6 +12,7 @@ from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.files.bridges import compare_bridges, read_bridges
+from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.parameter_names import (
     NameRules,
     has_other_type,
@@ -103,12 +104,14 @@ def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | N
     old_values, new = ({} if root is None else yaml_values(root, labels) for root in (old_root, new_root))
     old = _with_new_names(pair, old_values, new)
     rules = NameRules(old, new)
+    readers = KeyReaders(pair.versions, pair.new_path)
     for name, value in new.items():
         old_value = old.get(name)
         if old_value is not None and not _are_equal(name, old_value, value):
             location = Location(pair.new_path, value.line, value.column)
             shown = _shown_values(old_value, value)
-            yield ValueChange(name, "changed", shown, location, rules.change_reason(name, old_value, value))
+            reason = rules.change_reason(name, old_value, value) or readers.name_reason(name, old_value, value)
+            yield ValueChange(name, "changed", shown, location, reason)
     for name, values_below in _lone_parts(new, old):
         first = next(iter(values_below.values()))
         location = Location(pair.new_path, first.line, first.column)
@@ -119,6 +122,7 @@ def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | N
         below = [(each, old[each].text) for each in old if each not in new and _is_below(each, name)]
         reasons = (rules.removal_reason(parameter, value) for parameter, value in below)
         reason = next((reason for reason in reasons if reason is not None), None)
+        reason = reason or readers.key_reason(_lost_keys(next(iter(values_below)), new))
         yield ValueChange(name, "removed", _lone_content(name, values_below), location, reason)
 
 
@@ -156,6 +160,14 @@ def _lone_parts(
             parts.setdefault(part, {})[name] = value
     for part, values_below in parts.items():
         yield next(iter(values_below)) if len(values_below) == 1 else part, values_below
+
+
+def _lost_keys(name: str, new: Mapping[str, YamlValue]) -> list[str]:
+    """Return the keys on the path of a value that the new version has nowhere; none for a parameter of a node."""
+    if is_parameter(name):
+        return []  # nodes declare their parameters with defaults
+    keys = {part.rpartition(".")[2] for other in new for part in part_names(other)}
+    return [key for part in part_names(name) if (key := part.rpartition(".")[2]) not in keys and "[" not in key]
 
 
 def _is_below(name: str, part: str) -> bool:
