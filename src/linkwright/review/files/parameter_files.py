@@ -23,6 +23,7 @@ from linkwright.review.files.parameter_names import (
 )
 from linkwright.review.files.renamed_parts import edit_of, parent_of, renamed_parts, with_new_parts
 from linkwright.review.files.value_changes import ValueChange, merged_values
+from linkwright.review.files.yaml_includes import with_includes
 from linkwright.review.files.yaml_lists import item_labels
 from linkwright.review.files.yaml_values import YamlType, YamlValue, composed, yaml_values
 from linkwright.review.list_changes import shortened
@@ -48,8 +49,12 @@ def compare_parameter_files(pair: FilePair) -> None:
         compare_bridges(pair, *bridges)
         return
     roots = pair.read(lambda file: _root(texts[file == pair.new_file]))
-    if roots is not None:
-        pair.changes += merged_values(_changes(pair, *roots))
+    if roots is None:
+        return
+    old, new = roots
+    if old is not None and new is not None:
+        old, new = with_includes(pair, old, new)
+    pair.changes += merged_values(_changes(pair, old, new))
 
 
 def parameter_contents(version: Version, path: str) -> Phrase | None:
