@@ -271,3 +271,13 @@ def test_added_block_of_gazebo_leaves_the_other_block_as_it_is(library, compare,
     library.write({TOOL: text.replace(old, new).replace("<rate>1<", "<rate>2<")})
     rate = "macro 'gripper': gazebo ${name} sensor camera plugin driver rate: 1 -> 2"
     assert sorted(sentences(subject(compare(library), TOOL))) == sorted([*expected, rate])
+
+
+def test_elements_without_names_are_told_apart_by_their_attributes(library, compare):
+    pairs = "".join(f'<enable_collisions link1="a" link2="b{number}"/>' for number in range(3))
+    text = GRIPPER.replace('    <link name="${name}_tip"/>', f'    {pairs}<link name="${{name}}_tip"/>')
+    library.commit({TOOL: text})
+    library.write({TOOL: GRIPPER})
+    (change,) = subject(compare(library), TOOL).changes
+    assert str(change.sentence) == "macro 'gripper': enable_collisions link1=a link2=b0 removed"
+    assert change.other_names == ("enable_collisions link1=a link2=b1", "enable_collisions link1=a link2=b2")
