@@ -437,6 +437,18 @@ def test_changed_base_class_of_plugin_is_breaking(repository, compare):
     assert sentence == f"plugin class 'arm/Hardware': base class {interfaces}"
 
 
+def test_other_library_of_a_plugin_class_is_a_change(repository, compare):
+    repository.commit({"a/arm_plugins.xml": PLUGINS})
+    repository.write({"a/arm_plugins.xml": PLUGINS.replace('path="arm_hardware"', 'path="lib/libarm_drivers"')})
+    result = compare(repository)
+    assert sentences(subject(result, "a/arm_plugins.xml")) == [
+        "plugin class 'arm/Hardware': library arm_hardware -> lib/libarm_drivers",
+        "plugin class 'arm/Gripper': library arm_hardware -> lib/libarm_drivers",
+    ]
+    repository.write({"a/arm_plugins.xml": PLUGINS.replace('path="arm_hardware"', 'path="lib/libarm_hardware"')})
+    assert compare(repository).subjects == []
+
+
 def test_fields_have_their_lines(repository, compare):
     text = "# state\nint32 count\n---\nstring name\n---\nfloat32 count\n"
     repository.commit({"a/action/Move.action": text})
