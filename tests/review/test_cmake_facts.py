@@ -195,3 +195,27 @@ def test_version_of_a_downloaded_project_is_compared_by_its_keyword(repository, 
     repository.write({"a/CMakeLists.txt": AMENT + project.format("devel")})
     (found,) = compare(repository).subjects
     assert sentences(found) == ["externalproject_add GIT_TAG 1.0.0 -> devel"]
+
+
+INTERFACES = CATKIN.replace("FILES State.msg Load.msg", "DIRECTORY msg/FOLDER FILES State.msg")
+
+
+@pytest.mark.parametrize(("folder", "is_breaking"), [("all", False), ("other", True)])
+def test_interface_of_ros1_that_moves_to_another_folder_keeps_its_type(repository, compare, folder, is_breaking):
+    manifest = MANIFEST["a/package.xml"].replace("</license>", "</license><buildtool_depend>catkin</buildtool_depend>")
+    value = "int32 value\n"
+    repository.commit({"a/package.xml": manifest, "a/CMakeLists.txt": INTERFACES.replace("FOLDER", "arm"),
+                       "a/msg/arm/State.msg": value, "a/services/Home.srv": "---\n"})  # fmt: skip
+    repository.commit({"a/CMakeLists.txt": INTERFACES.replace("FOLDER", folder),
+                       "a/msg/arm/State.msg": None, "a/msg/all/State.msg": value})  # fmt: skip
+    result = compare(repository, "HEAD~1..HEAD")
+    assert ("renamed from a/msg/arm/State.msg" in breaking(result)) is is_breaking
+    if not is_breaking:
+        assert str(result.file_states["a/msg/all/State.msg"]) == "moved from a/msg/arm/, the type keeps its name"
+
+
+def test_built_interface_without_a_file_is_named(repository, compare):
+    repository.commit({**MANIFEST, **OTHERS, "a/CMakeLists.txt": CATKIN})
+    repository.write({"a/CMakeLists.txt": CATKIN.replace("Load.msg", "Load.msg Lost.msg")})
+    found = subject(compare(repository), "a/CMakeLists.txt")
+    assert sentences(found) == ["built interfaces added: 'msg/Lost.msg'"]

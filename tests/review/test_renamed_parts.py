@@ -200,7 +200,7 @@ def test_empty_text_in_a_list_is_visible(changes_of):
 
 
 def test_removed_file_has_its_values_and_the_number_of_the_others(changes_of):
-    text = "".join(f"gain{number}: {number}\n" for number in range(10))
+    text = "".join(f"gain{number}: {number}\n" for number in range(42))
     found, _ = changes_of(text, None)
     assert sentences(found)[0].startswith("parameter file removed: gain0 0, gain1 1, ")
     assert sentences(found)[0].endswith(" and 2 more")

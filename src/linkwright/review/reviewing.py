@@ -37,7 +37,7 @@ from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST, rosbuild_subjects
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
-from linkwright.review.installed_paths import keeps_installed_path
+from linkwright.review.installed_paths import keeps_installed_path, keeps_type
 from linkwright.review.kinds import (
     LAUNCH_HELPER,
     MAP,
@@ -382,6 +382,9 @@ def _renaming(versions: Versions, rule: KindRule, old_path: str, new_path: str) 
     old, new = PurePosixPath(old_path), PurePosixPath(new_path)
     if old.name == new.name and rule.removal_reason is not None and keeps_installed_path(versions, old_path, new_path):
         text = phrase("moved from {folder}, installed at the same place", folder=f"{old.parent}/")
+        return Change(text, path_change=PathChange.MOVED)
+    if rule.kind is SubjectKind.INTERFACE and keeps_type(versions, old_path, new_path):
+        text = phrase("moved from {folder}, the type keeps its name", folder=f"{old.parent}/")
         return Change(text, path_change=PathChange.MOVED)
     effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
     text = phrase("renamed from {path}", path=old_path)

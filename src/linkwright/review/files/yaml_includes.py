@@ -22,7 +22,7 @@ _MAX_BYTES = 1 << 20
 def with_includes(pair: FilePair, old: yaml.Node, new: yaml.Node) -> tuple[yaml.Node, yaml.Node]:
     """Return two documents with the contents of the files that only one of them includes, and name these files.
 
-    What moves into an included file is then no change.
+    A value that moves into an included file has then not changed.
     """
     readers = _Includes(pair.old_file, pair.versions.old.root), _Includes(pair.new_file, pair.versions.new.root)
     marks = [dict(reader.names(root)) for reader, root in zip(readers, (old, new), strict=True)]
@@ -93,7 +93,7 @@ class _Includes:
         return node
 
     def _name(self, node: yaml.Node) -> str | None:
-        """Return the name of the file that a node stands for, or None for another node."""
+        """Return the name of the file that a node includes as a whole, or None for another node."""
         if isinstance(node, yaml.ScalarNode):
             return self._existing(str(node.value)) if node.tag == _TAG else None
         if isinstance(node, yaml.MappingNode) and len(node.value) == 1:
