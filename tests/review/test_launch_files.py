@@ -423,7 +423,7 @@ def test_same_change_of_several_nodes_is_one(changes_of):
     text = DEFAULTS.replace("<node ", '<node respawn="true" ')
     (sentence,), _ = changes_of("arm.launch.xml", text, 'respawn="true"', 'respawn="false"')
     assert sentence.startswith("node 'arm/driver.py', node 'arm/model', node 'controller_manager/spawner' of")
-    assert sentence.endswith(" and 2 more: respawn true -> false")
+    assert sentence.endswith("node 'lidar/driver', node 'slam_toolbox/slam_node': respawn true -> false")
 
 
 def test_added_launch_file_is_described_by_its_actions(repository, compare):
