@@ -333,3 +333,17 @@ def test_entry_points_provide_substitutes_for_packages(tmp_path: Path, monkeypat
             assert "sea_ros" in package_finder.packages()
     finally:
         extensions._all_groups.cache_clear()
+
+
+def test_searched_locations_are_described_once_for_a_missing_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package_finder = finder(tmp_path)
+    calls = []
+    describe = package_finder._searched_locations
+    monkeypatch.setattr(package_finder, "_searched_locations", lambda: (calls.append(1), describe())[1])
+    for _ in range(3):
+        with pytest.raises(PackageNotFoundError) as caught:
+            package_finder.share("armm")
+        assert any(str(tmp_path) in str(note.message) for note in caught.value.diagnostics[0].notes)
+    assert calls == [1]

@@ -339,6 +339,40 @@ def test_dependencies_with_the_same_tags_are_one_line(repository, compare):
     ]
 
 
+@pytest.mark.parametrize(
+    ("attributes", "shown"),
+    [("condition=\"$SIMULATOR == 'new'\"", "if $SIMULATOR == 'new'"), ('version_gte="1.2"', ">= 1.2")],
+)
+def test_added_and_removed_dependencies_have_their_conditions(repository, compare, attributes, shown):
+    old = "  <exec_depend>gears</exec_depend>\n"
+    new = f"  <exec_depend {attributes}>wheels</exec_depend>\n"
+    found, _ = changes_of_dependencies(repository, compare, (f"  <build_depend>gears</build_depend>\n{old}", new))
+    assert found[0] == f"exec_depend added: wheels ({shown})"
+    text = DEPENDENCIES.replace(old, "").replace("  <build_depend>gears</build_depend>\n", "")
+    repository.commit({"a/package.xml": text.replace("  <exec_depend>xacro", f"{new}  <exec_depend>xacro")})
+    repository.write({"a/package.xml": text})
+    assert sentences(subject(compare(repository), "a/package.xml")) == [f"exec_depend removed: wheels ({shown})"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_breaking"),
+    [
+        ("depend", "exec_depend", False),
+        ("depend", "build_depend", True),
+        ("build_export_depend", "test_depend", True),
+        ("build_depend", "test_depend", False),
+        ("exec_depend", "depend", False),
+    ],
+)
+def test_dependency_that_others_get_no_more_through_the_package_is_breaking(repository, compare, old, new, is_breaking):
+    text = EXPORTS.replace("exec_depend>", f"{old}>")
+    repository.commit({"a/package.xml": text})
+    repository.write({"a/package.xml": text.replace(f"{old}>", f"{new}>")})
+    result = compare(repository)
+    assert sentences(subject(result, "a/package.xml")) == [f"{old} -> {new}: xacro"]
+    assert bool(breaking(result)) is is_breaking
+
+
 def test_all_conditions_of_a_dependency_are_compared(repository, compare):
     lines = [line for line in DEPENDENCIES.splitlines(keepends=True) if "bridge" in line]
     new = "  <exec_depend>bridge</exec_depend>\n"

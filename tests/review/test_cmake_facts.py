@@ -29,6 +29,9 @@ install(FILES config/c.yaml config/d.yaml DESTINATION share/${PROJECT_NAME})
 ament_export_include_directories(include)
 ament_export_libraries(core)
 ament_export_dependencies(rclcpp std_msgs)
+if(BUILD_TESTING)
+  ament_add_gtest(test_core test/core.cpp TIMEOUT 60)
+endif()
 ament_package()
 """
 CATKIN = """cmake_minimum_required(VERSION 2.8.3)
@@ -64,6 +67,9 @@ OTHERS = {
         (AMENT, "core rclcpp::rclcpp", "core rclcpp::rclcpp tf2::tf2", ["'driver' linked to 'tf2'"], False),
         (AMENT, "core rclcpp::rclcpp", "core ${rclcpp_TARGETS}", [], False),
         (AMENT, "src/core.cpp", "src/core.cpp src/more.cpp", ["sources of 'core' added: 'src/more.cpp'"], False),
+        (AMENT, "test/core.cpp", "test/core.cpp test/more.cpp",
+         ["sources of 'test_core' added: 'test/more.cpp'"], False),
+        (AMENT, "TIMEOUT 60", "TIMEOUT 90", [], False),
         (AMENT, "SHARED", "STATIC", ["built targets: 'core': SHARED -> STATIC"], False),
         (AMENT, "add_executable(helper src/helper.cpp)", "", ["built targets removed: 'helper'"], False),
         (AMENT, "add_executable(helper src/helper.cpp)",
@@ -108,6 +114,15 @@ def test_facts_of_cmake_files_are_compared(repository, compare, text, old, new, 
     result = compare(repository)
     assert [sentence for found in result.subjects for sentence in sentences(found)] == expected
     assert bool(breaking(result)) is is_breaking
+
+
+def test_moved_source_of_a_test_is_named(repository, compare):
+    source = "TEST(Core, IsThere) {\n  EXPECT_TRUE(true);\n}\n"
+    repository.commit({**MANIFEST, **OTHERS, "a/CMakeLists.txt": AMENT, "a/test/core.cpp": source})
+    text = AMENT.replace("test/core.cpp", "test/src/core.cpp")
+    repository.commit({"a/CMakeLists.txt": text, "a/test/core.cpp": None, "a/test/src/core.cpp": source})
+    found = subject(compare(repository, "HEAD~1..HEAD"), "a/CMakeLists.txt")
+    assert sentences(found) == ["source of 'test_core' moved: 'test/core.cpp' -> 'test/src/core.cpp'"]
 
 
 def test_new_executable_under_a_condition_is_shown_with_it(repository, compare):
@@ -180,3 +195,27 @@ def test_version_of_a_downloaded_project_is_compared_by_its_keyword(repository, 
     repository.write({"a/CMakeLists.txt": AMENT + project.format("devel")})
     (found,) = compare(repository).subjects
     assert sentences(found) == ["externalproject_add GIT_TAG 1.0.0 -> devel"]
+
+
+INTERFACES = CATKIN.replace("FILES State.msg Load.msg", "DIRECTORY msg/FOLDER FILES State.msg")
+
+
+@pytest.mark.parametrize(("folder", "is_breaking"), [("all", False), ("other", True)])
+def test_interface_of_ros1_that_moves_to_another_folder_keeps_its_type(repository, compare, folder, is_breaking):
+    manifest = MANIFEST["a/package.xml"].replace("</license>", "</license><buildtool_depend>catkin</buildtool_depend>")
+    value = "int32 value\n"
+    repository.commit({"a/package.xml": manifest, "a/CMakeLists.txt": INTERFACES.replace("FOLDER", "arm"),
+                       "a/msg/arm/State.msg": value, "a/services/Home.srv": "---\n"})  # fmt: skip
+    repository.commit({"a/CMakeLists.txt": INTERFACES.replace("FOLDER", folder),
+                       "a/msg/arm/State.msg": None, "a/msg/all/State.msg": value})  # fmt: skip
+    result = compare(repository, "HEAD~1..HEAD")
+    assert ("renamed from a/msg/arm/State.msg" in breaking(result)) is is_breaking
+    if not is_breaking:
+        assert str(result.file_states["a/msg/all/State.msg"]) == "moved from a/msg/arm/, the type keeps its name"
+
+
+def test_built_interface_without_a_file_is_named(repository, compare):
+    repository.commit({**MANIFEST, **OTHERS, "a/CMakeLists.txt": CATKIN})
+    repository.write({"a/CMakeLists.txt": CATKIN.replace("Load.msg", "Load.msg Lost.msg")})
+    found = subject(compare(repository), "a/CMakeLists.txt")
+    assert sentences(found) == ["built interfaces added: 'msg/Lost.msg'"]

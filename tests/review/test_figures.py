@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.diagnostics import phrase
+from linkwright.review.quantities import figure_of
 from tests.repositories import MACRO
 from tests.review.conftest import subject
 
@@ -42,3 +44,16 @@ def test_slide_reaches_farthest_at_a_limit(package, compare, upper):
     package.write({SEGMENT: sliding.replace('upper="0"', f'upper="{upper}"')})
     figure = _reach(compare(package))
     assert float(figure.new) == pytest.approx(1.5 + 3 * upper, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "texts"),
+    [
+        (2.0, 3.0, ("2", "3")),
+        (102.8, 102.8453, ("102.8", "102.85")),
+        (102.84, 102.823, ("102.84", "102.82")),
+    ],
+)
+def test_quantity_has_the_digits_that_tell_both_versions_apart(old, new, texts):
+    (figure,) = figure_of(phrase("mass"), "kg", old, new)
+    assert (figure.old, figure.new) == texts

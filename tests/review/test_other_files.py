@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.reports.text import as_text
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
@@ -395,8 +396,8 @@ def test_renamed_meshes_of_a_folder_are_one_breaking_line(repository, compare):
 
 
 def test_removed_and_added_meshes_are_grouped(repository, compare):
-    repository.commit({f"a/meshes/m{number}.stl": _stl(number) for number in range(42)})
-    repository.commit({f"a/meshes/m{number}.stl": None for number in range(42)})
+    repository.commit({f"a/meshes/m{number}.stl": _stl(number) for number in range(MAX_NAMES + 2)})
+    repository.commit({f"a/meshes/m{number}.stl": None for number in range(MAX_NAMES + 2)})
     result = compare(repository, "HEAD~1..HEAD")
     (change,) = result.subjects[0].changes
     assert str(change.sentence).endswith(" and 2 more")
@@ -434,6 +435,18 @@ def test_changed_base_class_of_plugin_is_breaking(repository, compare):
     (sentence,) = breaking(compare(repository))
     interfaces = "hardware_interface::SystemInterface -> hardware_interface::ActuatorInterface"
     assert sentence == f"plugin class 'arm/Hardware': base class {interfaces}"
+
+
+def test_other_library_of_a_plugin_class_is_a_change(repository, compare):
+    repository.commit({"a/arm_plugins.xml": PLUGINS})
+    repository.write({"a/arm_plugins.xml": PLUGINS.replace('path="arm_hardware"', 'path="lib/libarm_drivers"')})
+    result = compare(repository)
+    assert sentences(subject(result, "a/arm_plugins.xml")) == [
+        "plugin class 'arm/Hardware': library arm_hardware -> lib/libarm_drivers",
+        "plugin class 'arm/Gripper': library arm_hardware -> lib/libarm_drivers",
+    ]
+    repository.write({"a/arm_plugins.xml": PLUGINS.replace('path="arm_hardware"', 'path="lib/libarm_hardware"')})
+    assert compare(repository).subjects == []
 
 
 def test_fields_have_their_lines(repository, compare):

@@ -93,14 +93,39 @@ def test_renamed_controller_is_compared_with_the_old_one(changes_of):
         ("GZ_TO_ROS", "BIDIRECTIONAL", "bridge '/scan': direction GZ_TO_ROS -> BIDIRECTIONAL", False),
         ("GZ_TO_ROS", "ROS_TO_GZ", "bridge '/scan': direction GZ_TO_ROS -> ROS_TO_GZ", True),
         ("/lidar", "/lidar2", "bridge '/scan': gz_topic_name /lidar -> /lidar2", False),
-        (BRIDGES[BRIDGES.index("- topic_name") :], "", "bridge '/clock' removed", True),
-        ("- topic_name", "- topic_name: /tf\n- topic_name", "bridge '/tf' added", False),
+        (BRIDGES[BRIDGES.index("- topic_name") :], "",
+         "bridge '/clock' removed: ros_type_name rosgraph_msgs/msg/Clock, gz_type_name gz.msgs.Clock", True),
+        ("- topic_name", "- topic_name: /tf\n  gz_topic_name: /pose\n  direction: GZ_TO_ROS\n- topic_name",
+         "bridge '/tf' added: gz_topic_name /pose, direction GZ_TO_ROS", False),
     ],
 )  # fmt: skip
 def test_bridges_are_compared_by_topic(changes_of, old, new, expected, is_breaking):
     changes, found_breaking = changes_of(BRIDGES, BRIDGES.replace(old, new))
     assert changes == [expected]
     assert bool(found_breaking) is is_breaking
+
+
+SETTINGS = "a: null\nb: ~\nc:\nd: ''\ne: 1\nf: [null, 1]\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("b: ~", "b: ''", ["b null -> ''"]),
+        ("c:\n", "c: 2\n", ["c null -> 2"]),
+        ("c:\n", "", ["c null removed"]),
+        ("d: ''", "d: ~", ["d '' -> null"]),
+        ("f: [null, 1]", "f: [1]", ["f [null, 1] -> [1]"]),
+    ],
+)
+def test_null_is_shown_as_null(changes_of, old, new, expected):
+    assert changes_of(SETTINGS, SETTINGS.replace(old, new))[0] == expected
+
+
+def test_other_writing_of_null_is_no_change(repository, compare):
+    repository.commit({"a/package.xml": PACKAGE_XML, PATH: SETTINGS})
+    repository.write({PATH: SETTINGS.replace("b: ~", "b:")})
+    assert compare(repository).subjects == []
 
 
 NODES = """planner_server:

@@ -251,3 +251,33 @@ def test_part_that_is_nested_too_deeply_is_a_problem(library, compare, monkeypat
     library.write({TOOL: GRIPPER.replace('upper="0.04"', 'upper="0.05"')})
     (problem,) = subject(compare(library), TOOL).problems
     assert str(problem.text) == "the versions cannot be compared: they are nested too deeply, or too large"
+
+
+SENSOR_BLOCK = '<gazebo reference="${name}">\n      <sensor'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (SENSOR_BLOCK, f'<gazebo reference="${{name}}"><mu1>1</mu1></gazebo>{SENSOR_BLOCK}',
+         ["macro 'gripper': gazebo ${name} mu1 1 added"]),
+        (SENSOR_BLOCK, ('<xacro:if value="${rough}"><gazebo reference="${name}"><mu1>1</mu1></gazebo></xacro:if>'
+                        f"{SENSOR_BLOCK}"), ["macro 'gripper': gazebo ${name} mu1 1 [if ${rough}] added"]),
+    ],
+)  # fmt: skip
+def test_added_block_of_gazebo_leaves_the_other_block_as_it_is(library, compare, old, new, expected):
+    text = GRIPPER.replace("<topicName>image</topicName>", "<rate>1</rate>")
+    library.commit({TOOL: text})
+    library.write({TOOL: text.replace(old, new).replace("<rate>1<", "<rate>2<")})
+    rate = "macro 'gripper': gazebo ${name} sensor camera plugin driver rate: 1 -> 2"
+    assert sorted(sentences(subject(compare(library), TOOL))) == sorted([*expected, rate])
+
+
+def test_elements_without_names_are_told_apart_by_their_attributes(library, compare):
+    pairs = "".join(f'<enable_collisions link1="a" link2="b{number}"/>' for number in range(3))
+    text = GRIPPER.replace('    <link name="${name}_tip"/>', f'    {pairs}<link name="${{name}}_tip"/>')
+    library.commit({TOOL: text})
+    library.write({TOOL: GRIPPER})
+    (change,) = subject(compare(library), TOOL).changes
+    assert str(change.sentence) == "macro 'gripper': enable_collisions link1=a link2=b0 removed"
+    assert change.other_names == ("enable_collisions link1=a link2=b1", "enable_collisions link1=a link2=b2")

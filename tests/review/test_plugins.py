@@ -59,3 +59,34 @@ def test_equal_numbers_of_extensions_are_no_change(repository, compare):
     repository.commit({PATH: robot('<gazebo reference="base"><mu1>1.0</mu1></gazebo>')})
     repository.write({PATH: robot('<gazebo reference="base"><mu1>1</mu1></gazebo>')})
     assert compare(repository).subjects == []
+
+
+BLOCKS = """
+    <gazebo reference="base"><collision/></gazebo>
+    <gazebo reference="base">
+      <material>Gazebo/Red</material>
+      <sensor name="lidar" type="ray"><update_rate>10</update_rate></sensor>
+    </gazebo>"""
+NEW_BLOCKS = """
+    <gazebo reference="base"><sensor name="camera" type="camera"/></gazebo>
+    <gazebo reference="base"><collision/><mu1>0.5</mu1></gazebo>
+    <gazebo reference="base"><sensor name="lidar" type="ray"><update_rate>20</update_rate></sensor></gazebo>
+    <gazebo reference="base"><material>Gazebo/Red</material></gazebo>"""
+
+
+def test_blocks_of_gazebo_for_a_link_are_compared_as_one(repository, compare):
+    repository.commit({PATH: robot(BLOCKS)})
+    repository.write({PATH: robot(NEW_BLOCKS)})
+    assert sorted(sentences(subject(compare(repository), PATH))) == [
+        "extension 'gazebo base': mu1 added: 0.5",
+        "extension 'gazebo base': sensor camera added: type=camera",
+        "extension 'gazebo base': sensor lidar update_rate 10 -> 20",
+    ]
+
+
+def test_other_division_into_blocks_of_gazebo_is_no_change(repository, compare):
+    repository.commit({PATH: robot(BLOCKS)})
+    repository.write(
+        {PATH: robot(BLOCKS.replace('<collision/></gazebo>\n    <gazebo reference="base">', "<collision/>"))}
+    )
+    assert compare(repository).subjects == []

@@ -128,3 +128,14 @@ def test_mesh_with_two_paths_fills_the_cache_once(repository):
     first, second = (library.read(repository.root / f"w/{name}.stl") for name in "ab")
     assert first is second
     assert list(mesh_library._CACHE.values.values()).count(first) == 1
+
+
+@pytest.mark.parametrize("name", ["package.xml", "CMakeLists.txt", "src/main.cpp"])
+def test_files_are_not_searched_for_names_if_no_description_can_read_a_changed_file(repository, monkeypatch, name):
+    repository.commit(FILES)
+    repository.write({f"w/{name}": PACKAGE.replace("1.0.0", "1.1.0")})
+    reads = counted(monkeypatch, affected, "_text")
+    versions = open_versions(repository.root, "HEAD")
+    review(versions)
+    versions.close()
+    assert reads == []

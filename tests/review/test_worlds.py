@@ -38,11 +38,15 @@ ROBOT = "world yard model robot"
         ('<sensor name="lidar"', '<sensor name="laser"', f"{ROBOT} link base sensor lidar renamed to 'laser'", True),
         ('<frame name="tool">', '<frame name="hand">', f"{ROBOT} frame tool renamed to 'hand'", True),
         ('      <link name="wheel"/>\n', "", f"{ROBOT} link wheel removed", True),
-        (SENSOR, "", f"{ROBOT} link base sensor lidar removed: topic scan, gz_frame_id laser, lidar range max 9", True),
+        (SENSOR, "",
+         (f"{ROBOT} link base sensor lidar type=gpu_lidar removed: topic scan, gz_frame_id laser, "
+          "lidar range max 9"), True),
         ("<topic>scan<", "<topic>front/scan<", f"{ROBOT} link base sensor lidar topic: scan -> front/scan", True),
-        ("<topic>scan</topic>", "", f"{ROBOT} link base sensor lidar topic removed", True),
+        ("<topic>scan</topic>", "", f"{ROBOT} link base sensor lidar topic scan removed", True),
         (">laser<", ">lidar<", f"{ROBOT} link base sensor lidar gz_frame_id: laser -> lidar", True),
-        (PLUGIN, "", f"{ROBOT} plugin drive removed: ros remapping cmd_vel:=drive/cmd, topics 'odom'", True),
+        (PLUGIN, "",
+         (f"{ROBOT} plugin drive filename=libgazebo_ros_diff_drive.so removed: ros remapping cmd_vel:=drive/cmd, "
+          "topics 'odom'"), True),
         ("drive/cmd<", "cmd<",
          f"{ROBOT} plugin drive ros remapping: cmd_vel:=drive/cmd -> cmd_vel:=cmd", True),
         ('"base">0 1 0', '"base">0 -1 0', f"{ROBOT} joint wheel_joint axis xyz: 0 1 0 -> 0 -1 0", False),

@@ -32,6 +32,15 @@ _MODEL_CONFIG = "model.config"
 """The name of a file that names files of its own folder."""
 _MIN_FIXED_CHARACTERS = 3
 """The number of fixed characters besides the suffix that a computed name must have to be followed."""
+_BUILD_FILES = frozenset({"package.xml", "CMakeLists.txt", "setup.py", "setup.cfg", "pyproject.toml"})
+"""The names of files that tools for building read, and no description."""
+_OTHER_SUFFIXES = (".md", ".rst", ".cpp", ".hpp", ".cc", ".h", ".msg", ".srv", ".action", ".repos", ".sh")
+"""The endings of other files that no description reads."""
+
+
+def may_be_read(path: str) -> bool:
+    """Return whether a description, or a file that it includes, may read a file."""
+    return Path(path).name not in _BUILD_FILES and not path.endswith(_OTHER_SUFFIXES)
 
 
 class TextFiles:

@@ -94,6 +94,7 @@ class PackageFinder:
         self._scans: dict[Path, SourceScan] = {}
         self._shares: dict[str, Path] = {}
         self._suggestions: dict[str, tuple[Phrase | None, bool]] = {}
+        self._locations: list[Phrase] = []
         self._own_prefix_path: str | None = None
 
     def starting_at(self, start: Sequence[Path]) -> PackageFinder:
@@ -146,8 +147,9 @@ class PackageFinder:
         if share is None:
             if name not in self._suggestions:
                 self._suggestions[name] = self._nearest(name)
+                self._locations = self._searched_locations()
             suggestion, is_misspelling = self._suggestions[name]
-            raise PackageNotFoundError(name, self._searched_locations(), suggestion, is_misspelling=is_misspelling)
+            raise PackageNotFoundError(name, self._locations, suggestion, is_misspelling=is_misspelling)
         return share
 
     def packages(self) -> dict[str, Path]:

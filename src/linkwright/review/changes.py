@@ -38,6 +38,7 @@ class SubjectKind(Enum):
     INTERFACE = "interface"
     MANIFEST = "package manifest"
     BUILD = "build file"
+    DEPENDENCIES = "list of dependencies"
     RVIZ = "RViz configuration"
     MESH = "mesh"
     SCENARIO = "scenario"

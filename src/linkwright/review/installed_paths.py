@@ -25,6 +25,19 @@ def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bo
     return old_places is not None and old_places == _places(versions.new, old_package, new_path)
 
 
+def keeps_type(versions: Versions, old_path: str, new_path: str) -> bool:
+    """Return whether a moved interface of ROS 1 has the type that it had: names of its types have no folder."""
+    old, new = PurePosixPath(old_path), PurePosixPath(new_path)
+    package = versions.new.package_of(new_path)
+    if old.name != new.name or package is None or versions.old.package_of(old_path) != package:
+        return False
+    facts = package_facts(versions.new, package)
+    is_built = facts is not None and any(
+        fact.kind is FactKind.INTERFACE and fact.name == new.relative_to(package).as_posix() for fact in facts.facts
+    )
+    return is_built and Manifest(read_document(str(versions.new.root / package / MANIFEST))).is_ros1
+
+
 def _places(version: Version, package: str, path: str) -> frozenset[str] | None:
     """Return the installed paths of a file without the name of its package, or None if they are not known."""
     folder = version.root / package

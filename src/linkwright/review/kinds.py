@@ -15,6 +15,14 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_contents import build_contents
 from linkwright.review.files.build_facts import BuildFacts
 from linkwright.review.files.cmake_files import CMAKE_FILE, compare_cmake_files, read_cmake_facts
+from linkwright.review.files.dependency_lists import (
+    REPOSITORY_SUFFIXES,
+    REQUIREMENTS,
+    compare_repositories,
+    compare_requirements,
+    repository_contents,
+    requirement_contents,
+)
 from linkwright.review.files.interfaces import compare_interfaces, interface_contents
 from linkwright.review.files.manifests import compare_manifests, manifest_contents
 from linkwright.review.files.maps import compare_map_files, compare_maps, map_contents
@@ -195,6 +203,14 @@ _RULES = (
     ),
     PARAMETERS,
     KindRule(
+        SubjectKind.DEPENDENCIES,
+        compare_repositories,
+        REPOSITORY_SUFFIXES,
+        phrase("list of repositories added"),
+        phrase("list of repositories removed"),
+        contents=repository_contents,
+    ),
+    KindRule(
         SubjectKind.MESH,
         compare_meshes,
         (".stl", ".dae", ".obj", ".glb", ".gltf"),
@@ -203,6 +219,16 @@ _RULES = (
         phrase("descriptions of other packages that name the file do not find it"),
         contents=mesh_contents,
     ),
+)
+
+
+_REQUIREMENTS = KindRule(
+    SubjectKind.DEPENDENCIES,
+    compare_requirements,
+    (),
+    phrase("list of Python packages added"),
+    phrase("list of Python packages removed"),
+    contents=requirement_contents,
 )
 
 
@@ -264,6 +290,8 @@ def rule_of(path: str) -> KindRule | None:
         return None  # a test with launch_testing
     if is_launch_file_name(name):
         return LAUNCH_FILE
+    if REQUIREMENTS.fullmatch(name):
+        return _REQUIREMENTS
     return next((rule for rule in _RULES if any(_has_name(name, suffix) for suffix in rule.suffixes)), None)
 
 

@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 from multiprocessing import get_context
 from pathlib import PurePosixPath
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted, did_you_mean, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.lint.affected import TextFiles
+from linkwright.lint.affected import TextFiles, may_be_read
 from linkwright.lint.targets import Targets, find_targets, included_robots, is_plain_robot
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
@@ -37,7 +37,7 @@ from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST, rosbuild_subjects
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
-from linkwright.review.installed_paths import keeps_installed_path
+from linkwright.review.installed_paths import keeps_installed_path, keeps_type
 from linkwright.review.kinds import (
     LAUNCH_FILE,
     LAUNCH_HELPER,
@@ -68,7 +68,10 @@ _Pair = tuple[KindRule, "str | None", "str | None"]
 """The rule for a file, its old path and its new path."""
 _MIN_EXPANDED = 4
 """The minimum number of descriptions for which several processes are used."""
-_LISTED = (SubjectKind.BUILD, SubjectKind.MANIFEST, SubjectKind.LAUNCH_FILE, SubjectKind.PARAMETERS)
+_LISTED = (
+    *(SubjectKind.BUILD, SubjectKind.MANIFEST, SubjectKind.LAUNCH_FILE, SubjectKind.PARAMETERS),
+    SubjectKind.DEPENDENCIES,
+)
 """The kinds whose changed files are listed with the other files if no difference is found."""
 _EXPANDED = (SubjectKind.DESCRIPTION, SubjectKind.WORLD)
 """The kinds that include other files. Parts of them are not compared on their own."""
@@ -123,9 +126,12 @@ class _Reviewer:
             file.old_path: file.new_path for file in self._changed_files if file.old_path and file.new_path
         }
         self._maps = dict(_maps_of_images(versions, self._changed_files))
-        self._targets = {
-            version.is_old: _targets(version) | self._plain_robots(version) for version in (versions.old, versions.new)
-        }
+
+    @cached_property
+    def _targets(self) -> dict[bool, set[str]]:
+        """The paths of the complete descriptions and worlds, by whether the version is the old one."""
+        versions = (self._versions.old, self._versions.new)
+        return {version.is_old: _targets(version) | self._plain_robots(version) for version in versions}
 
     def run(self, workers: int) -> Review:
         pairs = list(self._pairs())
@@ -266,6 +272,10 @@ class _Reviewer:
     def _affected(self) -> Iterator[set[str]]:
         """Yield the complete descriptions and worlds of both versions that changed files can affect."""
         changed = {path for file in self._versions.changed_files for path in (file.old_path, file.new_path) if path}
+        changed = {path for path in changed if may_be_read(path)}
+        if not changed:
+            yield from (set(), set())
+            return
         files = None
         for version in (self._versions.old, self._versions.new):
             files = TextFiles(version.root, files, changed)
@@ -375,6 +385,9 @@ def _renaming(versions: Versions, rule: KindRule, old_path: str, new_path: str) 
     old, new = PurePosixPath(old_path), PurePosixPath(new_path)
     if old.name == new.name and rule.removal_reason is not None and keeps_installed_path(versions, old_path, new_path):
         text = phrase("moved from {folder}, installed at the same place", folder=f"{old.parent}/")
+        return Change(text, path_change=PathChange.MOVED)
+    if rule.kind is SubjectKind.INTERFACE and keeps_type(versions, old_path, new_path):
+        text = phrase("moved from {folder}, the type keeps its name", folder=f"{old.parent}/")
         return Change(text, path_change=PathChange.MOVED)
     effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
     text = phrase("renamed from {path}", path=old_path)

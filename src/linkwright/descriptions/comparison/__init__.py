@@ -7,10 +7,12 @@ from linkwright.descriptions.comparison.compare import Comparison, Side, compare
 from linkwright.descriptions.comparison.difference import Difference, DifferenceLocation, Kind, Subject
 from linkwright.descriptions.comparison.elements import ElementComparison
 from linkwright.descriptions.comparison.file_contents import has_same_bytes
+from linkwright.descriptions.comparison.gazebo_blocks import GAZEBO, joined_block
 from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, interfaces_of
 from linkwright.descriptions.comparison.report import as_data, as_text, sentence
 
 __all__ = [
+    "GAZEBO",
     "ROS2_CONTROL",
     "Comparison",
     "Difference",
@@ -24,5 +26,6 @@ __all__ = [
     "compare",
     "has_same_bytes",
     "interfaces_of",
+    "joined_block",
     "sentence",
 ]

@@ -7,6 +7,7 @@ from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from itertools import zip_longest
 
 from linkwright.descriptions.comparison.difference import Difference, Kind, location_of
+from linkwright.descriptions.comparison.gazebo_blocks import GAZEBO, joined_block
 from linkwright.descriptions.comparison.numbers import comparable_text
 from linkwright.descriptions.comparison.renamed_elements import renamed_elements
 from linkwright.loading.lean_dataclasses import dataclass
@@ -83,7 +84,10 @@ class ElementComparison:
         )
         yield from self._take_renamed(old, new, old_rest, new_rest)
         for base in dict.fromkeys([*new_rest, *old_rest]):
-            for old_item, new_item in zip_longest(old_rest.get(base, ()), new_rest.get(base, ())):
+            old_items, new_items = old_rest.get(base, []), new_rest.get(base, [])
+            if old_items and new_items and new_items[0][1].tag == GAZEBO:
+                old_items, new_items = _joined(base, old_items), _joined(base, new_items)
+            for old_item, new_item in zip_longest(old_items, new_items):
                 key, _ = new_item or old_item
                 yield key, old_item and old_item[1], new_item and new_item[1]
 
@@ -182,6 +186,11 @@ def _without_common(elements: Mapping[str, Element], contents: Sequence[Hashable
         else:
             unmatched.setdefault(f"{element.tag} {_name_of(element) or ''}", []).append((key, element))
     return unmatched
+
+
+def _joined(base: str, items: Sequence[tuple[str, Element]]) -> list[tuple[str, Element]]:
+    """Return the ``<gazebo>`` elements of a link as one, with the key of a lone one."""
+    return [(base.strip(), joined_block([element for _, element in items]))]
 
 
 def _name_of(element: Element) -> str | None:

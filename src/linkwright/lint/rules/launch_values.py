@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from functools import lru_cache
 
 from linkwright.descriptions import examine
 from linkwright.diagnostics import (
@@ -343,6 +344,7 @@ def _first_invalid_yaml_description(
     return None
 
 
+@lru_cache(maxsize=32)
 def _yaml_problem(text: str) -> str | None:
     """Return the reason why launch cannot parse a text as a YAML string, or None."""
     import yaml

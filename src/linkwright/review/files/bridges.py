@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import yaml
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.review.breaking import name_reason
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
@@ -41,6 +41,12 @@ class Bridge:
         """The name of the topic in ROS."""
         return next((self.settings[key] for key in _TOPIC_KEYS if key in self.settings), "")
 
+    @property
+    def contents(self) -> Phrase | None:
+        """The settings besides the topic in ROS; None if there are none."""
+        topic_key = next((key for key in _TOPIC_KEYS if key in self.settings), None)
+        return joined([f"{key} {value}" for key, value in self.settings.items() if key != topic_key]) or None
+
 
 def read_bridges(text: str) -> list[Bridge] | None:
     """Return the bridges of a document in YAML, or None if it does not configure bridges.
@@ -73,12 +79,16 @@ def compare_bridges(pair: FilePair, old: Sequence[Bridge], new: Sequence[Bridge]
     for old_bridge, new_bridge in list(_matched(old_rest, new_rest)):
         _compare_settings(pair, old_bridge, new_bridge)
     for bridge in new_rest:
-        pair.add(
-            phrase("bridge '{topic}' added", topic=bridge.topic), Location(pair.new_path, bridge.line, bridge.column)
-        )
+        text = _with_contents(phrase("bridge '{topic}' added", topic=bridge.topic), bridge)
+        pair.add(text, Location(pair.new_path, bridge.line, bridge.column))
     for bridge in old_rest:
         location = Location(pair.old_path, bridge.line, bridge.column, is_old=True)
-        pair.add(phrase("bridge '{topic}' removed", topic=bridge.topic), location, name_reason(bridge.topic))
+        text = _with_contents(phrase("bridge '{topic}' removed", topic=bridge.topic), bridge)
+        pair.add(text, location, name_reason(bridge.topic))
+
+
+def _with_contents(text: Phrase, bridge: Bridge) -> Phrase:
+    return phrase("{change}: {contents}", change=text, contents=bridge.contents) if bridge.contents else text
 
 
 def _matched(old: list[Bridge], new: list[Bridge]) -> Iterator[tuple[Bridge, Bridge]]:

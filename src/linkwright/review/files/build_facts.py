@@ -152,10 +152,12 @@ class TargetParts:
     Attributes:
         libraries: the names of packages and libraries that are linked to it, with their locations.
         sources: its sources relative to the package, with their locations.
+        is_test: whether it is a test.
     """
 
     libraries: dict[str, Span] = field(default_factory=dict)
     sources: dict[str, Span] = field(default_factory=dict)
+    is_test: bool = False
 
 
 @dataclass
@@ -363,11 +365,11 @@ def listed(names: Sequence[str]) -> Phrase:
 
 
 def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:
-    """Return whether the other version has the file of an interface, so that the file is not reported itself."""
+    """Return whether both versions or none have the file of an interface, so that the file is not reported itself."""
     if fact.kind is not FactKind.INTERFACE:
         return True
     path = (PurePosixPath(facts.package) / fact.name).as_posix()
-    return pair.versions.old.file(path).is_file() and pair.versions.new.file(path).is_file()
+    return pair.versions.old.file(path).is_file() == pair.versions.new.file(path).is_file()
 
 
 # --- installed files --------------------------------------------------------------------------------------------------

@@ -18,6 +18,14 @@ _SOURCE_COMMANDS = frozenset(
         *("rosbuild_add_executable", "rosbuild_add_library", "cuda_add_executable", "cuda_add_library"),
     }
 )
+_TEST_COMMANDS = frozenset(
+    {
+        *("ament_add_gtest", "ament_add_gmock", "ament_add_gtest_executable", "ament_add_pytest_test"),
+        *("catkin_add_gtest", "catkin_add_gmock", "add_rostest_gtest", "add_rostest_gmock", "rosbuild_add_gtest"),
+    }
+)
+_TEST_SOURCE = re.compile(r".+\.(c|cc|cpp|cxx|cu|py|test|launch|xml)")
+"""A source among the arguments of a test, which also has a timeout and an environment."""
 _LINK_COMMANDS = frozenset({"target_link_libraries", "ament_target_dependencies", "rosbuild_link_boost"})
 _VARIABLE = re.compile(r"\$\{(\w+?)_(LIBRARIES|LIBRARY|TARGETS|LIBS)\}", re.IGNORECASE)
 
@@ -26,16 +34,19 @@ def read_targets(commands: Iterable[Command]) -> dict[str, TargetParts]:
     """Return the parts of targets, by target. Packages and their targets count as the same library."""
     targets: dict[str, TargetParts] = {}
     for command in commands:
-        if (command.name not in _SOURCE_COMMANDS and command.name not in _LINK_COMMANDS) or not command.arguments:
+        if command.name not in _SOURCE_COMMANDS | _TEST_COMMANDS | _LINK_COMMANDS or not command.arguments:
             continue
         target, *arguments = command.arguments
         parts = targets.setdefault(target.text, TargetParts())
+        parts.is_test |= command.name in _TEST_COMMANDS
         for argument in arguments:
             if argument.text.isupper():
                 continue  # a keyword, such as PUBLIC
             if command.name in _LINK_COMMANDS:
                 parts.libraries.setdefault(_library(argument.text, command.name), _span(argument))
-            elif not is_open(argument.text):
+            elif not is_open(argument.text) and (
+                command.name not in _TEST_COMMANDS or _TEST_SOURCE.fullmatch(argument.text)
+            ):
                 parts.sources.setdefault(within_package(argument.text, command.folder), _span(argument))
     return targets
 
@@ -62,6 +73,8 @@ def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         if before is None:
             continue
         sources = {new_source(pair, old, new, item): span for item, span in before.sources.items()}
+        if parts.is_test:
+            _compare_moved(pair, name, dict(zip(before.sources, sources, strict=False)), parts.sources)
         for kind, old_items, new_items in (
             ("libraries", before.libraries, parts.libraries),
             ("sources", sources, parts.sources if sources else {}),
@@ -76,6 +89,14 @@ def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     for key, targets in changes.items():
         text = _text(key.kind, [name for name, _ in targets], key.items, is_added=key.is_added)
         pair.add(text, pair.location(targets[0][1]))
+
+
+def _compare_moved(pair: FilePair, test: str, moved: Mapping[str, str], sources: Mapping[str, Span]) -> None:
+    """Add the sources of a test that have another path. No other line of a review names those of tests."""
+    for old_path, path in moved.items():
+        if old_path != path and path in sources:
+            text = phrase("source of '{target}' moved: '{old}' -> '{new}'", target=test, old=old_path, new=path)
+            pair.add(text, pair.location(sources[path]))
 
 
 class _Key(NamedTuple):

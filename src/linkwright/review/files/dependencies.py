@@ -30,54 +30,89 @@ class _Key(NamedTuple):
 _Elements = Mapping[_Key, list[Element]]
 
 
+class _Edit(NamedTuple):
+    """A change of dependencies: their tags in both versions, and whether it is breaking."""
+
+    old_tags: str
+    new_tags: str
+    is_breaking: bool
+
+
 def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
-    """Add the changed dependencies: those with the same tags in one line, and changed conditions."""
+    """Add the changed dependencies: those with the same tags and effect in one line, and changed conditions."""
     names = PackageNames(renamed_packages(pair.versions))
     new_elements = _elements(new)
     old_elements = {_Key(tag, names.of_package(name)): found for (tag, name), found in _elements(old).items()}
-    packages = dict.fromkeys(key.package for key in (*new_elements, *old_elements))
-    retagged: dict[tuple[str, str], list[_Key]] = {}
-    added: dict[str, list[_Key]] = {}
-    removed: dict[str, list[_Key]] = {}
-    for package in packages:
-        gone = [key for key in old_elements if key.package == package and key not in new_elements]
-        come = [key for key in new_elements if key.package == package and key not in old_elements]
-        if gone and come:
-            retagged.setdefault((_tags(gone), _tags(come)), []).append(come[0])
-            continue
-        for keys, groups in ((come, added), (gone, removed)):
-            if keys:
-                groups.setdefault(_tags(keys), []).append(keys[0])
-        for key in (key for key in new_elements if key.package == package and key in old_elements):
-            _compare_conditions(pair, key, old_elements[key], new_elements[key])
-    for tags, keys in added.items():
-        text = phrase("{tags} added: {packages}", tags=tags, packages=_packages(keys))
-        pair.add(text, pair.location(_span(new_elements, keys[0])))
-    for tags, keys in removed.items():
-        text = phrase("{tags} removed: {packages}", tags=tags, packages=_packages(keys))
-        pair.add(text, pair.location(_span(old_elements, keys[0]), is_old=True), _reason(tags, old))
-    for (old_tags, new_tags), keys in retagged.items():
-        text = phrase("{old} -> {new}: {packages}", old=old_tags, new=new_tags, packages=_packages(keys))
-        pair.add(text, pair.location(_span(new_elements, keys[0])))
+    edits: dict[_Edit, list[_Key]] = {}
+    for package in dict.fromkeys(key.package for key in (*new_elements, *old_elements)):
+        before, after = (
+            [key for key in elements if key.package == package] for elements in (old_elements, new_elements)
+        )
+        gone, come = ([key for key in keys if key not in others] for keys, others in ((before, after), (after, before)))
+        if gone or come:
+            edit = _Edit(_tags(gone), _tags(come), _is_lost(before, after, old))
+            edits.setdefault(edit, []).append((come or gone)[0])
+        if not (gone and come):
+            for key in (key for key in after if key in before):
+                _compare_conditions(pair, key, old_elements[key], new_elements[key])
+    for edit in sorted(edits, key=_order):
+        _add(pair, edit, edits[edit], new_elements if edit.new_tags else old_elements, _lost_reason(old))
     old_variables, new_variables = (
         EnvironmentVariables(_variables(elements)) for elements in (old_elements, new_elements)
     )
     old_variables.compare(pair, new_variables)
 
 
-def _reason(tags: str, manifest: Manifest) -> Phrase | None:
-    """Return why it is breaking that dependencies are gone, or None if others do not have them through the package.
+def _order(edit: _Edit) -> int:
+    """Return a number by which added dependencies are the first, and those with other tags the last."""
+    return 2 if edit.old_tags and edit.new_tags else 1 if edit.old_tags else 0
+
+
+def _add(pair: FilePair, edit: _Edit, keys: list[_Key], elements: _Elements, reason: Phrase) -> None:
+    """Add a change of dependencies, each with its condition."""
+    old_tags, new_tags, is_breaking = edit
+    packages = ", ".join(_with_conditions(key.package, elements[key]) for key in keys)
+    if not old_tags:
+        text = phrase("{tags} added: {packages}", tags=new_tags, packages=packages)
+    elif not new_tags:
+        text = phrase("{tags} removed: {packages}", tags=old_tags, packages=packages)
+    else:
+        text = phrase("{old} -> {new}: {packages}", old=old_tags, new=new_tags, packages=packages)
+    location = pair.location(elements[keys[0]][0].span(), is_old=not new_tags)
+    pair.add(text, location, reason if is_breaking else None)
+
+
+def _with_conditions(package: str, elements: list[Element]) -> str:
+    conditions = _conditions(elements)
+    return f"{package} ({conditions})" if conditions else package
+
+
+def _is_lost(before: list[_Key], after: list[_Key], manifest: Manifest) -> bool:
+    """Return whether others do not get a package through this one any more.
+
+    A dependency for execution is installed with the package, also where another package is built.
 
     Args:
-        tags: the tags of the dependencies.
+        before: the old dependencies on the package.
+        after: the new dependencies on the package.
         manifest: the old manifest.
     """
-    names = set(tags.split(" + "))
+    old_tags, new_tags = ({key.tag for key in keys} for keys in (before, after))
+    if _is_metapackage(manifest):
+        return not old_tags.isdisjoint(_EXECUTION) and new_tags.isdisjoint(_EXECUTION)
+    is_exported = not old_tags.isdisjoint(_EXPORTED) and manifest.build_type != "ament_python"
+    return is_exported and new_tags.isdisjoint(_EXPORTED | _EXECUTION)
+
+
+def _is_metapackage(manifest: Manifest) -> bool:
     export = manifest.root.first("export")
-    if export is not None and export.first("metapackage") is not None and not names.isdisjoint(_EXECUTION):
+    return export is not None and export.first("metapackage") is not None
+
+
+def _lost_reason(manifest: Manifest) -> Phrase:
+    """Return why it is breaking that others do not get a package through this one any more."""
+    if _is_metapackage(manifest):
         return phrase("installing the package does not install them any more")
-    if names.isdisjoint(_EXPORTED) or manifest.build_type == "ament_python":
-        return None
     return phrase("packages that have them only through this package do not build")
 
 
@@ -92,25 +127,24 @@ def _tags(keys: list[_Key]) -> str:
     return " + ".join(key.tag for key in keys)
 
 
-def _packages(keys: list[_Key]) -> str:
-    return ", ".join(key.package for key in keys)
-
-
-def _span(elements: _Elements, key: _Key) -> Span | None:
-    return elements[key][0].span()
-
-
 def _compare_conditions(pair: FilePair, key: _Key, old: list[Element], new: list[Element]) -> None:
     old_text, new_text = _conditions(old), _conditions(new)
-    if str(old_text) != str(new_text):
-        text = phrase("{tag} {package}: {old} -> {new}", tag=key.tag, package=key.package, old=old_text, new=new_text)
+    if old_text != new_text:
+        always = phrase("always")
+        text = phrase(
+            "{tag} {package}: {old} -> {new}",
+            tag=key.tag,
+            package=key.package,
+            old=old_text or always,
+            new=new_text or always,
+        )
         pair.add(text, pair.location(new[0].span()))
 
 
-def _conditions(elements: list[Element]) -> Phrase | str:
-    """Return when a package is a dependency: the conditions and versions of all its tags, or always."""
+def _conditions(elements: list[Element]) -> str:
+    """Return when a package is a dependency: the conditions and versions of all its tags; empty for always."""
     texts = [" ".join(_condition(element)) for element in elements]
-    return "; ".join(texts) if all(texts) else phrase("always")
+    return "; ".join(texts) if all(texts) else ""
 
 
 def _condition(element: Element) -> Iterator[str]:

@@ -12,6 +12,7 @@ from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.files.bridges import compare_bridges, read_bridges
+from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.parameter_names import (
     NameRules,
     has_other_type,
@@ -22,9 +23,10 @@ from linkwright.review.files.parameter_names import (
 )
 from linkwright.review.files.renamed_parts import edit_of, parent_of, renamed_parts, with_new_parts
 from linkwright.review.files.value_changes import ValueChange, merged_values
+from linkwright.review.files.yaml_includes import with_includes
 from linkwright.review.files.yaml_lists import item_labels
 from linkwright.review.files.yaml_values import YamlType, YamlValue, composed, yaml_values
-from linkwright.review.list_changes import EMPTY, shortened
+from linkwright.review.list_changes import shortened
 from linkwright.review.versions import Version
 
 _MAX_BYTES = 4 << 20
@@ -47,8 +49,12 @@ def compare_parameter_files(pair: FilePair) -> None:
         compare_bridges(pair, *bridges)
         return
     roots = pair.read(lambda file: _root(texts[file == pair.new_file]))
-    if roots is not None:
-        pair.changes += merged_values(_changes(pair, *roots))
+    if roots is None:
+        return
+    old, new = roots
+    if old is not None and new is not None:
+        old, new = with_includes(pair, old, new)
+    pair.changes += merged_values(_changes(pair, old, new))
 
 
 def parameter_contents(version: Version, path: str) -> Phrase | None:
@@ -80,7 +86,7 @@ def _with_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
     for part, values in parts.items():
         items = [shortened(item, _MAX_VALUE) for item in _lone_content(part, values)]
         if part in values:
-            texts.append(phrase("{parameter} {value}", parameter=part, value=items[0] or EMPTY))
+            texts.append(phrase("{parameter} {value}", parameter=part, value=items[0]))
         else:
             texts.append(phrase("{entry} ({items})", entry=part, items=joined_first(items, limit)))
     return joined_first(texts, MAX_NAMES)
@@ -103,12 +109,14 @@ def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | N
     old_values, new = ({} if root is None else yaml_values(root, labels) for root in (old_root, new_root))
     old = _with_new_names(pair, old_values, new)
     rules = NameRules(old, new)
+    readers = KeyReaders(pair.versions, pair.new_path)
     for name, value in new.items():
         old_value = old.get(name)
         if old_value is not None and not _are_equal(name, old_value, value):
             location = Location(pair.new_path, value.line, value.column)
             shown = _shown_values(old_value, value)
-            yield ValueChange(name, "changed", shown, location, rules.change_reason(name, old_value, value))
+            reason = rules.change_reason(name, old_value, value) or readers.name_reason(name, old_value, value)
+            yield ValueChange(name, "changed", shown, location, reason)
     for name, values_below in _lone_parts(new, old):
         first = next(iter(values_below.values()))
         location = Location(pair.new_path, first.line, first.column)
@@ -119,13 +127,14 @@ def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | N
         below = [(each, old[each].text) for each in old if each not in new and _is_below(each, name)]
         reasons = (rules.removal_reason(parameter, value) for parameter, value in below)
         reason = next((reason for reason in reasons if reason is not None), None)
+        reason = reason or readers.key_reason(_lost_keys(next(iter(values_below)), new))
         yield ValueChange(name, "removed", _lone_content(name, values_below), location, reason)
 
 
 def _shown_values(old: YamlValue, new: YamlValue) -> tuple[str, str]:
     """Return the texts of two values, with quotes if only these tell them apart."""
-    if old.text != new.text:
-        return old.text, new.text
+    if old.shown != new.shown:
+        return old.shown, new.shown
     old_text, new_text = (f'"{value.text}"' if value.type is YamlType.TEXT else value.text for value in (old, new))
     return old_text, new_text
 
@@ -133,9 +142,9 @@ def _shown_values(old: YamlValue, new: YamlValue) -> tuple[str, str]:
 def _lone_content(part: str, values: Mapping[str, YamlValue]) -> tuple[str, ...]:
     """Return the value of a part that is one, or the names and values in a part."""
     if part in values:
-        return (values[part].text,)
+        return (values[part].shown,)
     names = {name: name.removeprefix(part).lstrip(".").removeprefix("ros__parameters.") for name in values}
-    return tuple(f"{names[name]} {value.text or EMPTY}" for name, value in values.items() if not _is_label(name, value))
+    return tuple(f"{names[name]} {value.shown}" for name, value in values.items() if not _is_label(name, value))
 
 
 def _is_label(name: str, value: YamlValue) -> bool:
@@ -156,6 +165,14 @@ def _lone_parts(
             parts.setdefault(part, {})[name] = value
     for part, values_below in parts.items():
         yield next(iter(values_below)) if len(values_below) == 1 else part, values_below
+
+
+def _lost_keys(name: str, new: Mapping[str, YamlValue]) -> list[str]:
+    """Return the keys on the path of a value that the new version has nowhere; none for a parameter of a node."""
+    if is_parameter(name):
+        return []  # nodes declare their parameters with defaults
+    keys = {part.rpartition(".")[2] for other in new for part in part_names(other)}
+    return [key for part in part_names(name) if (key := part.rpartition(".")[2]) not in keys and "[" not in key]
 
 
 def _is_below(name: str, part: str) -> bool:
@@ -196,6 +213,8 @@ def _are_equal(name: str, old: YamlValue, new: YamlValue) -> bool:
     """
     if is_parameter(name) and has_other_type(old, new):
         return False
+    if old.is_null or new.is_null:
+        return old.is_null and new.is_null
     if old.text == new.text:
         return True
     if old.type is new.type is YamlType.TRUTH:

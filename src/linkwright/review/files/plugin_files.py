@@ -22,10 +22,11 @@ _LOST = phrase("programs and configurations that load the class do not find it")
 
 @dataclass(frozen=True)
 class _PluginClass:
-    """A class that a plugin description declares: its type, its base class, and where it is declared."""
+    """A class that a plugin description declares: its type, its base class, its library, and where it is declared."""
 
     type: str
     base: str
+    library: str
     path: str
     location: Location | None
 
@@ -77,12 +78,15 @@ def _classes_of(file: Path, path: str, *, is_old: bool) -> Iterator[tuple[str, _
         return
     if root.tag not in _ROOTS:
         return
+    library = ""
     for element in root.walk():
         attributes, span = element.attributes, element.span()
+        library = attributes.get("path", "") if element.tag == "library" else library
         name = attributes.get("name") or attributes.get("type")
         if element.tag == "class" and name:
             location = None if span is None else Location(path, span.line, span.column, is_old)
-            yield name, _PluginClass(attributes.get("type", ""), attributes.get("base_class_type", ""), path, location)
+            types = attributes.get("type", ""), attributes.get("base_class_type", "")
+            yield name, _PluginClass(*types, library, path, location)
 
 
 def _is_exported(version: Version, path: str) -> bool:
@@ -125,3 +129,11 @@ def _changes(name: str, old: _PluginClass | None, new: _PluginClass, names: Pack
     if names.derived(old.type) != new.type:
         text = phrase("plugin class '{name}': type {old} -> {new}", name=name, old=old.type, new=new.type)
         yield Change(text, location=new.location)
+    if _library_name(names.derived(old.library)) != _library_name(new.library):
+        text = phrase("plugin class '{name}': library {old} -> {new}", name=name, old=old.library, new=new.library)
+        yield Change(text, location=new.location)
+
+
+def _library_name(path: str) -> str:
+    """Return the name of a library without its folder, prefix and suffix, which pluginlib finds by itself."""
+    return PurePosixPath(path).name.removeprefix("lib").removesuffix(".so")

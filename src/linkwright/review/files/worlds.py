@@ -188,7 +188,8 @@ def _sentence(difference: Difference, name: str) -> Phrase:
         return phrase(
             "{element}: {old} -> {new}", element=name, old=difference.old or empty, new=difference.new or empty
         )
-    text = phrase("{element} removed", element=name)
+    content = difference.old if difference.element is None else own_content(difference.element)
+    text = phrase("{element} removed", element=f"{name} {content or ''}".strip())
     contents = None if difference.element is None else contents_text(difference.element)
     return text if contents is None else phrase("{change}: {contents}", change=text, contents=contents)
 

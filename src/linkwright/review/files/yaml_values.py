@@ -15,6 +15,7 @@ from linkwright.review.list_changes import EMPTY
 
 _MAX_VALUES = 20_000
 """The maximum number of values of a file. Aliases can repeat a value billions of times."""
+NULL = "null"
 _NAME_KEYS = ("name", "id")
 """The keys that identify the items of a list."""
 _INTEGER = re.compile(r"[-+]?(0x[0-9a-fA-F]+|\d+)")
@@ -49,6 +50,16 @@ class YamlValue:
     column: int
     type: YamlType | None = None
     is_list: bool = False
+
+    @property
+    def is_null(self) -> bool:
+        """Whether the value is null, also as a key without a value."""
+        return self.type is None and not self.is_list
+
+    @property
+    def shown(self) -> str:
+        """The value as text, also if it is null or empty."""
+        return NULL if self.is_null else self.text or EMPTY
 
     @property
     def type_name(self) -> str:
@@ -135,7 +146,7 @@ def _type_of(node: yaml.Node) -> YamlType | None:
     text = str(node.value)
     if not isinstance(node, yaml.ScalarNode) or node.style is not None:
         return YamlType.TEXT
-    if text in ("", "~", "null"):
+    if text in ("", "~", NULL, "Null", "NULL"):
         return None
     patterns = ((YamlType.INTEGER, _INTEGER), (YamlType.FLOAT, _FLOAT), (YamlType.TRUTH, _TRUTH))
     return next((kind for kind, pattern in patterns if pattern.fullmatch(text)), YamlType.TEXT)
@@ -143,7 +154,8 @@ def _type_of(node: yaml.Node) -> YamlType | None:
 
 def _scalar_text(node: yaml.Node) -> str:
     if isinstance(node, yaml.SequenceNode):
-        return f"[{', '.join(str(item.value) or EMPTY for item in node.value)}]"
+        items = (str(item.value) or (NULL if _type_of(item) is None else EMPTY) for item in node.value)
+        return f"[{', '.join(items)}]"
     return " ".join(str(node.value).split())
 
 

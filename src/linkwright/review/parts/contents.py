@@ -208,6 +208,17 @@ class _Described:
             return f"{self.difference.old} -> {self.difference.new}"
         return self.element
 
+    def name_beside(self, first: _Described) -> str | None:
+        """Return the name beside that of the first element with the same change, or None if it tells nothing more.
+
+        Elements without names of their own have their attributes.
+        """
+        if self.element != first.element:
+            return self.name
+        difference = self.difference
+        value, first_value = (each.new or each.old or "" for each in (difference, first.difference))
+        return f"{self.element} {_cut(value)}" if difference.is_whole and value != first_value else None
+
     def _sentence(self) -> Phrase:
         difference = self.difference
         if difference.value == "conditions":
@@ -285,7 +296,7 @@ def _merged(differences: list[_Described]) -> Iterator[Change]:
     for first, *others in groups.values():
         if len({str(each.contents) for each in (first, *others)}) > 1:
             first = replace(first, shows_contents=False)
-        names = dict.fromkeys(other.name for other in others if other.element != first.element)
+        names = dict.fromkeys(name for other in others if (name := other.name_beside(first)) is not None)
         reason = common_reason(described.reason for described in (first, *others))
         changes.append(replace(first.change, reason=reason, other_names=tuple(names)))
     breaking = [change for change in changes if change.effect is Effect.BREAKING]

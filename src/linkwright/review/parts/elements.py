@@ -6,7 +6,8 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from linkwright.review.parts.outline import Item, items_of
+from linkwright.descriptions.comparison import GAZEBO
+from linkwright.review.parts.outline import Item, items_of, joined_item
 from linkwright.review.parts.wording import Wording
 from linkwright.xmltree import Element
 
@@ -101,15 +102,34 @@ class ItemComparison:
             return is_equal(old_item, new_item) and has_same_conditions(old_item, new_item)
 
         pairs: list[tuple[Item | None, Item | None]] = []
-        for matches in (is_identical, is_equal, has_same_conditions):
+        for matches in (is_identical, is_equal):
             pairs += self._matched(old_rest, new_rest, matches)
+        pairs += self._joined_blocks(old_rest, new_rest)
+        pairs += self._matched(old_rest, new_rest, has_same_conditions)
         pairs += self._matched(old_rest, new_rest, self._left_as_often(old_rest, new_rest))
         pairs += self._renamed(old_rest, new_rest)
-        positions = {id(item): number for number, item in enumerate(new)}
-        pairs.sort(key=lambda pair: positions[id(pair[1])])
+        positions = {item.element.offset: number for number, item in enumerate(new)}
+        pairs.sort(key=lambda pair: -1 if pair[1] is None else positions[pair[1].element.offset])
         yield from pairs
         yield from ((None, item) for item in new_rest)
         yield from ((item, None) for item in old_rest)
+
+    def _joined_blocks(self, old: list[Item], new: list[Item]) -> list[tuple[Item, Item]]:
+        """Remove the ``<gazebo>`` elements of links that have several from two lists, and return them as one a link."""
+        pairs = []
+        for key in dict.fromkeys(item.key for item in new if item.element.tag == GAZEBO):
+            news = [item for item in new if item.key == key]
+            olds = [item for item in old if self.old.translated(item.key) == key]
+            if not olds or max(len(olds), len(news)) == 1:
+                continue
+            texts = {self.old.translated(" ".join(item.conditions)) for item in olds}
+            texts |= {self.new.translated(" ".join(item.conditions)) for item in news}
+            is_common = len(texts) == 1
+            old_item, new_item = (joined_item(each, each[0].conditions if is_common else None) for each in (olds, news))
+            pairs.append((old_item, new_item))
+            old[:] = [item for item in old if item not in olds]
+            new[:] = [item for item in new if item not in news]
+        return pairs
 
     def _left_as_often(self, old: Sequence[Item], new: Sequence[Item]) -> Callable[[Item, Item], bool]:
         """Return a function that returns whether the keys of two elements are left as often in both lists."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+from linkwright.descriptions.comparison import GAZEBO, joined_block
 from linkwright.diagnostics import LinkwrightError
 from linkwright.lint.inclusions import Inclusion, inclusions_in
 from linkwright.xacro.cache import read_document
@@ -17,6 +18,7 @@ from linkwright.xmltree import Document, Element
 
 ARG, MACRO, PROPERTY = "xacro:arg", "xacro:macro", "xacro:property"
 _CONDITIONS = {"xacro:if": "if", "xacro:unless": "unless"}
+_CONDITION_TAGS = {word: tag for tag, word in _CONDITIONS.items()}
 _XACRO = "xacro:"
 
 
@@ -117,10 +119,37 @@ def items_of(element: Element, conditions: tuple[str, ...] = ()) -> Iterator[Ite
             yield from items_of(child, (*conditions, f"{word} {child.attributes.get('value', '')}"))
 
 
+def joined_item(items: Sequence[Item], conditions: tuple[str, ...] | None) -> Item:
+    """Return several ``<gazebo>`` elements of a link as one.
+
+    Args:
+        items: the elements.
+        conditions: the conditions that all of them have; None for several, which then are around their children.
+    """
+    first = items[0]
+    if conditions is not None:
+        return Item(first.key, joined_block([item.element for item in items]), conditions)
+    return Item(first.key, joined_block([_with_inner_conditions(item) for item in items]), ())
+
+
+def _with_inner_conditions(item: Item) -> Element:
+    """Return a copy of an element with its conditions around its children."""
+    outer = item.element
+    result = Element(outer.tag, dict(outer.attributes), outer.source, outer.offset, outer.origin)
+    inner = result
+    for condition in item.conditions:
+        word, _, value = condition.partition(" ")
+        child = Element(_CONDITION_TAGS[word], {"value": value}, outer.source, outer.offset)
+        inner.children.append(child)
+        inner = child
+    inner.children += outer.children
+    return result
+
+
 def _key(element: Element) -> str:
     """Return the tag and the name of an element. An element without a name has that of its plugin or sensor."""
     name = element.attributes.get("name") or element.attributes.get("reference")
-    if element.tag == "gazebo" and name is None:
+    if element.tag == GAZEBO and name is None:
         inner = element.first("plugin") or element.first("sensor")
         name = None if inner is None else inner.attributes.get("name")
         return "gazebo" if inner is None else f"gazebo {inner.tag} {name}"

@@ -1,0 +1,89 @@
+"""Programs that did not change and read a key or a name that a YAML file does not have any more."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.files.yaml_values import YamlValue
+from linkwright.review.list_changes import EMPTY, list_items
+from linkwright.review.versions import TEST_FOLDERS, Versions
+
+_PROGRAMS = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".launch", ".launch.xml")
+_SOURCES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h")
+_COMMENT = re.compile(r"(^|\s)(#|//)[^\n]*")
+_NAMES = re.compile(r"(^|[._])names?$")
+"""The keys of lists of names. Items of other lists, such as modes, are words that many programs use."""
+_NAME = re.compile(r"[A-Za-z_][\w/.-]{3,}")
+
+
+@dataclass(frozen=True)
+class KeyReaders:
+    """The programs of the new version that may read a YAML file.
+
+    Attributes:
+        versions: both versions.
+        path: the path of the YAML file in the new version.
+    """
+
+    versions: Versions
+    path: str
+
+    def key_reason(self, keys: Iterable[str]) -> Phrase | None:
+        """Return why it is breaking that keys are gone, or None if no unchanged program that names the file reads one.
+
+        Only reading without a default is sure to fail, such as ``settings["rate"]``.
+        """
+        for key in keys:
+            pattern = re.compile(rf"(?<=[\w\])])\[\s*[\"']{re.escape(key)}[\"']\s*\]")
+            reader = next((path for path, text in self._readers if pattern.search(text)), None)
+            if reader is not None:
+                return phrase("'{file}' reads the key '{name}' and does not find it", file=reader, name=key)
+        return None
+
+    def name_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
+        """Return why it is breaking that names are gone from a list, or None if no unchanged source has one.
+
+        Args:
+            parameter: the path of the list.
+            old: the old list.
+            new: the new list.
+        """
+        if not (old.is_list and new.is_list) or not _NAMES.search(parameter):
+            return None
+        kept = set(list_items(new.text))
+        gone = [item for item in list_items(old.text) if item not in kept and item != EMPTY and _NAME.fullmatch(item)]
+        for name in gone if self._is_named else ():
+            pattern = re.compile(rf"[\"']{re.escape(name)}[\"']")
+            reader = next((path for path, text in self._unchanged_sources if pattern.search(text)), None)
+            if reader is not None:
+                return phrase("'{file}' still uses the name '{name}'", file=reader, name=name)
+        return None
+
+    @cached_property
+    def _is_named(self) -> bool:
+        """Whether a program names the file."""
+        name = PurePosixPath(self.path).name
+        return any(name in self.versions.new.text(path) for path in self._paths(_PROGRAMS, ()))
+
+    @cached_property
+    def _readers(self) -> list[tuple[str, str]]:
+        """The unchanged sources that name the file, with their texts."""
+        name = PurePosixPath(self.path).name
+        return [(path, text) for path, text in self._unchanged_sources if name in text]
+
+    @cached_property
+    def _unchanged_sources(self) -> list[tuple[str, str]]:
+        """The sources that did not change, with their texts without comments."""
+        changed = {file.new_path for file in self.versions.changed_files}
+        paths = self._paths(_SOURCES, changed)
+        return [(path, _COMMENT.sub(r"\1", self.versions.new.text(path))) for path in paths]
+
+    def _paths(self, suffixes: tuple[str, ...], excluded: Collection[str | None]) -> Iterator[str]:
+        for path in self.versions.new.paths(suffixes):
+            if path not in excluded and TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
+                yield path

@@ -1,0 +1,136 @@
+"""YAML files that include others: as items of lists, as keys of mappings, or by the tag ``!include``."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import yaml
+
+from linkwright.diagnostics import phrase, quoted_names
+from linkwright.review.changes import Location
+from linkwright.review.file_pair import FilePair, UnreadableFileError
+from linkwright.review.files.yaml_values import composed
+
+_KEYS = ("include", "$include")
+_TAG = "!include"
+_MAX_DEPTH = 5
+_MAX_BYTES = 1 << 20
+
+
+def with_includes(pair: FilePair, old: yaml.Node, new: yaml.Node) -> tuple[yaml.Node, yaml.Node]:
+    """Return two documents with the contents of the files that only one of them includes, and name these files.
+
+    A value that moves into an included file has then not changed.
+    """
+    readers = _Includes(pair.old_file, pair.versions.old.root), _Includes(pair.new_file, pair.versions.new.root)
+    marks = [dict(reader.names(root)) for reader, root in zip(readers, (old, new), strict=True)]
+    added, removed = ([name for name in own if name not in other] for own, other in (marks[::-1], marks))
+    if added:
+        line, column = marks[1][added[0]]
+        text = phrase("included files added: {names}", names=quoted_names(added))
+        pair.add(text, Location(pair.new_path, line, column))
+    if removed:
+        line, column = marks[0][removed[0]]
+        text = phrase("included files removed: {names}", names=quoted_names(removed))
+        pair.add(text, Location(pair.old_path, line, column, is_old=True))
+    return readers[0].expanded(old, removed), readers[1].expanded(new, added)
+
+
+@dataclass(frozen=True)
+class _Includes:
+    """The files that a YAML file of a version includes.
+
+    Attributes:
+        file: the file.
+        root: the root of the version.
+    """
+
+    file: Path
+    root: Path
+
+    def names(self, node: yaml.Node) -> Iterator[tuple[str, tuple[int, int]]]:
+        """Yield the names of the included files that exist, with the line and the column of each."""
+        name = self._name(node)
+        if name is not None:
+            yield name, (node.start_mark.line + 1, node.start_mark.column + 1)
+        elif isinstance(node, yaml.MappingNode):
+            for key, value in node.value:
+                included = self._included_by_key(key, value)
+                if included is not None:
+                    yield included, (key.start_mark.line + 1, key.start_mark.column + 1)
+                else:
+                    yield from self.names(value)
+        elif isinstance(node, yaml.SequenceNode):
+            for item in node.value:
+                yield from self.names(item)
+
+    def expanded(self, node: yaml.Node, names: Collection[str], depth: int = 0) -> yaml.Node:
+        """Return a node with the contents of some of the included files."""
+        if not names or depth > _MAX_DEPTH:
+            return node
+        name = self._name(node)
+        if name in names:
+            return self._content(name or "", node, depth) or node
+        if isinstance(node, yaml.MappingNode):
+            items: list[tuple[yaml.Node, yaml.Node]] = []
+            for key, value in node.value:
+                included = self._included_by_key(key, value)
+                content = self._content(included, key, depth) if included in names and included else None
+                if isinstance(content, yaml.MappingNode):
+                    items += content.value
+                else:
+                    items.append((key, self.expanded(value, names, depth)))
+            return yaml.MappingNode(node.tag, items, node.start_mark, node.end_mark, node.flow_style)
+        if isinstance(node, yaml.SequenceNode):
+            values: list[yaml.Node] = []
+            for item in node.value:
+                content = self.expanded(item, names, depth)
+                is_list = content is not item and self._name(item) in names and isinstance(content, yaml.SequenceNode)
+                values += content.value if is_list else [content]
+            return yaml.SequenceNode(node.tag, values, node.start_mark, node.end_mark, node.flow_style)
+        return node
+
+    def _name(self, node: yaml.Node) -> str | None:
+        """Return the name of the file that a node includes as a whole, or None for another node."""
+        if isinstance(node, yaml.ScalarNode):
+            return self._existing(str(node.value)) if node.tag == _TAG else None
+        if isinstance(node, yaml.MappingNode) and len(node.value) == 1:
+            return self._included_by_key(*node.value[0])
+        return None
+
+    def _included_by_key(self, key: yaml.Node, value: yaml.Node) -> str | None:
+        is_include = isinstance(key, yaml.ScalarNode) and key.value in _KEYS and isinstance(value, yaml.ScalarNode)
+        return self._existing(str(value.value)) if is_include else None
+
+    def _existing(self, name: str) -> str | None:
+        file = self.file.parent / name
+        is_inside = bool(name) and file.is_file() and file.resolve().is_relative_to(self.root.resolve())
+        return name if is_inside and file.stat().st_size <= _MAX_BYTES else None
+
+    def _content(self, name: str, place: yaml.Node, depth: int) -> yaml.Node | None:
+        """Return the content of an included file at the place of its include, or None if it cannot be read."""
+        file = self.file.parent / name
+        try:
+            root = composed(file.read_text(encoding="utf-8"))
+        except (UnreadableFileError, OSError, ValueError):
+            return None
+        if root is None:
+            return None
+        inner = _Includes(file, self.root)
+        root = inner.expanded(root, [inside for inside, _ in inner.names(root)], depth + 1)
+        _place(root, place)
+        return root
+
+
+def _place(node: yaml.Node, place: yaml.Node) -> None:
+    """Give a node and all nodes in it the place of another one."""
+    pending = [node]
+    while pending:
+        each = pending.pop()
+        each.start_mark = place.start_mark
+        if isinstance(each, yaml.MappingNode):
+            pending += [part for pair in each.value for part in pair]
+        elif isinstance(each, yaml.SequenceNode):
+            pending += each.value

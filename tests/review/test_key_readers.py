@@ -1,0 +1,90 @@
+"""Keys and names that a YAML file loses although programs that did not change read them."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking
+
+PATH = "a/config/arm.yaml"
+SETTINGS = """arm:
+  speed: 1.0
+  echo:
+    code: 8
+camera_names: [front, belly_camera]
+modes: [belly_camera, rear_camera]
+"""
+READER = """import yaml
+settings = yaml.safe_load(open("arm.yaml"))["arm"]
+code = settings["echo"]["code"]
+"""
+VIEWER = 'void start() { show("belly_camera"); show("rear_camera"); }\n'
+LAUNCH = '<launch><rosparam command="load" file="$(find a)/config/arm.yaml"/></launch>\n'
+FILES = {
+    "a/package.xml": PACKAGE_XML.replace("arm_description", "a"),
+    "a/src/viewer.cpp": VIEWER,
+    "a/launch/arm.launch": LAUNCH,
+    PATH: SETTINGS,
+}
+ECHO = "  echo:\n    code: 8\n"
+
+
+def found(repository, compare, files, old, new, changed=()):
+    assert old in SETTINGS
+    repository.commit({**FILES, **files})
+    repository.write({PATH: SETTINGS.replace(old, new), **dict(changed)})
+    result = compare(repository)
+    return [(str(change.sentence), str(change.reason)) for _, change in result.breaking_changes]
+
+
+def test_removed_key_that_an_unchanged_program_reads_is_breaking(repository, compare):
+    reason = "'a/scripts/reader.py' reads the key 'echo' and does not find it"
+    changes = found(repository, compare, {"a/scripts/reader.py": READER}, ECHO, "")
+    assert changes == [("arm.echo.code 8 removed", reason)]
+
+
+@pytest.mark.parametrize(
+    ("reader", "old", "new"),
+    [
+        (READER.replace("arm.yaml", "leg.yaml"), ECHO, ""),
+        (READER.replace('["echo"]["code"]', '.get("echo", {}).get("code", 8)'), ECHO, ""),
+        (READER.replace('code = settings["echo"]["code"]', '# code = settings["echo"]["code"]'), ECHO, ""),
+        (READER.replace('settings["echo"]["code"]', '["echo", "code"]'), ECHO, ""),
+        (READER, ECHO, "other:\n  echo:\n    code: 8\n"),
+        (READER, "  speed: 1.0\n", ""),
+    ],
+)
+def test_removed_key_that_no_program_is_sure_to_read_is_not_breaking(repository, compare, reader, old, new):
+    assert found(repository, compare, {"a/scripts/reader.py": reader}, old, new) == []
+
+
+def test_removed_key_whose_reader_changed_is_not_breaking(repository, compare):
+    changed = {"a/scripts/reader.py": f"{READER}print(code)\n"}
+    assert found(repository, compare, {"a/scripts/reader.py": READER}, ECHO, "", changed) == []
+
+
+def test_removed_parameter_of_a_node_is_not_breaking(repository, compare):
+    text = "arm:\n  ros__parameters: {rate: 1, echo: 8}\n"
+    repository.commit({**FILES, "a/scripts/reader.py": READER, PATH: text})
+    repository.write({PATH: text.replace(", echo: 8", "")})
+    assert breaking(compare(repository)) == []
+
+
+def test_name_that_a_list_loses_is_breaking_if_an_unchanged_source_uses_it(repository, compare):
+    changes = found(repository, compare, {}, "[front, belly_camera]", "[front]")
+    reason = "'a/src/viewer.cpp' still uses the name 'belly_camera'"
+    assert changes == [("camera_names [front, belly_camera] -> [front]", reason)]
+
+
+@pytest.mark.parametrize(
+    ("files", "old", "new", "changed"),
+    [
+        ({}, "[belly_camera, rear_camera]", "[belly_camera]", {}),
+        ({"a/launch/arm.launch": "<launch/>"}, "[front, belly_camera]", "[front]", {}),
+        ({}, "[front, belly_camera]", "[front]", {"a/src/viewer.cpp": f"{VIEWER}\n"}),
+        ({}, "[front, belly_camera]", "[belly_camera]", {}),
+    ],
+)
+def test_other_items_of_lists_are_not_breaking(repository, compare, files, old, new, changed):
+    assert found(repository, compare, files, old, new, changed) == []
