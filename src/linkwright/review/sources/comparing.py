@@ -13,9 +13,10 @@ from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import MANIFEST
-from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Subject, SubjectKind
+from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Problem, Subject, SubjectKind
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.installed_paths import is_exported_header
+from linkwright.review.sources.changed_values import value_changes
 from linkwright.review.sources.details import detail_changes
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
@@ -61,9 +62,11 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
         _Side(versions.new, [file.new_path for file in files]),
     )
     for file in files:
-        changes = list(_Pair(*sides, file).changes())
-        if changes:
-            yield Subject(SubjectKind.SOURCE, file.path, file.old_path, file.new_path, changes)
+        pair = _Pair(*sides, file)
+        problems = list(pair.problems())
+        changes = [] if problems else list(pair.changes())
+        if changes or problems:
+            yield Subject(SubjectKind.SOURCE, file.path, file.old_path, file.new_path, changes, problems=problems)
 
 
 def _is_source(versions: Versions, file: ChangedFile) -> bool:
@@ -175,9 +178,29 @@ class _Pair:
     def changes(self) -> Iterator[Change]:
         """Yield the differences."""
         old_names, new_names = self.old.names(self.file.old_path), self.new.names(self.file.new_path)
-        for kind in NameKind:
-            yield from self._changes_of(kind, old_names, new_names)
-        yield from self._rate_changes(old_names, new_names)
+        changes = [change for kind in NameKind for change in self._changes_of(kind, old_names, new_names)]
+        changes += self._rate_changes(old_names, new_names)
+        yield from changes
+        if self.file.old_path is not None and self.file.new_path is not None:
+            old_path, new_path = self.old.version.file(self.file.old_path), self.new.version.file(self.file.new_path)
+            for text, span in value_changes(old_path, new_path, [str(change.sentence) for change in changes]):
+                yield self._change(text, span, self.new, None)
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield the reason why the names of one version are not known, if that of the other version are."""
+        lines = [
+            self.old.names(self.file.old_path).error_line,
+            self.new.names(self.file.new_path).error_line,
+        ]
+        if None in (self.file.old_path, self.file.new_path) or bool(lines[0]) == bool(lines[1]):
+            return
+        if lines[0]:
+            text = phrase("the old version has a syntax error in line {line}; its names are not known", line=lines[0])
+            yield Problem(text, is_of_old=True)
+        else:
+            yield Problem(
+                phrase("the new version has a syntax error in line {line}; its names are not known", line=lines[1])
+            )
 
     def _changes_of(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         before = {_key(item): item for item in old_names.of(kind)}

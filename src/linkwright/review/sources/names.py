@@ -91,6 +91,7 @@ class SourceNames:
         rates: the texts of rates and periods, each with its location.
         overrides: the names of functions that override those of a base class.
         is_program: whether the source is a program that is started, and not a library that is imported.
+        error_line: the line of the syntax error in a source that cannot be parsed; 0 for other sources.
     """
 
     names: list[SourceName] = field(default_factory=list)
@@ -98,6 +99,7 @@ class SourceNames:
     rates: list[tuple[str, Span]] = field(default_factory=list)
     overrides: set[str] = field(default_factory=set)
     is_program: bool = False
+    error_line: int = 0
 
     def add(self, name: SourceName) -> None:
         """Add a literal name, or complete the same one."""

@@ -54,7 +54,7 @@ def read_python(source: SourceText, names: SourceNames) -> None:
     Raises:
         SyntaxError: the text is neither.
     """
-    _Reader(_parsed(source), names).read()
+    _Reader(parsed_source(source), names).read()
 
 
 def read_dynamic_parameters(source: SourceText, names: SourceNames) -> None:
@@ -63,7 +63,7 @@ def read_dynamic_parameters(source: SourceText, names: SourceNames) -> None:
     Raises:
         SyntaxError: the text is not Python.
     """
-    python = _parsed(source)
+    python = parsed_source(source)
     for call in python.calls("add"):
         name = python.text(_argument(call, 0, "name"))
         if name is None:
@@ -93,7 +93,12 @@ def _constants(python: PythonFile, node: ast.expr) -> Iterator[ast.Call]:
             yield value
 
 
-def _parsed(source: SourceText) -> _SourceFile:
+def parsed_source(source: SourceText) -> PythonFile:
+    """Return a parsed source in Python 3 or Python 2.
+
+    Raises:
+        SyntaxError: the text is neither.
+    """
     try:
         return _SourceFile(source)
     except SyntaxError:
