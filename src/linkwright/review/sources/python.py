@@ -6,10 +6,12 @@ import ast
 import re
 from collections.abc import Iterator
 from functools import cached_property
+from pathlib import PurePosixPath
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
+from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.python2 import as_python3
 
 _RCLPY = {
@@ -54,7 +56,10 @@ def read_python(source: SourceText, names: SourceNames) -> None:
     Raises:
         SyntaxError: the text is neither.
     """
-    _Reader(parsed_source(source), names).read()
+    python = parsed_source(source)
+    _Reader(python, names).read()
+    if PurePosixPath(source.name).name == PACKAGE_FILE:
+        read_imports(python, names)
 
 
 def read_dynamic_parameters(source: SourceText, names: SourceNames) -> None:
