@@ -31,6 +31,8 @@ _TEXTS_FOR_READERS = frozenset({"help", "description", "epilog", "doc", "metavar
 """The keyword arguments whose texts only people read."""
 _MAX_TEMPLATE = 40
 """The number of tokens up to which the arguments of a template are searched."""
+_MAX_FIRST = 30
+"""The number of characters up to which the first argument of a call is shown, which often names the thing."""
 _MAX_EXPRESSION = 60
 """The number of characters up to which the expression around a literal is shown."""
 
@@ -351,9 +353,25 @@ def _as_argument(
     closing = brackets[opening]
     if tokens[opening].text == "{" and (opening, closing) == (place[0] - 1, place[1] + 1):
         return f"{name} {expression}"
-    left = "..., " if any(token.text == "," for token in tokens[opening : place[0]]) else ""
+    commas = _commas(tokens, opening, place[0], brackets)
+    left = "..., " if commas else ""
+    if commas and tokens[opening].text == "(":
+        first = joined_tokens(tokens[opening + 1 : commas[0]])
+        if len(first) <= _MAX_FIRST:
+            left = f"{first}, " if len(commas) == 1 else f"{first}, ..., "
     right = "" if closing == place[1] + 1 else ", ..."
     return f"{name}{tokens[opening].text}{left}{expression}{right}{tokens[closing].text}"
+
+
+def _commas(tokens: Sequence[Token], opening: int, end: int, brackets: dict[int, int]) -> list[int]:
+    """Return the indices of the commas between the arguments from an opening bracket to an index."""
+    commas = []
+    index = opening + 1
+    while index < end:
+        if tokens[index].text == "," and tokens[index].kind is TokenKind.OPERATOR:
+            commas.append(index)
+        index = max(brackets.get(index, index), index) + 1
+    return commas
 
 
 def _entry(tokens: Sequence[Token], colon: int, brackets: dict[int, int]) -> str:
