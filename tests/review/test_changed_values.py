@@ -152,6 +152,12 @@ def test_a_long_list_is_told_by_its_items(lines):
     ]
 
 
+def test_a_long_text_is_read_once_and_shown_in_part(lines):
+    image = "Z" * 300_000
+    (line,) = lines("rover/panel.py", f"IMAGE = '{image}'\n", "ZZZ'", "ZZY'")
+    assert len(line) < 200
+
+
 def test_a_constant_of_the_source_with_another_name_is_not_a_value(lines):
     text = "STEP = 1\n\ndef f():\n    return STEP\n"
     assert lines("rover/step.py", text, "STEP", "STEP_SIZE") == []

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from linkwright.review.list_changes import change_text
+from linkwright.review.list_changes import change_text, excerpts
 from linkwright.review.sources.tokens import Token, TokenKind, bracket_pairs, joined_tokens
 
 _PLACE = "\0"
@@ -25,7 +25,8 @@ _KEYWORDS = frozenset(
 )
 _COMPARISONS = frozenset({"==", "!=", "<", ">", "<=", ">="})
 _SIGNS = frozenset({"-", "+"})
-_PROSE = re.compile(r"\S+\s+\S+\s+\S+")
+_PROSE_WORDS = 3
+"""The number of words from which a text is a sentence for people."""
 _HASH = re.compile(r'"[0-9a-fA-F]{32,}"')
 _TEXTS_FOR_READERS = frozenset({"help", "description", "epilog", "doc", "metavar", "usage"})
 """The keyword arguments whose texts only people read."""
@@ -230,7 +231,12 @@ def _is_for_readers(tokens: Sequence[Token], first: int, last: int) -> bool:
     is_named = first > 1 and tokens[first - 1].text == "=" and tokens[first - 2].text in _TEXTS_FOR_READERS
     is_formatted = last + 1 < len(tokens) and tokens[last + 1].text in ("%", ".")
     value = _value(tokens[first : last + 1])
-    return is_named or is_formatted or _PROSE.search(value) is not None or _HASH.fullmatch(value) is not None
+    return (
+        is_named
+        or is_formatted
+        or len(value.split(None, _PROSE_WORDS)) >= _PROSE_WORDS
+        or _HASH.fullmatch(value) is not None
+    )
 
 
 def _value(tokens: Sequence[Token], *, is_divided: bool = False) -> str:
@@ -281,9 +287,9 @@ def differences(old: Statement, new: Statement) -> Iterator[Difference]:
             expression = f"{before}{' ' if before and token.has_space else ''}{texts[0]} -> {texts[1]}"
         else:
             first, last = old_literal.first - (new_literal.first - start), group[-1][0].last + end - group[-1][1].last
-            expression = f"{old.text(first, last)} -> {new.text(start, end)}"
+            expression = " -> ".join(excerpts(old.text(first, last), new.text(start, end)))
         if len(expression) > 2 * _MAX_EXPRESSION and len(group) == 1:
-            expression = f"{texts[0]} -> {texts[1]}"
+            expression = " -> ".join(excerpts(*texts))
         if len(expression) > 2 * _MAX_EXPRESSION and new_literal.last > new_literal.first and len(group) == 1:
             label = _with_context(new, start, end, "[...]", brackets)
             yield Difference(change_text(label, *map(_as_list, texts)), *texts, token)
