@@ -13,9 +13,10 @@ from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import MANIFEST
-from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Subject, SubjectKind
+from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Problem, Subject, SubjectKind
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.installed_paths import is_exported_header
+from linkwright.review.sources.changed_values import value_changes
 from linkwright.review.sources.details import detail_changes
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
@@ -26,6 +27,7 @@ from linkwright.review.sources.names import (
     SourceName,
     SourceNames,
 )
+from linkwright.review.sources.package_imports import failing_imports, is_installed_package
 from linkwright.review.sources.reading import is_program_text, read_source_names
 from linkwright.review.sources.reasons import is_used_by_others, removal_reason
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
@@ -34,7 +36,8 @@ _SKIPPED = frozenset({"setup.py", "conf.py"})
 _MAX_FUNCTIONS = 3
 """The number of functions of a file with other arguments up to which each has a line."""
 _UNITS = re.compile(
-    r"\b(?:ros|rclcpp|std|chrono|(?:nano|micro|milli)?seconds|Duration|[num]?s|Hz|from_seconds|float|int)\b"
+    r"\b(?:ros|rospy|rclcpp|rclpy|std|chrono|(?:nano|micro|milli)?seconds|duration|Duration|from_sec|to_sec|n?secs|"
+    r"[num]?s|Hz|from_seconds|float|int)\b"
 )
 _SIMILAR = 0.6
 """The ratio of equal characters from which two names of the same kind are similar."""
@@ -61,9 +64,11 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
         _Side(versions.new, [file.new_path for file in files]),
     )
     for file in files:
-        changes = list(_Pair(*sides, file).changes())
-        if changes:
-            yield Subject(SubjectKind.SOURCE, file.path, file.old_path, file.new_path, changes)
+        pair = _Pair(*sides, file)
+        problems = list(pair.problems())
+        changes = [] if problems else list(pair.changes())
+        if changes or problems:
+            yield Subject(SubjectKind.SOURCE, file.path, file.old_path, file.new_path, changes, problems=problems)
 
 
 def _is_source(versions: Versions, file: ChangedFile) -> bool:
@@ -123,6 +128,8 @@ class _Side:
             item: the name.
             path: the path of a source of the package.
         """
+        if item.kind is NameKind.IMPORT:
+            return True
         if (item.kind, _key(item)) in self._known:
             return False
         if item.kind is NameKind.FUNCTION and item.name.rpartition("::")[2] in self._functions:
@@ -175,9 +182,30 @@ class _Pair:
     def changes(self) -> Iterator[Change]:
         """Yield the differences."""
         old_names, new_names = self.old.names(self.file.old_path), self.new.names(self.file.new_path)
-        for kind in NameKind:
-            yield from self._changes_of(kind, old_names, new_names)
-        yield from self._rate_changes(old_names, new_names)
+        changes = [change for kind in NameKind for change in self._changes_of(kind, old_names, new_names)]
+        changes += self._rate_changes(old_names, new_names)
+        changes += self._import_changes(old_names, new_names)
+        yield from changes
+        if self.file.old_path is not None and self.file.new_path is not None:
+            old_path, new_path = self.old.version.file(self.file.old_path), self.new.version.file(self.file.new_path)
+            for text, span in value_changes(old_path, new_path, [str(change.sentence) for change in changes]):
+                yield self._change(text, span, self.new, None)
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield the reason why the names of one version are not known, if that of the other version are."""
+        lines = [
+            self.old.names(self.file.old_path).error_line,
+            self.new.names(self.file.new_path).error_line,
+        ]
+        if None in (self.file.old_path, self.file.new_path) or bool(lines[0]) == bool(lines[1]):
+            return
+        if lines[0]:
+            text = phrase("the old version has a syntax error in line {line}; its names are not known", line=lines[0])
+            yield Problem(text, is_of_old=True)
+        else:
+            yield Problem(
+                phrase("the new version has a syntax error in line {line}; its names are not known", line=lines[1])
+            )
 
     def _changes_of(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         before = {_key(item): item for item in old_names.of(kind)}
@@ -197,9 +225,16 @@ class _Pair:
         is_lacking = self.old.lacks
         if self.file.old_path is None and kind in _USED and any(new_names.of(NameKind.NODE)):
             is_lacking = self.old.lacks_in_changed  # what a new node uses matters although another one uses it, too
-        added = [item for name, item in after.items() if name not in before and is_lacking(item, old_path)]
+        is_only = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
+        added = [item for name, item in after.items() if name not in before and (is_only or is_lacking(item, old_path))]
         if kind in (NameKind.CLASS, NameKind.FUNCTION) and not self._is_interface(old_path):
             return
+        if kind is NameKind.IMPORT:
+            if None in (self.file.old_path, self.file.new_path) or not is_installed_package(
+                self.old.version, self.old.package(old_path), old_path
+            ):
+                return
+            removed, added = _other_imports(removed, new_names), _other_imports(added, old_names)
         if kind is NameKind.FUNCTION and not path.endswith(PYTHON_SUFFIX):
             classes = [{item.name for item in names.of(NameKind.CLASS)} for names in (old_names, new_names)]
             removed = [item for item in removed if _has_class(item, classes[0] & classes[1])]
@@ -281,8 +316,11 @@ class _Pair:
             added.clear()
 
     def _rate_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the rates and periods that differ, if both versions have equally many."""
+        """Yield the rates and periods that differ, if both versions have equally many, and those of a new node."""
         old_rates, new_rates = old_names.rates, new_names.rates
+        if self.file.old_path is None and new_rates and any(new_names.of(NameKind.NODE)):
+            texts = joined_first(dict.fromkeys(text for text, _ in new_rates), MAX_NAMES)
+            yield self._change(phrase("rates and periods: {texts}", texts=texts), new_rates[0][1], self.new, None)
         if len(old_rates) != len(new_rates):
             return
         for (old_text, _), (new_text, span) in zip(old_rates, new_rates, strict=True):
@@ -290,6 +328,19 @@ class _Pair:
             if is_same_call and old_text != new_text and (_is_number(old_text) or _is_number(new_text)):
                 text = phrase("rate or period: {old} -> {new}", old=old_text, new=new_text)
                 yield self._change(text, span, self.new, None)
+
+    def _import_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        """Yield the new absolute imports of modules of the same package, which fail once it is installed."""
+        path = self.file.new_path or ""
+        package = self.new.package(path)
+        if package is None or not is_installed_package(self.new.version, package, path):
+            return
+        before = {name for name, _ in old_names.absolute_imports}
+        for index in failing_imports(self.new.version, package, path, new_names):
+            name, span = new_names.absolute_imports[index]
+            if name not in before:
+                text = phrase("absolute import of '{name}', a module of the same package", name=name)
+                yield self._change(text, span, self.new, phrase("the package cannot be imported once it is installed"))
 
     @staticmethod
     def _change(text: Phrase, span: Span, side: _Side, reason: Phrase | None) -> Change:
@@ -326,6 +377,12 @@ def _required_reason(items: Sequence[SourceName]) -> Phrase | None:
     if items[0].kind is NameKind.FUNCTION:
         return phrase("classes that derive from the class and do not define it do not build")
     return phrase("callers that do not pass '{name}' get an error", name=joined_first(names, MAX_NAMES))
+
+
+def _other_imports(items: Sequence[SourceName], names: SourceNames) -> list[SourceName]:
+    """Return the imported names that another version of the file neither defines nor may import with a star."""
+    defined = {item.name for kind in (NameKind.CLASS, NameKind.FUNCTION) for item in names.of(kind)}
+    return [] if names.has_star else [item for item in items if item.name not in defined]
 
 
 def _has_class(function: SourceName, classes: Collection[str]) -> bool:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
 from linkwright.review.sources.cpp_functions import DeclaredFunction, declared_functions
+from linkwright.review.sources.cpp_members import header_texts, made_members
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
 
 _COMMENT_OR_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])'""", re.DOTALL)
@@ -55,10 +56,6 @@ _NODE = re.compile(
     r"\bmake_shared<\s*rclcpp(?:_lifecycle)?::(?:Lifecycle)?Node\s*>\s*\("
 )
 _INIT = re.compile(r"\bros::init\s*\(")
-_MEMBER = re.compile(
-    r"\b(?P<class>(?:actionlib::)?Simple(?P<action>ActionServer|ActionClient)|message_filters::Subscriber)\s*"
-    r"<(?P<type>[^<>;(){}]*)>\s*(?P<variable>\w+)\b"
-)
 _FRAME = re.compile(r"\b(?P<child>child_)?frame_id_?\s*=(?!=)\s*(?P<value>[^;\n]+);")
 _STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
 _RATE = re.compile(
@@ -121,8 +118,7 @@ class _Reader:
         for match in _STAMPED.finditer(text):
             for index in (2, 3):
                 self._add_argument(NameKind.FRAME, match.end() - 1, index)
-        for match in _MEMBER.finditer(text):
-            self._read_member(match)
+        self._read_members()
         for match in _RATE.finditer(text):
             self._read_rate(match)
         for match in _COMPONENT.finditer(text):
@@ -223,17 +219,12 @@ class _Reader:
         constant = self._constants.get(variable["name"]) if variable else None
         return "" if constant is None else f'"{constant}"'
 
-    def _read_member(self, match: re.Match[str]) -> None:
-        """Add the topic or action that a member of a class, or a variable, is made with."""
-        kind = {"ActionServer": NameKind.ACTION, "ActionClient": NameKind.ACTION_CLIENT}.get(
-            match["action"], NameKind.SUBSCRIPTION
-        )
-        type_name = match["type"].split("::")[-1].strip()
-        for made in re.finditer(rf"\b{match['variable']}\s*[({{]", self._text):
-            if self._text[made.end() - 1] == "{":
-                continue
-            for begin, end in list(_arguments(self._text, made.end() - 1))[:3]:
-                if self._add_literal(kind, begin, end, type_name):
+    def _read_members(self) -> None:
+        """Add the topics and actions that members of a class, or variables, are made with."""
+        headers = [_COMMENT_OR_TEXT.sub(_without_comment, text) for text in header_texts(Path(self._source.name))]
+        for member in made_members(self._text, headers):
+            for begin, end in list(_arguments(self._text, member.start))[:3]:
+                if self._add_literal(member.kind, begin, end, member.type):
                     break
 
     def _read_rate(self, match: re.Match[str]) -> None:

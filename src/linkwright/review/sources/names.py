@@ -36,6 +36,7 @@ class NameKind(Enum):
     PLUGIN = (phrase("exported class"), phrase("exported classes"))
     CLASS = (phrase("class"), phrase("classes"))
     FUNCTION = (phrase("function"), phrase("functions"))
+    IMPORT = (phrase("name of the package"), phrase("names of the package"))
 
     def __init__(self, title: Phrase, plural: Phrase) -> None:
         self.title = title
@@ -91,6 +92,9 @@ class SourceNames:
         rates: the texts of rates and periods, each with its location.
         overrides: the names of functions that override those of a base class.
         is_program: whether the source is a program that is started, and not a library that is imported.
+        error_line: the line of the syntax error in a source that cannot be parsed; 0 for other sources.
+        absolute_imports: the modules that an ``__init__.py`` imports by their full names, each with its location.
+        has_star: whether an ``__init__.py`` imports all names of a module, so that it may have other names, too.
     """
 
     names: list[SourceName] = field(default_factory=list)
@@ -98,6 +102,9 @@ class SourceNames:
     rates: list[tuple[str, Span]] = field(default_factory=list)
     overrides: set[str] = field(default_factory=set)
     is_program: bool = False
+    error_line: int = 0
+    absolute_imports: list[tuple[str, Span]] = field(default_factory=list)
+    has_star: bool = False
 
     def add(self, name: SourceName) -> None:
         """Add a literal name, or complete the same one."""

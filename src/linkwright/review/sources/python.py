@@ -6,10 +6,12 @@ import ast
 import re
 from collections.abc import Iterator
 from functools import cached_property
+from pathlib import PurePosixPath
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
+from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.python2 import as_python3
 
 _RCLPY = {
@@ -54,7 +56,10 @@ def read_python(source: SourceText, names: SourceNames) -> None:
     Raises:
         SyntaxError: the text is neither.
     """
-    _Reader(_parsed(source), names).read()
+    python = parsed_source(source)
+    _Reader(python, names).read()
+    if PurePosixPath(source.name).name == PACKAGE_FILE:
+        read_imports(python, names)
 
 
 def read_dynamic_parameters(source: SourceText, names: SourceNames) -> None:
@@ -63,7 +68,7 @@ def read_dynamic_parameters(source: SourceText, names: SourceNames) -> None:
     Raises:
         SyntaxError: the text is not Python.
     """
-    python = _parsed(source)
+    python = parsed_source(source)
     for call in python.calls("add"):
         name = python.text(_argument(call, 0, "name"))
         if name is None:
@@ -93,7 +98,12 @@ def _constants(python: PythonFile, node: ast.expr) -> Iterator[ast.Call]:
             yield value
 
 
-def _parsed(source: SourceText) -> _SourceFile:
+def parsed_source(source: SourceText) -> PythonFile:
+    """Return a parsed source in Python 3 or Python 2.
+
+    Raises:
+        SyntaxError: the text is neither.
+    """
     try:
         return _SourceFile(source)
     except SyntaxError:

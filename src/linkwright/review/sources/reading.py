@@ -13,20 +13,32 @@ _MAX_BYTES = 1 << 20
 _PYTHON_LINE = b"python"
 
 
+def readable_source(path: Path) -> SourceText | None:
+    """Return the text of a source, or None if it cannot be read or is too large."""
+    try:
+        if path.stat().st_size > _MAX_BYTES:
+            return None
+        return SourceText(str(path), path.read_text("utf-8", errors="replace"))
+    except OSError:
+        return None
+
+
 def read_source_names(path: Path) -> SourceNames:
     """Return the names in a source; those of a file that cannot be read are empty."""
     names = SourceNames()
+    source = readable_source(path)
+    if source is None:
+        return names
     try:
-        if path.stat().st_size > _MAX_BYTES:
-            return names
-        source = SourceText(str(path), path.read_text("utf-8", errors="replace"))
         if path.suffix == DYNAMIC_SUFFIX:
             read_dynamic_parameters(source, names)
         elif path.suffix in CPP_SUFFIXES:
             read_cpp(source, names)
         else:
             read_python(source, names)
-    except (OSError, ValueError, SyntaxError, RecursionError):
+    except SyntaxError as error:
+        return SourceNames(error_line=error.lineno or 1)
+    except (ValueError, RecursionError):
         return SourceNames()
     return names
 

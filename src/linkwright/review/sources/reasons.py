@@ -52,6 +52,8 @@ def removal_reason(items: Sequence[SourceName], names: SourceNames, path: str) -
         return phrase("callers that pass '{name}' get an error", name=text)
     if kind is NameKind.PLUGIN:
         return phrase("programs and configurations that load the class do not find it")
+    if kind is NameKind.IMPORT:
+        return phrase("programs that import '{name}' do not find it", name=text)
     if kind in (NameKind.CLASS, NameKind.FUNCTION):
         if names.is_program:
             return None

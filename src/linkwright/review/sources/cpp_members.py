@@ -1,0 +1,96 @@
+"""The action servers, action clients and filtered subscriptions of a class in C++, which a header may declare."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from linkwright.review.sources.names import HEADER_SUFFIXES, NameKind
+
+_CLASS = r"(?:\w+::)*(?:Simple(?P<action>ActionServer|ActionClient)|Subscriber)\s*<(?P<type>[^<>;(){}]*)>"
+_MEMBER = re.compile(rf"(?<![\w:])(?P<class>{_CLASS})\s*(?P<variable>\w+)\b")
+_ALIASES = (
+    re.compile(rf"\busing\s+(?P<name>\w+)\s*=\s*{_CLASS}\s*;"),
+    re.compile(rf"\btypedef\s+{_CLASS}\s*(?P<name>\w+)\s*;"),
+)
+_MADE = re.compile(rf"(?:\bmake_(?:unique|shared)\s*<\s*|\bnew\s+){_CLASS}\s*>?\s*(?=\()")
+_INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*["<](?P<path>[^">\n]+)[">]', re.MULTILINE)
+_MAX_BYTES = 1 << 20
+_MAX_FOLDERS = 4
+"""The number of folders above a source in which its headers are searched."""
+
+
+class MadeMember(NamedTuple):
+    """A place where a member or variable is made.
+
+    Attributes:
+        kind: the kind of its name.
+        type: the type of the action or messages.
+        start: the offset of the parenthesis before its arguments.
+    """
+
+    kind: NameKind
+    type: str
+    start: int
+
+
+def made_members(text: str, headers: Sequence[str]) -> Iterator[MadeMember]:
+    """Yield the places in a source where action servers, action clients and filtered subscriptions are made.
+
+    Args:
+        text: the source without comments.
+        headers: the texts of the headers that may declare them.
+    """
+    types: dict[str, tuple[NameKind, str]] = {}
+    aliases: dict[str, tuple[NameKind, str]] = {}
+    for each in (*headers, text):
+        for match in (match for pattern in _ALIASES for match in pattern.finditer(each)):
+            aliases[match["name"]] = _kind(match["action"]), _type(match["type"])
+        for match in _MEMBER.finditer(each):
+            if match["action"] or "message_filters" in match["class"]:
+                types[match["variable"]] = _kind(match["action"]), _type(match["type"])
+    for each in (*headers, text):
+        for name, alias in aliases.items():
+            types.update((match[1], alias) for match in re.finditer(rf"\b{name}\s+(\w+)\s*[;({{,]", each))
+    for variable, (kind, type_name) in types.items():
+        for made in re.finditer(rf"\b{variable}\s*\(", text):
+            yield MadeMember(kind, type_name, made.end() - 1)
+    for name, (kind, type_name) in aliases.items():
+        for made in re.finditer(rf"(?:\bmake_(?:unique|shared)\s*<\s*|\bnew\s+)(?:\w+::)*{name}\s*>?\s*\(", text):
+            yield MadeMember(kind, type_name, made.end() - 1)
+    for match in _MADE.finditer(text):
+        if match["action"]:
+            yield MadeMember(_kind(match["action"]), _type(match["type"]), match.end())
+
+
+def _kind(action: str | None) -> NameKind:
+    return {"ActionServer": NameKind.ACTION, "ActionClient": NameKind.ACTION_CLIENT}.get(
+        action or "", NameKind.SUBSCRIPTION
+    )
+
+
+def _type(text: str) -> str:
+    return text.partition(",")[0].rpartition("::")[2].strip()
+
+
+def header_texts(path: Path) -> list[str]:
+    """Return the texts of the headers beside a source, or in a folder ``include``, that the source includes.
+
+    Args:
+        path: the path of a source; one of a header has no headers.
+    """
+    if path.suffix in HEADER_SUFFIXES:
+        return []
+    try:
+        text = path.read_text("utf-8", errors="replace")
+    except OSError:
+        return []
+    folders = [path.parent, *(folder / "include" for folder in list(path.parents)[:_MAX_FOLDERS])]
+    texts = []
+    for match in _INCLUDE.finditer(text):
+        file = next((folder / match["path"] for folder in folders if (folder / match["path"]).is_file()), None)
+        if file is not None and file.stat().st_size <= _MAX_BYTES:
+            texts.append(file.read_text("utf-8", errors="replace"))
+    return texts

@@ -1,0 +1,167 @@
+"""The statements of a source in C++, by the function that they are in."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from linkwright.review.sources.statements import Statement, statement_of
+from linkwright.review.sources.tokens import Token, TokenKind, bracket_pairs, cpp_tokens
+
+_DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n\\]|\\\r?\n|\\.)*", re.MULTILINE)
+_DEFINE = re.compile(r"[ \t]*#[ \t]*define[ \t]+(?P<name>\w+)[ \t]+(?=\S)")
+_SCOPES = frozenset({"namespace", "class", "struct", "union", "extern"})
+_CONTROLS = frozenset({"if", "else", "for", "while", "do", "switch", "try", "catch", "case", "default", "return"})
+_LABELS = frozenset({"case", "default", "public", "private", "protected", "slots", "signals"})
+_OUTPUT = re.compile(
+    r"(?:ROS|RCLCPP|RCUTILS|RCL|CONSOLE|LOG|NODELET|CARTOGRAPHER|GZ|IGN|SPDLOG|EXPECT|ASSERT)\w*_?\w*|gz(?:err|msg|warn|dbg)|"
+    r"c(?:out|err|log)|f?printf|puts|perror|throw|static_assert|assert|spdlog|log\w*|q(?:Debug|Warning|Info|Critical)"
+)
+"""The words with which a statement begins whose texts only people read."""
+
+
+@dataclass
+class _Block:
+    """A block in braces.
+
+    Attributes:
+        name: the name of its function or class.
+        is_function: whether it is in a function.
+        pending: the tokens of the statement in which the block is.
+    """
+
+    name: str
+    is_function: bool
+    pending: list[Token] = field(default_factory=list)
+
+
+def cpp_statements(text: str) -> dict[str, list[Statement]]:
+    """Return the statements of a source by the name of their function or class; others have no name."""
+    reader = _Reader()
+    for match in _DIRECTIVE.finditer(text):
+        define = _DEFINE.match(match[0])
+        if define is not None:
+            name = cpp_tokens(text, match.start() + define.start("name"), match.start() + define.end("name"))
+            value = cpp_tokens(text, match.start() + define.end(), match.end())
+            is_function = bool(value) and value[0].start == name[0].end
+            if value and not is_function:
+                mark = Token(TokenKind.OPERATOR, "=", value[0].start, has_space=True)
+                reader.add("", [name[0], mark, *value])
+    code = _DIRECTIVE.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
+    reader.read(cpp_tokens(code))
+    return reader.functions
+
+
+class _Reader:
+    def __init__(self) -> None:
+        self.functions: dict[str, list[Statement]] = {}
+        self._blocks = [_Block("", is_function=False)]
+        self._pending: list[Token] = []
+
+    def add(self, name: str, tokens: Sequence[Token]) -> None:
+        """Add a statement, unless it is an output."""
+        if len(tokens) > 1 and not _is_output(tokens):
+            self.functions.setdefault(name, []).append(statement_of(tokens))
+
+    def read(self, tokens: Sequence[Token]) -> None:
+        """Add the statements of a source without directives of the preprocessor."""
+        pairs = bracket_pairs(tokens)
+        values: set[int] = set()  # the braces around values, not around statements
+        depths = [0]
+        for index, token in enumerate(tokens):
+            text = token.text if token.kind is TokenKind.OPERATOR else ""
+            if text == "{" and self._is_block(tokens, index, pairs):
+                self._open()
+                depths.append(0)
+            elif text == "}" and index not in values and len(self._blocks) > 1:
+                self._close()
+                depths.pop()
+            elif (text == ";" and depths[-1] == 0) or (
+                text == ":" and depths[-1] == 0 and self._pending and self._pending[0].text in _LABELS
+            ):
+                self._end()
+            else:
+                if text == "{" and index in pairs:
+                    values.add(pairs[index])
+                depths[-1] += (text in ("(", "[", "{")) - (text in (")", "]", "}"))
+                self._pending.append(token)
+        self._end()
+
+    def _is_block(self, tokens: Sequence[Token], index: int, pairs: dict[int, int]) -> bool:
+        """Return whether a brace begins a block of statements, and not values."""
+        end = pairs.get(index)
+        if end is None:
+            return True
+        previous = tokens[index - 1].text if index else ""
+        if any(token.text in _SCOPES for token in self._pending) and not _parenthesis(self._pending):
+            return True
+        return previous in (")", "else", "do", "try", "const", "override", "noexcept") or any(
+            token.text == ";" for token in tokens[index:end]
+        )
+
+    def _open(self) -> None:
+        block = self._blocks[-1]
+        header = self._pending
+        name, is_function, pending = block.name, block.is_function, header
+        if not block.is_function:
+            scope = _scope_name(header)
+            words = {token.text for token in header}
+            if scope is not None:
+                name = "::".join(part for part in (block.name, scope) if part)
+            elif not words & _CONTROLS and "=" not in words:
+                name = "::".join(part for part in (block.name, _function_name(header)) if part)
+                is_function = True
+            self.add(name, header)
+            pending = []
+        self._blocks.append(_Block(name, is_function, pending))
+        self._pending = []
+
+    def _close(self) -> None:
+        self._end()
+        self._pending = self._blocks.pop().pending
+        if self._pending and _parenthesis_depth(self._pending) == 0 and self._pending[0].text in _CONTROLS:
+            self._end()
+
+    def _end(self) -> None:
+        self.add(self._blocks[-1].name, self._pending)
+        self._pending = []
+
+
+def _scope_name(header: Sequence[Token]) -> str | None:
+    """Return the name of the class that a text opens, an empty one for a namespace, or None for another text."""
+    words = [token.text for token in header]
+    kind = next((word for word in words if word in _SCOPES), None)
+    if kind is None or _parenthesis(header):
+        return None
+    if kind in ("namespace", "extern"):
+        return ""
+    names = words[words.index(kind) + 1 :]
+    end = next((index for index, word in enumerate(names) if word in (":", "final", "<")), len(names))
+    return names[end - 1] if end else ""
+
+
+def _function_name(header: Sequence[Token]) -> str:
+    """Return the name before the first parenthesis of a function's header."""
+    index = next((index for index, token in enumerate(header) if token.text == "("), 0)
+    start = index
+    while start > 0 and (
+        start == index or header[start].text == "::" or header[start - 1].text in ("::", "~", "operator")
+    ):
+        start -= 1
+    return "".join(token.text for token in header[start:index])
+
+
+def _parenthesis(tokens: Sequence[Token]) -> bool:
+    return any(token.text == "(" for token in tokens)
+
+
+def _parenthesis_depth(tokens: Sequence[Token]) -> int:
+    return sum((token.text in "([{") - (token.text in ")]}") for token in tokens if token.kind is TokenKind.OPERATOR)
+
+
+def _is_output(tokens: Sequence[Token]) -> bool:
+    """Return whether a statement prints, logs or throws."""
+    words = (token.text for token in tokens[:4] if token.kind is TokenKind.WORD and token.text != "std")
+    first = next(words, "")
+    return _OUTPUT.fullmatch(first) is not None

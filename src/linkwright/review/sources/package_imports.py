@@ -1,0 +1,78 @@
+"""The imports in the ``__init__.py`` of a Python package: names that others import from it, and imports that fail."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator
+from pathlib import PurePosixPath
+
+from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.readers.package_xml import Manifest
+from linkwright.packages.readers.python_values import PythonFile
+from linkwright.review.installed_paths import python_packages
+from linkwright.review.sources.names import NameKind, SourceName, SourceNames
+from linkwright.review.versions import Version
+from linkwright.xacro.cache import read_document
+
+PACKAGE_FILE = "__init__.py"
+
+
+def read_imports(python: PythonFile, names: SourceNames) -> None:
+    """Add the public names that an ``__init__.py`` takes from modules of its package, or lists in ``__all__``.
+
+    Names of other packages are left out, because programs import these names from their own packages.
+    """
+    package = PurePosixPath(python.source.name).parent.name
+    for statement in python.tree.body:
+        if isinstance(statement, ast.ImportFrom):
+            is_own = statement.level > 0 or (statement.module or "").partition(".")[0] == package
+            names.has_star |= any(alias.name == "*" for alias in statement.names)
+            for alias in statement.names if is_own else ():
+                _add(python, names, alias.asname or alias.name, alias)
+            if statement.level == 0 and statement.module is not None:
+                names.absolute_imports.append((statement.module.partition(".")[0], python.span(statement)))
+        elif isinstance(statement, ast.Import):
+            for alias in statement.names:
+                names.absolute_imports.append((alias.name.partition(".")[0], python.span(statement)))
+        elif isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) == "__all__":
+            items = statement.value.elts if isinstance(statement.value, (ast.List, ast.Tuple)) else ()
+            for item in items:
+                _add(python, names, python.text(item) or "", item)
+
+
+def _add(python: PythonFile, names: SourceNames, name: str, node: ast.expr | ast.alias) -> None:
+    if name.isidentifier() and not name.startswith("_"):
+        names.add(SourceName(NameKind.IMPORT, name, "", python.span(node)))
+
+
+def is_installed_package(version: Version, package: str | None, path: str) -> bool:
+    """Return whether a file is the ``__init__.py`` of a Python package that a package of ROS installs."""
+    file = PurePosixPath(path)
+    if package is None or file.name != PACKAGE_FILE:
+        return False
+    folders = [
+        PurePosixPath(package) / part / name for name in python_packages(version, package) for part in ("", "src")
+    ]
+    return any(file.is_relative_to(folder) for folder in folders)
+
+
+def failing_imports(version: Version, package: str, path: str, names: SourceNames) -> Iterator[int]:
+    """Yield the indices of the absolute imports of an ``__init__.py`` that fail once the package is installed.
+
+    They name a module beside the file, which Python finds only if the program runs in that folder. Python 2 finds it.
+
+    Args:
+        version: the version.
+        package: the folder of the package of ROS.
+        path: the path of the ``__init__.py``.
+        names: the names in the file.
+    """
+    if Manifest(read_document(str(version.file(f"{package}/{MANIFEST}".lstrip("/"))))).is_ros1:
+        return
+    folder = version.file(path).parent
+    installed = {name.partition("/")[0] for name in python_packages(version, package)}
+    for index, (name, _) in enumerate(names.absolute_imports):
+        is_sibling = (folder / f"{name}.py").is_file() or (folder / name / PACKAGE_FILE).is_file()
+        if is_sibling and name not in installed | sys.stdlib_module_names | {folder.name}:
+            yield index

@@ -1,0 +1,432 @@
+"""Statements of a source with the literals in them, so that two versions of a statement can be compared."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from linkwright.review.list_changes import change_text, excerpts
+from linkwright.review.sources.tokens import Token, TokenKind, bracket_pairs, joined_tokens
+
+_PLACE = "\0"
+"""The mark for a literal in the shape of a statement. No source has this character."""
+_WORDS = frozenset({"True", "False", "true", "false", "None", "nullptr"})
+_SWITCHES = {"True": "1", "true": "1", "False": "0", "false": "0"}
+_CONSTANT = re.compile(r"_?[A-Z][A-Z0-9_]+")
+_JOINERS = frozenset({".", "::", "->"})
+_ASSIGNMENTS = frozenset({"=", "+=", "-=", "*=", "/=", "%=", "|=", "&=", "//=", "**=", ":="})
+_DELIMITERS = frozenset({",", ";", ":", "?", *_ASSIGNMENTS})
+_KEYWORDS = frozenset(
+    {
+        *("return", "yield", "case", "in", "is", "and", "or", "not", "if", "else", "elif", "while", "for", "assert"),
+        *("lambda", "switch", "throw", "raise", "co_return", "del", "await"),
+    }
+)
+_COMPARISONS = frozenset({"==", "!=", "<", ">", "<=", ">="})
+_SIGNS = frozenset({"-", "+"})
+_PROSE_WORDS = 3
+"""The number of words from which a text is a sentence for people."""
+_HASH = re.compile(r'"[0-9a-fA-F]{32,}"')
+_TEXTS_FOR_READERS = frozenset({"help", "description", "epilog", "doc", "metavar", "usage"})
+"""The keyword arguments whose texts only people read."""
+_MAX_TEMPLATE = 40
+"""The number of tokens up to which the arguments of a template are searched."""
+_MAX_FIRST = 30
+"""The number of characters up to which the first argument of a call is shown, which often names the thing."""
+_MAX_EXPRESSION = 60
+"""The number of characters up to which the expression around a literal is shown."""
+
+
+class Literal(NamedTuple):
+    """A literal in a statement.
+
+    Attributes:
+        value: the text by which versions are compared, such as a text without its quotation marks.
+        first: the index of its first token.
+        last: the index of its last token.
+        constant: the text before the last name of a constant, such as ``Mode.``; a dot if there is none;
+            empty for other literals.
+    """
+
+    value: str
+    first: int
+    last: int
+    constant: str = ""
+
+    @property
+    def is_text(self) -> bool:
+        """Whether the literal is a text."""
+        return self.value.startswith('"')
+
+    def differs_from(self, other: Literal) -> bool:
+        """Return whether another literal has another value of the same kind. A constant may have any value."""
+        return self.value != other.value and self.constant == other.constant
+
+
+class Difference(NamedTuple):
+    """A literal that differs between two versions of a statement.
+
+    Attributes:
+        text: the difference with the code around it, such as ``self.rate 10 -> 20``.
+        old: the old literal.
+        new: the new literal.
+        token: the first token of the new literal.
+    """
+
+    text: str
+    old: str
+    new: str
+    token: Token
+
+
+class Statement(NamedTuple):
+    """A statement of a source.
+
+    Attributes:
+        tokens: the tokens.
+        literals: the literals that are compared.
+        shape: the text of the statement with a mark for each of these literals.
+    """
+
+    tokens: tuple[Token, ...]
+    literals: tuple[Literal, ...]
+    shape: str
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """The text by which equal statements are found."""
+        return (self.shape, *(literal.value for literal in self.literals))
+
+    def text(self, first: int, last: int) -> str:
+        """Return the text of the tokens from an index to another one, which is included."""
+        return joined_tokens(self.tokens[first : last + 1])
+
+
+def statement_of(tokens: Sequence[Token]) -> Statement:
+    """Return the statement that consists of tokens."""
+    literals = tuple(_literals(tokens))
+    parts: list[str] = []
+    index = 0
+    starts = {literal.first: literal for literal in literals}
+    while index < len(tokens):
+        literal = starts.get(index)
+        if literal is not None:
+            parts.append(_PLACE)
+            index = literal.last + 1
+            continue
+        is_last_comma = tokens[index].text == "," and tokens[index + 1 : index + 2] and tokens[index + 1].text in ")]}"
+        if not is_last_comma:
+            parts.append(tokens[index].text)
+        index += 1
+    return Statement(tuple(tokens), literals, " ".join(parts))
+
+
+def _literals(tokens: Sequence[Token]) -> Iterator[Literal]:
+    """Yield the literals of a statement. Names to which a value is assigned, and keys, are none."""
+    index = _assigned_end(tokens)
+    pairs = bracket_pairs(tokens)
+    while index < len(tokens):
+        last = _list_end(tokens, index, pairs)
+        if last is None:
+            last = _literal_end(tokens, index)
+        if last is not None and not _is_key(tokens, last) and not _is_for_readers(tokens, index, last):
+            # the kind of a number decides how it is divided
+            is_divided = "/" in (
+                tokens[index - 1].text if index else "",
+                *(token.text for token in tokens[last + 1 : last + 2]),
+            )
+            is_constant = tokens[index].kind is TokenKind.WORD and tokens[index].text not in _WORDS
+            constant = joined_tokens(tokens[index:last]) or "." if is_constant else ""
+            yield Literal(_value(tokens[index : last + 1], is_divided=is_divided), index, last, constant)
+        index = index + 1 if last is None else last + 1
+
+
+def _assigned_end(tokens: Sequence[Token]) -> int:
+    """Return the index of the first token behind the last assignment outside of brackets, or 0."""
+    depth = end = 0
+    for index, token in enumerate(tokens):
+        if token.kind is TokenKind.OPERATOR:
+            depth += (token.text in "([{") - (token.text in ")]}")
+            if depth == 0 and token.text in _ASSIGNMENTS:
+                end = index + 1
+    return end
+
+
+def _list_end(tokens: Sequence[Token], index: int, pairs: dict[int, int]) -> int | None:
+    """Return the index of the bracket that ends a list of literals, or None if no such list begins at an index."""
+    end = pairs.get(index, -1)
+    if tokens[index].text not in ("[", "(", "{") or end < index + 2:
+        return None
+    if index and (tokens[index - 1].kind is TokenKind.WORD or tokens[index - 1].text in (")", "]", ">")):
+        is_after_keyword = tokens[index - 1].text in _KEYWORDS
+        if not is_after_keyword:
+            return None  # arguments, or the index of an item
+    position, count = index + 1, 0
+    while position < end:
+        last = _list_end(tokens, position, pairs)
+        if last is None and tokens[position].kind is not TokenKind.WORD:
+            last = _literal_end(tokens, position)
+        elif last is None and tokens[position].text in _WORDS:
+            last = position
+        if last is None or tokens[last + 1].text not in (",", *")]}"):
+            return None
+        count += 1
+        position = last + (2 if tokens[last + 1].text == "," else 1)
+    is_grouped = tokens[index].text == "(" and count == 1
+    return None if is_grouped else end
+
+
+def _literal_end(tokens: Sequence[Token], index: int) -> int | None:
+    """Return the index of the last token of the literal that begins at an index, or None if none does."""
+    token = tokens[index]
+    if token.kind is TokenKind.NUMBER or token.text in _WORDS:
+        return index
+    if token.kind is TokenKind.TEXT:
+        if "f" in token.text[: token.text.find(token.text[-1])].lower():
+            return None
+        while index + 1 < len(tokens) and tokens[index + 1].kind is TokenKind.TEXT:
+            index += 1
+        return index
+    if token.text in _SIGNS and index + 1 < len(tokens) and tokens[index + 1].kind is TokenKind.NUMBER:
+        previous = tokens[index - 1] if index else None
+        is_sign = (
+            previous is None
+            or (previous.kind is TokenKind.OPERATOR and previous.text not in (")", "]"))
+            or previous.text in _KEYWORDS
+        )
+        return index + 1 if is_sign else None
+    return _constant_end(tokens, index)
+
+
+def _constant_end(tokens: Sequence[Token], index: int) -> int | None:
+    """Return the index of the last token of a constant such as ``Mode.FAST``, or None if none begins at an index."""
+    if tokens[index].kind is not TokenKind.WORD or tokens[index].text in _KEYWORDS:
+        return None
+    previous = tokens[index - 1] if index else None
+    is_type = previous is not None and previous.kind is TokenKind.WORD and previous.text not in _KEYWORDS
+    if previous is None or previous.text in _JOINERS or previous.text in ("<", "@", "#", "*", "&") or is_type:
+        return None
+    last = index
+    while last + 2 < len(tokens) and tokens[last + 1].text in _JOINERS and tokens[last + 2].kind is TokenKind.WORD:
+        last += 2
+        if tokens[last - 1].text == "->":
+            return None
+    following = tokens[last + 1].text if last + 1 < len(tokens) else ""
+    is_name = following in ("(", "[", "{", "<", *_JOINERS, *_ASSIGNMENTS)
+    is_type = last + 1 < len(tokens) and tokens[last + 1].kind is TokenKind.WORD and following not in _KEYWORDS
+    return last if _CONSTANT.fullmatch(tokens[last].text) and not is_name and not is_type else None
+
+
+def _is_key(tokens: Sequence[Token], last: int) -> bool:
+    """Return whether a literal is the key of an entry: ``'angle': 1.57``."""
+    is_text = tokens[last].kind is TokenKind.TEXT
+    return is_text and last + 1 < len(tokens) and tokens[last + 1].text == ":"
+
+
+def _is_for_readers(tokens: Sequence[Token], first: int, last: int) -> bool:
+    """Return whether a literal is a text that only people read."""
+    if any(token.kind is not TokenKind.TEXT for token in tokens[first : last + 1]):
+        return False
+    is_named = first > 1 and tokens[first - 1].text == "=" and tokens[first - 2].text in _TEXTS_FOR_READERS
+    is_formatted = last + 1 < len(tokens) and tokens[last + 1].text in ("%", ".")
+    value = _value(tokens[first : last + 1])
+    return (
+        is_named
+        or is_formatted
+        or len(value.split(None, _PROSE_WORDS)) >= _PROSE_WORDS
+        or _HASH.fullmatch(value) is not None
+    )
+
+
+def _value(tokens: Sequence[Token], *, is_divided: bool = False) -> str:
+    """Return a literal as it is compared: the kind of quotation marks, spaces and a last comma do not matter."""
+    parts: list[str] = []
+    for index, token in enumerate(tokens):
+        if token.kind is TokenKind.TEXT:
+            quote = token.text[-1]
+            content = token.text[token.text.find(quote) :]
+            length = 3 if content.startswith(quote * 3) and len(content) >= 6 else 1
+            parts.append(f'"{content[length:-length]}"')
+        elif token.text == "," and tokens[index + 1].text in ")]}":
+            continue
+        else:
+            text = _SWITCHES.get(token.text, token.text)
+            parts.append(_number(text, is_divided=is_divided) if token.kind is TokenKind.NUMBER else text)
+    return "".join(parts).replace('""', "") or '""'
+
+
+def _number(text: str, *, is_divided: bool) -> str:
+    """Return a number as it is compared: ``0.20`` is ``.2``, and ``1.0`` is ``1`` unless it is divided."""
+    match = re.fullmatch(r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)[fFlLuU]*", text.replace("'", ""))
+    if match is None:
+        return text.lower()
+    is_real = is_divided and not match["number"].isdigit()
+    return f"{float(match['number']):.12g}{'.' if is_real else ''}"
+
+
+# --- wording --------------------------------------------------------------------------------------------------------
+
+
+def differences(old: Statement, new: Statement) -> Iterator[Difference]:
+    """Yield the literals that differ between two statements of one shape."""
+    pairs = list(zip(old.literals, new.literals, strict=True))
+    brackets = bracket_pairs(new.tokens)
+    changed = [pair for pair in pairs if pair[0].differs_from(pair[1])]
+    index = 0
+    while index < len(changed):
+        (old_literal, new_literal) = changed[index]
+        start, end = _expression(new.tokens, new_literal, brackets)
+        group = [pair for pair in changed[index:] if pair[1].last <= end]
+        index += len(group)
+        texts = (old.text(old_literal.first, old_literal.last), new.text(new_literal.first, new_literal.last))
+        token = new.tokens[new_literal.first]
+        is_compared = start == new_literal.first or new.tokens[new_literal.first - 1].text in _COMPARISONS
+        if len(group) == 1 and end == new_literal.last and is_compared:
+            before = new.text(start, new_literal.first - 1)
+            expression = f"{before}{' ' if before and token.has_space else ''}{texts[0]} -> {texts[1]}"
+        else:
+            first, last = old_literal.first - (new_literal.first - start), group[-1][0].last + end - group[-1][1].last
+            expression = " -> ".join(excerpts(old.text(first, last), new.text(start, end)))
+        if len(expression) > 2 * _MAX_EXPRESSION and len(group) == 1:
+            expression = " -> ".join(excerpts(*texts))
+        if len(expression) > 2 * _MAX_EXPRESSION and new_literal.last > new_literal.first and len(group) == 1:
+            label = _with_context(new, start, end, "[...]", brackets)
+            yield Difference(change_text(label, *map(_as_list, texts)), *texts, token)
+            continue
+        yield Difference(_with_context(new, start, end, expression, brackets), *texts, token)
+
+
+def _as_list(text: str) -> str:
+    return f"[{text.strip()[1:-1].strip().rstrip(',')}]"
+
+
+def _expression(tokens: Sequence[Token], literal: Literal, brackets: dict[int, int]) -> tuple[int, int]:
+    """Return the indices of the first and last token of the expression around a literal, within its brackets."""
+    start, end = literal.first, literal.last
+    is_in_template = end + 1 < len(tokens) and tokens[end + 1].text == ">" and start > 0
+    if is_in_template and tokens[start - 1].text in ("<", ","):
+        return start, end
+    while start > 0 and not _ends_expression(tokens[start - 1]):
+        if tokens[start - 1].text in ")]}" and tokens[start - 1].kind is TokenKind.OPERATOR:
+            if start - 1 not in brackets:
+                break
+            start = brackets[start - 1]
+        else:
+            start -= 1
+            if tokens[start].text in "([{" and tokens[start].kind is TokenKind.OPERATOR:
+                start += 1
+                break
+    while end + 1 < len(tokens) and not _ends_expression(tokens[end + 1]):
+        if tokens[end + 1].kind is TokenKind.OPERATOR and tokens[end + 1].text in ")]}":
+            break
+        end = brackets.get(end + 1, end + 1)
+    return start, end
+
+
+def _ends_expression(token: Token) -> bool:
+    is_keyword = token.kind is TokenKind.WORD and token.text in _KEYWORDS - {"not"}
+    return is_keyword or (token.kind is TokenKind.OPERATOR and token.text in (*_DELIMITERS, "&&", "||"))
+
+
+def _with_context(new: Statement, start: int, end: int, expression: str, brackets: dict[int, int]) -> str:
+    """Return a changed expression with the name that it is assigned to, or with the function that it is passed to."""
+    tokens = new.tokens
+    before = tokens[start - 1] if start else None
+    opening = next((index for index in range(start - 1, -1, -1) if brackets.get(index, -1) > end), None)
+    if before is not None and before.text == ":" and opening is not None and tokens[opening].text == "{":
+        return f"{_entry(tokens, start - 1, brackets)} {expression}"
+    if before is None or before.kind is TokenKind.WORD:
+        word = before.text if before is not None and before.text in ("return", "case") else ""
+        return f"{word} {expression}".strip()
+    if before.text in _ASSIGNMENTS:
+        name = _name_before(tokens, start - 2, brackets)
+        if opening is None or tokens[opening].text != "(":
+            sign = "" if before.text in ("=", ":=") else f"{before.text} "
+            return f"{name} {sign}{expression}".strip()
+        expression = f"{name}={expression}"
+        start -= 2
+    return expression if opening is None else _as_argument(tokens, opening, (start, end), expression, brackets)
+
+
+def _as_argument(
+    tokens: Sequence[Token], opening: int, place: tuple[int, int], expression: str, brackets: dict[int, int]
+) -> str:
+    """Return a changed expression with the function or list in whose brackets it is."""
+    name = _name_before(tokens, opening - 1, brackets)
+    if not name or tokens[opening - 1].text in _KEYWORDS:
+        return expression
+    closing = brackets[opening]
+    if tokens[opening].text == "{" and (opening, closing) == (place[0] - 1, place[1] + 1):
+        return f"{name} {expression}"
+    commas = _commas(tokens, opening, place[0], brackets)
+    left = "..., " if commas else ""
+    if commas and tokens[opening].text == "(":
+        first = joined_tokens(tokens[opening + 1 : commas[0]])
+        if len(first) <= _MAX_FIRST:
+            left = f"{first}, " if len(commas) == 1 else f"{first}, ..., "
+    right = "" if closing == place[1] + 1 else ", ..."
+    return f"{name}{tokens[opening].text}{left}{expression}{right}{tokens[closing].text}"
+
+
+def _commas(tokens: Sequence[Token], opening: int, end: int, brackets: dict[int, int]) -> list[int]:
+    """Return the indices of the commas between the arguments from an opening bracket to an index."""
+    commas = []
+    index = opening + 1
+    while index < end:
+        if tokens[index].text == "," and tokens[index].kind is TokenKind.OPERATOR:
+            commas.append(index)
+        index = max(brackets.get(index, index), index) + 1
+    return commas
+
+
+def _entry(tokens: Sequence[Token], colon: int, brackets: dict[int, int]) -> str:
+    """Return the keys that lead to an entry of a dictionary, behind the name to which the dictionary is assigned."""
+    keys: list[str] = []
+    while True:
+        key = tokens[colon - 1]
+        keys.insert(0, key.text.strip("\"'") if key.kind is not TokenKind.OPERATOR else "...")
+        opening = next((index for index in range(colon - 1, -1, -1) if brackets.get(index, -1) > colon), None)
+        if opening is None or opening < 2 or tokens[opening - 1].text != ":":
+            break
+        colon = opening - 1
+    is_assigned = opening is not None and opening > 1 and tokens[opening - 1].text == "="
+    name = _name_before(tokens, opening - 2, brackets) if is_assigned and opening is not None else ""
+    return f"{name} {'.'.join(keys)}".strip()
+
+
+def _name_before(tokens: Sequence[Token], index: int, brackets: dict[int, int]) -> str:
+    """Return the name, such as ``self.rate`` or ``items[0]``, that ends at an index; empty if there is none."""
+    parts: list[Token] = []
+    while index >= 0:
+        token = tokens[index]
+        if token.kind is TokenKind.OPERATOR and token.text in ("]", ")") and index in brackets:
+            parts[:0] = tokens[brackets[index] : index + 1]
+            index = brackets[index] - 1
+            continue
+        if token.text == ">" and not parts:
+            index = _before_template(tokens, index)
+            continue
+        if token.kind is TokenKind.OPERATOR or token.text in _KEYWORDS:
+            break
+        parts.insert(0, token)
+        index -= 1
+        if index < 0 or tokens[index].text not in _JOINERS:
+            break
+        parts.insert(0, tokens[index])
+        index -= 1
+    name = joined_tokens(parts)
+    if index > 0 and tokens[index].text == ":" and tokens[index - 1].kind is TokenKind.WORD:
+        name = _name_before(tokens, index - 1, brackets)  # the name before an annotation
+    return name if len(name) <= _MAX_EXPRESSION else ""
+
+
+def _before_template(tokens: Sequence[Token], index: int) -> int:
+    """Return the index before the arguments of a template that end at an index, or -1 if there are none."""
+    depth = 0
+    for start in range(index, max(index - _MAX_TEMPLATE, -1), -1):
+        text = tokens[start].text
+        depth += (text == ">") - (text == "<")
+        if depth <= 0:
+            return start - 1
+    return -1

@@ -1,0 +1,191 @@
+"""The lines of a review about literals that change in the statements of sources."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences
+
+PYTHON = '''"""Drive a rover."""
+import math
+import rospy
+
+STEP = 1
+MODES = ["idle", "walk", "run"]
+GAINS = {"hip": {"p": 10, "d": 0.5}, "knee": 20}
+
+
+class Rover:
+    WIDTH = 0.4
+
+    def drive(self, speed=0.5):
+        """Drive with 1 m/s."""
+        msg.j1 = 1
+        self.timeout: float = 0.2
+        if cost >= 253 and self.mode == Mode.FAST:
+            return 3 * speed
+        arm.add_tool(z_offset=0.30, name='drill')
+        time.sleep(1.5)
+        rospy.loginfo("drove 5 m")
+        raise ValueError("not 6")
+
+    def reset(self):
+        self.items.append(1)
+        self.items.append(2)
+'''
+CPP = """#include <rover.hpp>
+#define LIMIT 10  // at most 12
+constexpr double WHEEL = 0.1;
+enum Mode { SLOW = 1, FAST = 2 };
+namespace rover
+{
+class Light : public rclcpp::Node {
+  double timeout_{0.2};
+  bool is_on_ = false;
+};
+Light::Light() : Node("light"), rate_(5) {
+  timer_ = create([this]() { level_ = 7; });
+}
+void Light::handle(double value) {
+  switch (value) {
+    case 1:
+      level_ = std::min(level_ + 1, 100.0);
+      break;
+  }
+  if (value > 0.5f && (is_on_ || value < LIMIT)) { return; }
+  pub_ = make<std::array<int, 4>>("light", 8);
+  RCLCPP_INFO(get_logger(), "level 9");
+  map_["near"] = {1, 2, 3};
+}
+}
+"""
+
+
+@pytest.fixture
+def lines(repository, compare):
+    """Review a replacement in a source, and return the sentences."""
+
+    def run(path, text, old, new):
+        assert old in text
+        repository.commit({"rover/package.xml": PACKAGE_XML.replace("arm_description", "rover"), path: text})
+        repository.write({path: text.replace(old, new)})
+        result = compare(repository)
+        assert not breaking(result)
+        return [sentence for subject in result.subjects for sentence in sentences(subject)]
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("STEP = 1", "STEP = 2", "values: STEP 1 -> 2"),
+        ('"run"]', '"jump"]', 'values: MODES ["idle", "walk", "run"] -> ["idle", "walk", "jump"]'),
+        ('"p": 10', '"p": 12', "values: GAINS hip.p 10 -> 12"),
+        ("WIDTH = 0.4", "WIDTH = 0.5", "values in Rover: WIDTH 0.4 -> 0.5"),
+        ("speed=0.5", "speed=0.8", "values in Rover.drive: drive(self, speed=0.5 -> 0.8)"),
+        ("msg.j1 = 1", "msg.j1 = -35", "values in Rover.drive: msg.j1 1 -> -35"),
+        ("float = 0.2", "float = 0.5", "values in Rover.drive: self.timeout 0.2 -> 0.5"),
+        (">= 253", ">= 243", "values in Rover.drive: cost >= 253 -> 243"),
+        ("Mode.FAST", "Mode.SLOW", "values in Rover.drive: self.mode == Mode.FAST -> Mode.SLOW"),
+        ("3 * speed", "4 * speed", "values in Rover.drive: return 3 * speed -> 4 * speed"),
+        ("0.30", "0.25", "values in Rover.drive: arm.add_tool(z_offset=0.30 -> 0.25, ...)"),
+        ("'drill'", "'gripper'", "values in Rover.drive: arm.add_tool(z_offset=0.30, name='drill' -> 'gripper')"),
+        ("sleep(1.5)", "sleep(2)", "values in Rover.drive: time.sleep(1.5 -> 2)"),
+    ],
+)
+def test_a_literal_that_changes_in_python_is_told_with_its_place(lines, old, new, expected):
+    assert lines("rover/scripts/drive.py", PYTHON, old, new) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("drove 5 m", "drove 6 m"),
+        ("not 6", "not 7"),
+        ("1 m/s", "2 m/s"),
+        ("0.30, name='drill'", '.3, name="drill"'),
+        ("append(1)\n", "append(0)\n        self.items.append(3)\n"),
+        ("append(1)\n        self.items.append(2)", "append(2)\n        self.items.append(1)"),
+        ("msg.j1 = 1", "msg.j2 = 2"),
+        ("1.5", "PAUSE"),
+    ],
+)
+def test_other_texts_and_statements_without_a_counterpart_are_not_told(lines, old, new):
+    assert lines("rover/scripts/drive.py", PYTHON, old, new) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("LIMIT 10", "LIMIT 12", "values: LIMIT 10 -> 12"),
+        ("WHEEL = 0.1", "WHEEL = 0.2", "values: WHEEL 0.1 -> 0.2"),
+        ("FAST = 2", "FAST = 3", "values: FAST 2 -> 3"),
+        ("{0.2}", "{0.5}", "values in Light: timeout_ 0.2 -> 0.5"),
+        ("= false", "= true", "values in Light: is_on_ false -> true"),
+        ("rate_(5)", "rate_(6)", "values in Light::Light: rate_(5 -> 6)"),
+        ("level_ = 7", "level_ = 8", "values in Light::Light: level_ 7 -> 8"),
+        ("case 1", "case 2", "values in Light::handle: case 1 -> 2"),
+        ("+ 1,", "+ 2,", "values in Light::handle: std::min(level_ + 1 -> level_ + 2, ...)"),
+        ("100.0", "200.0", "values in Light::handle: std::min(level_ + 1, 100.0 -> 200.0)"),
+        ("0.5f", "0.7f", "values in Light::handle: value > 0.5f -> 0.7f"),
+        ("int, 4", "int, 5", "values in Light::handle: 4 -> 5"),
+        ('"light", 8', '"light", 9', 'values in Light::handle: make("light", 8 -> 9)'),
+        ("{1, 2, 3}", "{1, 2, 4}", 'values in Light::handle: map_["near"] {1, 2, 3} -> {1, 2, 4}'),
+    ],
+)  # fmt: skip
+def test_a_literal_that_changes_in_cpp_is_told_with_its_place(lines, old, new, expected):
+    assert lines("rover/src/light.cpp", CPP, old, new) == [expected]
+
+
+@pytest.mark.parametrize(("old", "new"), [("level 9", "level 8"), ("at most 12", "at most 13"), ("0.5f", "0.50")])
+def test_logs_comments_and_equal_numbers_in_cpp_are_not_told(lines, old, new):
+    assert lines("rover/src/light.cpp", CPP, old, new) == []
+
+
+def test_a_long_list_is_told_by_its_items(lines):
+    keys = ", ".join(f"'key_{number}'" for number in range(20))
+    text = f"KEYS = [{keys}]\n"
+    assert lines("rover/keys.py", text, ", 'key_3'", ", 'key_x'") == [
+        "values: KEYS [...]: 'key_x' added, 'key_3' removed"
+    ]
+
+
+def test_a_long_text_is_read_once_and_shown_in_part(lines):
+    image = "Z" * 300_000
+    (line,) = lines("rover/panel.py", f"IMAGE = '{image}'\n", "ZZZ'", "ZZY'")
+    assert len(line) < 200
+
+
+def test_a_constant_of_the_source_with_another_name_is_not_a_value(lines):
+    text = "STEP = 1\n\ndef f():\n    return STEP\n"
+    assert lines("rover/step.py", text, "STEP", "STEP_SIZE") == []
+
+
+def test_texts_that_only_change_their_order_are_not_told(lines):
+    text = "layout = [button('Start', size=4, key=1), button('Stop', size=4, key=1)]\n"
+    assert (
+        lines(
+            "rover/panel.py", text, "'Start', size=4, key=1), button('Stop'", "'Stop', size=4, key=1), button('Start'"
+        )
+        == []
+    )
+
+
+def test_values_that_other_lines_tell_are_not_told_again(lines):
+    text = 'import rospy\nRATE = 10\nloop = rospy.Rate(RATE)\nrate = rospy.get_param("~rate", 5)\n'
+    assert lines("rover/loop.py", text, "RATE = 10", "RATE = 20") == ["rate or period: Rate(10) -> Rate(20)"]
+
+
+@pytest.mark.parametrize(("is_new", "expected"), [(True, "new"), (False, "old")])
+def test_a_source_with_a_syntax_error_loses_no_names(repository, compare, is_new, expected):
+    good = 'import rospy\nrospy.Publisher("a", String, queue_size=1)\n'
+    bad = good + "def f(:\n"
+    repository.commit({"rover/a.py": good if is_new else bad})
+    repository.write({"rover/a.py": bad if is_new else good})
+    (subject,) = compare(repository).subjects
+    assert not subject.changes
+    (problem,) = subject.problems
+    assert str(problem.text) == f"the {expected} version has a syntax error in line 3; its names are not known"
+    assert problem.is_of_old is not is_new

@@ -1,0 +1,68 @@
+"""The lines of a review about the ``__init__.py`` of installed Python packages."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences
+
+SETUP = "from setuptools import setup\nsetup(name='arm', version='1.0.0', packages=['arm'])\n"
+FILES = {
+    "package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+    "setup.py": SETUP,
+    "arm/driver.py": "class Driver: ...\nclass Gripper: ...\n",
+}
+INIT = "import os\nfrom .driver import Driver\n"
+
+
+@pytest.fixture
+def lines(repository, compare):
+    """Review a replacement of ``arm/__init__.py``, and return the sentences of all and of the breaking changes."""
+
+    def run(old, new, files=FILES):
+        repository.commit({**files, "arm/__init__.py": old})
+        repository.write({"arm/__init__.py": new})
+        result = compare(repository)
+        return [sentence for subject in result.subjects for sentence in sentences(subject)], breaking(result)
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("new", "expected", "is_breaking"),
+    [
+        (INIT.replace("Driver", "Driver, Gripper"), "names of the package added: 'Gripper'", False),
+        ("import os\n", "names of the package removed: 'Driver'", True),
+        (INIT.replace("Driver", "DriverNode"), "name of the package 'Driver' renamed to 'DriverNode'", True),
+        (INIT + "__all__ = ['Driver', 'park']\n", "names of the package added: 'park'", False),
+        (INIT + "from driver import Gripper\n", "absolute import of 'driver', a module of the same package", True),
+    ],
+)
+def test_names_and_failing_imports_of_an_installed_package_are_told(lines, new, expected, is_breaking):
+    assert lines(INIT, new) == ([expected], [expected] if is_breaking else [])
+
+
+@pytest.mark.parametrize(
+    "new",
+    [
+        "from .driver import Driver\n",  # a name of another package
+        "import os\nfrom arm.driver import Driver\n",
+        "import os\nfrom .driver import *\n",
+        INIT + "import logging\n",
+    ],
+)
+def test_names_of_other_packages_and_names_that_are_still_there_are_not_told(lines, new):
+    assert lines(INIT, new, {**FILES, "arm/logging.py": ""}) == ([], [])
+
+
+def test_a_package_that_is_not_installed_has_no_names_for_others(lines):
+    files = {**FILES, "setup.py": SETUP.replace("['arm']", "[]")}
+    assert lines(INIT, "import os\nfrom driver import Gripper\n", files) == ([], [])
+
+
+def test_python_2_finds_a_module_beside_the_file(lines):
+    manifest = PACKAGE_XML.replace("arm_description", "arm").replace(
+        "</package>", "  <buildtool_depend>catkin</buildtool_depend>\n</package>"
+    )
+    assert lines(INIT, INIT + "from driver import park\n", {**FILES, "package.xml": manifest}) == ([], [])

@@ -1,0 +1,79 @@
+"""The lines of a review about node names, timers and actions that are declared in a header."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+TIMER = "import rospy\nrospy.init_node('arm')\n"
+
+
+def test_the_only_node_of_a_source_is_renamed_although_another_file_has_the_new_name(repository, compare):
+    old = "import rospy\nrospy.init_node('master2')\n"
+    repository.commit({**MANIFEST, "arm/master.py": old, "arm/old_master.py": old.replace("master2", "master")})
+    repository.write({"arm/master.py": old.replace("master2", "master")})
+    assert breaking(compare(repository)) == ["node 'master2' renamed to 'master'"]
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "rospy.Timer(rospy.Duration(0.2), f)",
+        "rospy.timer.Timer(rospy.Duration(0.2), f)",
+        "rospy.Timer(rospy.Duration.from_sec(0.2), f)",
+    ],
+)
+def test_the_period_of_a_timer_of_ros_1_is_told(repository, compare, call):
+    period = call[call.index("rospy.Duration") : call.index(", f)")]
+    repository.commit({**MANIFEST, "arm/a.py": TIMER + call})
+    repository.write({"arm/a.py": TIMER + call.replace("0.2", "0.5")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == [f"rate or period: Timer({period}) -> Timer({period.replace('0.2', '0.5')})"]
+
+
+def test_the_periods_of_an_added_node_are_told(repository, compare):
+    repository.commit(MANIFEST)
+    repository.write({"arm/a.py": TIMER + "rospy.Timer(rospy.Duration(0.2), f)\nrate = rospy.Rate(10)\n"})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["nodes added: 'arm'", "rates and periods: Timer(rospy.Duration(0.2)), Rate(10)"]
+
+
+@pytest.mark.parametrize(
+    ("declaration", "made", "expected"),
+    [
+        ("actionlib::SimpleActionServer<arm_msgs::ReachAction> as_;",
+         'Arm::Arm() : as_(nh_, "reach", boost::bind(&Arm::f, this, _1), false) {}',
+         "action 'reach' (ReachAction) renamed to 'grasp' (ReachAction)"),
+        ("typedef actionlib::SimpleActionClient<arm_msgs::ReachAction> Client;\n  Client client_;",
+         'Arm::Arm() : client_("reach", true) {}',
+         "action client 'reach' (ReachAction) renamed to 'grasp' (ReachAction)"),
+        ("using Server = nav2_util::SimpleActionServer<arm_msgs::action::Reach>;\n  std::unique_ptr<Server> server_;",
+         'Arm::Arm() { server_ = std::make_unique<Server>(shared_from_this(), "reach", f); }',
+         "action 'reach' (Reach) renamed to 'grasp' (Reach)"),
+        ("boost::shared_ptr<actionlib::SimpleActionServer<ReachAction> > as_;",
+         'Arm::Arm() { as_.reset(new actionlib::SimpleActionServer<ReachAction>(nh_, "reach", f, false)); }',
+         "action 'reach' (ReachAction) renamed to 'grasp' (ReachAction)"),
+        ("message_filters::Subscriber<sensor_msgs::Image> image_;", 'Arm::Arm() : image_(nh_, "reach", 1) {}',
+         "subscription 'reach' (Image) renamed to 'grasp' (Image)"),
+    ],
+)  # fmt: skip
+def test_a_member_that_a_header_declares_has_the_name_that_the_source_gives(
+    repository, compare, declaration, made, expected
+):
+    header = f"class Arm {{\n  {declaration}\n}};\n"
+    source = f"#include <arm/arm.hpp>\n{made}\n"
+    repository.commit({**MANIFEST, "arm/include/arm/arm.hpp": header, "arm/src/arm.cpp": source})
+    repository.write({"arm/src/arm.cpp": source.replace('"reach"', '"grasp"')})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == [expected]
+
+
+def test_parameters_of_default_member_initializers_in_a_header_are_compared(repository, compare):
+    header = 'class Arm : public Node {\n  double rate_ = declare_parameter("rate", 10.0);\n};\n'
+    repository.commit({**MANIFEST, "arm/include/arm/arm.hpp": header})
+    repository.write({"arm/include/arm/arm.hpp": header.replace("10.0", "20.0")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["parameter 'rate': default 10.0 -> 20.0"]
