@@ -1,4 +1,4 @@
-"""Recordings of several files, snapshots, and recordings written anew."""
+"""Recordings of several files, snapshots, and conversions of recordings."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ def test_ctrl_s_saves_source_from_any_focus(start, open_page, workspace):
         page.locator(selector).click()
         page.keyboard.press("Control+s")
         until(page, "lw.panels.source.editor.unsaved.length === 0")
-        page.keyboard.press("Control+s")  # once more does no harm
+        page.keyboard.press("Control+s")  # saving again opens no dialog
         assert page.locator("dialog").count() == 0
     page.locator(".dv-tab", has_text="Displays").click()
     page.locator(".displays-panel [role=treeitem]").first.click()
@@ -188,7 +188,7 @@ def test_lesson_texts_fit_and_only_commands_have_copy_button(start, open_page, w
         })"""
     )
     assert tops
-    assert all(abs(top) < 8 for top in tops), "punctuation is on the line of the code before it"
+    assert all(abs(top) < 8 for top in tops), "punctuation is on the same line as the code before it"
 
 
 DIVIDED_WORDS = r"""() => {

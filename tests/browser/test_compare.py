@@ -115,7 +115,7 @@ def test_identical_old_robot_is_hidden(start, open_page, files):
     page = open_page(start("view", str(old), str(new)))
     page.get_by_text("are identical").wait_for()
     both_robots = pixels(page)
-    assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in both_robots) > 100, "the robot is seen"
+    assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in both_robots) > 100, "the robot is visible"
     show(page, "Show the old robot", on=False)
     new_only = pixels(page)
     assert [
@@ -135,7 +135,7 @@ def test_robots_can_be_shown_alone_and_old_opacity_is_adjustable(start, open_pag
     becomes(lambda: {alpha for _, alpha in looks(page, 1).values()}, {1})
     opaque = pixels(page)
     assert sum(sum(pixel) for pixel in opaque) < sum(sum(pixel) for pixel in old_only), (
-        "its gray is darker than the ground behind it"
+        "the gray of the old robot is darker than the ground behind it"
     )
     show(page, "Show the new robot", on=True)
     show(page, "Show the old robot", on=False)
@@ -150,7 +150,7 @@ def test_difference_selects_link_and_opens_both_sources(start, open_page, files)
     page.keyboard.press("Escape")
     group(page, "camera").locator("button.difference-name").click()
     page.locator(".selection-card strong", has_text="camera").wait_for()
-    assert state(page, "view.distance") == pytest.approx(distance, rel=0.05), "both spheres are of one size"
+    assert state(page, "view.distance") == pytest.approx(distance, rel=0.05), "both spheres have the same size"
     group(page, "turn", "Joint").locator(".difference-values").click()
     page.locator(".selection-card strong", has_text="arm").wait_for()
     assert "0 0 0.6" in group(page, "turn", "Joint").inner_text()
@@ -207,7 +207,7 @@ def test_comparison_list_is_in_front_in_small_window(start, open_page, files):
     assert first is not None
     assert first["y"] + first["height"] <= panel["y"] + panel["height"]
     groups = [group.bounding_box() for group in page.locator(".difference-group").all()]
-    assert max(group["x"] + group["width"] for group in groups) > 700, "the groups are in columns"
+    assert max(group["x"] + group["width"] for group in groups) > 700, "the groups are arranged in columns"
 
 
 def test_comparison_panel_passes_axe(start, open_page, files):

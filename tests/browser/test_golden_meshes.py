@@ -102,7 +102,7 @@ def center_color(page) -> Color:
     return color
 
 
-# near, far -> the visible color; the camera is on +x, the background 48
+# color of the near box, color of the far box, visible color; the camera is on +x, and the background is 48
 LAYERS = (
     ("1 0 0 0.5", "0 0 1 1", (128, 0, 128)),
     ("0 0 1 1", "1 0 0 0.5", (0, 0, 255)),

@@ -101,7 +101,7 @@ def test_sweep_moves_joints_until_stopped(page):
 
 
 def test_dragged_link_moves_its_joint(page):
-    # Seen along the joints' axis, from the right: x to the right of the image, z up.
+    # The camera looks along the joints' axis from the right: in the image, x is to the right, and z is up.
     page.keyboard.press("z")  # about the root
     for name, value in (("Yaw", "-1.5707963"), ("Pitch", "0"), ("Distance", "2")):
         row = page.locator(".row").filter(has=page.get_by_text(name, exact=True))
@@ -118,7 +118,7 @@ def test_dragged_link_moves_its_joint(page):
 
     page.keyboard.down("Alt")
     page.mouse.move(*at(0, 0.3))
-    until(page, "lw.description.joints === 4")  # where they turn is asked for now
+    until(page, "lw.description.joints === 4")  # the page requests the axes of the joints now
     page.mouse.move(*at(0.002, 0.3))
     until(page, "lw.tool.cursor === 'grab'")
     page.mouse.down()
@@ -130,7 +130,7 @@ def test_dragged_link_moves_its_joint(page):
     until(page, "Math.abs(Math.abs(lw.joints.upper_joint) - 0.8) < 0.1")
     yaw = state(page, "view.yaw")
 
-    # Without Alt the same drag turns the camera.
+    # Without Alt, the same drag rotates the camera.
     page.mouse.move(*at(0, 0.02))
     page.mouse.down()
     page.mouse.move(*at(0.2, 0.02), steps=4)

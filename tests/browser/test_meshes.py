@@ -132,8 +132,8 @@ def test_robot_without_readable_meshes_is_reported_and_shown_by_frames(start, op
     page.locator(".diagnostics").get_by_text("package 'elsewhere' not found").first.wait_for()
     banner.get_by_role("button", name="Close").click()
     assert banner.is_hidden()
-    page.get_by_role("tab", name="Diagnostics (2)").wait_for()  # the display has an error, too
+    page.get_by_role("tab", name="Diagnostics (2)").wait_for()  # the display has an error too
     file.write_text(text.replace(missing, '<visual><geometry><box size="1 1 1"/></geometry></visual>', 1))
-    page.get_by_role("tab", name="Diagnostics (1)").wait_for()  # a mesh is still not there
+    page.get_by_role("tab", name="Diagnostics (1)").wait_for()  # one mesh is still missing
     file.write_text(text.replace(missing, ""))
     page.get_by_role("tab", name="Diagnostics", exact=True).wait_for()

@@ -31,7 +31,7 @@ OVERLAYS = (
 )
 SIZES = ((1280, 800), (1024, 768), (800, 600))
 
-# What is scrolled out of the column's sight is not seen.
+# Elements that are scrolled out of the column are not visible.
 BOXES = """(selectors) => Object.fromEntries([...selectors, ".orientation", ".scene-box"].map((selector) => {
   const element = document.querySelector(selector);
   const { left, top, right, bottom } = element.getBoundingClientRect();
@@ -39,7 +39,7 @@ BOXES = """(selectors) => Object.fromEntries([...selectors, ".orientation", ".sc
   return [selector, [left, Math.max(top, column.top), right, Math.min(bottom, column.bottom)]];
 }))"""
 
-# What a lost server, a slow line and a voice say; the page shows each of them alone more easily than together.
+# Show the notices of a lost server, a slow connection and a voice together, which the page rarely does.
 TELL = """() => {
   for (const element of document.querySelectorAll(".notice, .line-notice, .voice-notice")) {
     element.hidden = false;
@@ -73,7 +73,7 @@ def test_scene_overlays_do_not_overlap(start, open_page, tmp_path):
     page.get_by_role("treeitem").filter(has_text="fore").first.locator(".row-name").click()
     page.locator(".selection-card").wait_for()
     unfold(page)
-    page.locator(".inspect > button").click()  # the clicks on rows have closed it
+    page.locator(".inspect > button").click()  # the clicks on rows have closed the card of Inspect
     file.write_text(file.read_text().replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()
     for width, height in SIZES:
@@ -118,7 +118,7 @@ def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, 
         assert card.bounding_box()["height"] < 45
         fold.click()
         becomes(lambda: state(page, "robotsRightEdge") < right_edge, True)
-        fit.click()  # where going aside is not enough
+        fit.click()  # moving aside was not enough
     becomes(covers, False)
     page.keyboard.press("Escape")
     card.wait_for(state="hidden")
@@ -133,7 +133,7 @@ def test_robot_shifted_aside_stays_on_canvas(start, open_page, tmp_path):
     page.set_viewport_size({"width": 1024, "height": 768})
     page.get_by_role("toolbar", name="Tools", exact=True).get_by_role("button", name="Fit", exact=True).click()
     until(page, "lw.settled")
-    # In the middle of the canvas it has as much room at its left as at its right.
+    # The robot is in the middle of the canvas, so its margins on the left and right are equal.
     reach, width = state(page, "robotsRightEdge"), page.locator(".canvas-box canvas").bounding_box()["width"]
     page.locator(".inspect > button").click()
     page.locator(".inspect-card").wait_for()
@@ -171,7 +171,7 @@ def test_tall_robot_moves_below_banner_and_returns(start, open_page, tmp_path, w
     page.locator(".banner").wait_for()
     if height > 600:
         becomes(lambda: head() > 0.98 * head_before, True)
-    page.keyboard.press("Shift+F")  # where going down is not enough
+    page.keyboard.press("Shift+F")  # moving down was not enough
     becomes(lambda: head() > 0.15 * head_before, True)
     file.write_text(TALL)
     page.locator(".banner").wait_for(state="hidden")
@@ -217,6 +217,6 @@ def test_missing_fixed_frame_offers_existing_frame_and_robot_display(live, open_
     notice.get_by_text("The frame 'map' does not exist").wait_for()
     notice.get_by_role("button", name="Use odom, and show the robot").click()
     notice.wait_for(state="hidden")
-    # However long its frames take to come.
+    # The view must not depend on when the frames arrive.
     until(page, "lw.displays.length === 2 && lw.view.values.Distance < 50")
     assert abs(state(page, "view.values")["Focal Point/X"] - 8) < 1

@@ -43,7 +43,7 @@ def stop(page: Page) -> None:
     page.get_by_role("button", name="Stop recording").click()
 
 
-def is_stopped(page: Page, count: int) -> None:
+def wait_until_stopped(page: Page, count: int) -> None:
     until(page, f"lw.recording.path === '' && lw.recording.files.length === {count}")
 
 
@@ -67,7 +67,7 @@ def test_all_topics_are_recorded_downloaded_and_reopened(page: Page, open_page, 
     assert folder.parent == tmp_path
     until(page, "lw.recording.length >= 2")
     stop(page)
-    is_stopped(page, 1)
+    wait_until_stopped(page, 1)
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text(str(folder))
     with page.expect_download() as download:
@@ -86,7 +86,7 @@ def test_finished_recording_opens_in_page(page: Page):
     choose(page, "Record all topics")
     until(page, "lw.recording.length >= 2")
     stop(page)
-    is_stopped(page, 1)
+    wait_until_stopped(page, 1)
     page.get_by_role("dialog").get_by_role("button", name="Open here").click()
     until(page, "lw.timeline?.live === false && lw.timeline.length > 1 && lw.frames.tip")
     page.go_back()
@@ -102,7 +102,7 @@ def test_chosen_topics_are_recorded(page: Page):
     dialog.get_by_role("button", name="Record", exact=True).click()
     until(page, "lw.recording.length >= 2")
     stop(page)
-    is_stopped(page, 1)
+    wait_until_stopped(page, 1)
     assert topics(page).keys() == {"/joint_states"}
 
 
@@ -113,7 +113,7 @@ def test_all_pages_show_recording_after_its_page_closes(program: Program, page: 
     page.close()
     until(other_page, "lw.recording.length >= 3")
     stop(other_page)
-    is_stopped(other_page, 1)
+    wait_until_stopped(other_page, 1)
     other_page.get_by_role("dialog").get_by_role("button", name="OK").click()
     other_page.get_by_role("button", name="Record", exact=True).click()
     name = Path(state(other_page, "recording")["files"][0]).name
@@ -122,7 +122,7 @@ def test_all_pages_show_recording_after_its_page_closes(program: Program, page: 
 
 def test_last_minutes_and_marked_range_are_saved(page: Page):
     choose(page, "Save the last minutes")
-    is_stopped(page, 1)
+    wait_until_stopped(page, 1)
     assert topics(page)["/robot_description"] == 1
     full_span = span(page)
     page.get_by_role("dialog").get_by_role("button", name="OK").click()
@@ -140,10 +140,10 @@ def test_last_minutes_and_marked_range_are_saved(page: Page):
     until(page, "lw.recording.mark && lw.recording.mark[1] > lw.recording.mark[0]")
     begin, end = state(page, "recording")["mark"]
     choose(page, "Save the marked part")
-    is_stopped(page, 2)
+    wait_until_stopped(page, 2)
     range_topics = topics(page)
     assert range_topics["/tf"]
-    assert range_topics["/robot_description"] == 1, "it is older, and needed"
+    assert range_topics["/robot_description"] == 1, "the description is older than the marked part, but needed"
     assert 0.0 < span(page) < full_span
     assert span(page) == pytest.approx(end - begin, abs=0.1)
 
@@ -164,7 +164,7 @@ def test_viewer_without_history_can_record(start, open_page, tmp_path: Path):
     choose(page, "Record all topics")
     until(page, "lw.recording.path !== ''")
     stop(page)
-    is_stopped(page, 1)
+    wait_until_stopped(page, 1)
     assert "/robot_description" in topics(page)
     expect(page.get_by_role("dialog")).to_contain_text("linkwright view rosbag2_")
 

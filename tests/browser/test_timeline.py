@@ -108,7 +108,7 @@ def test_dragging_slider_updates_scene_before_release(page: Page):
 def test_step_buttons_move_between_messages(page: Page):
     seek(page, 9.95)
     wait_for_second(page, 9)
-    # At each time there are three messages; a step shows all of them.
+    # There are three messages at each time; a step shows all of them.
     page.get_by_role("button", name="Next message (→)").click()
     until(page, "Math.abs(lw.timeline.position - 10) < 1e-5")
     wait_for_second(page, 10)
@@ -211,7 +211,7 @@ def test_history_supports_pause_seek_and_return_to_live(start, open_page, tmp_pa
     page.get_by_role("slider", name="Time within the last minutes").click(position={"x": 3, "y": 5})
     until(page, "lw.timeline.position < 1")
     live = page.get_by_role("button", name="Live: follow the newest messages")
-    for width in (360, 390):  # phones, on which it stays in its line
+    for width in (360, 390):  # on phones, the button stays in its line
         page.set_viewport_size({"width": width, "height": 844})
         box = live.bounding_box()
         assert (box["height"], box["x"] + box["width"] <= width) == (22, True)

@@ -57,7 +57,7 @@ def bare(viewer) -> str:
     return viewer.url.partition("?")[0]
 
 
-def is_let_in(page) -> None:
+def wait_until_admitted(page) -> None:
     until(page, "lw.displays.length === 1")
     assert page.locator(".door").is_hidden()
 
@@ -65,20 +65,20 @@ def is_let_in(page) -> None:
 def test_token_leaves_address_bar_and_is_shared_by_all_tabs(viewer, context):
     page = context.new_page()
     page.goto(viewer.url)
-    is_let_in(page)
+    wait_until_admitted(page)
     becomes(lambda: page.url, bare(viewer))
     page.reload()
-    is_let_in(page)
+    wait_until_admitted(page)
     second = context.new_page()
     second.goto(page.url)
-    is_let_in(second)
-    # Displays of its own are asked for in the address: it keeps that, and nothing else.
+    wait_until_admitted(second)
+    # The request for separate displays stays in the address, and nothing else does.
     second.get_by_role("group", name="Displays").get_by_text("Own").click()
     becomes(lambda: second.url, f"{bare(viewer)}?displays=own")
-    is_let_in(second)
-    # An address of an earlier run takes nothing away.
+    wait_until_admitted(second)
+    # An outdated token in an address does not lock the browser out.
     second.goto(f"{bare(viewer)}?token=of-an-earlier-run")
-    is_let_in(second)
+    wait_until_admitted(second)
     becomes(lambda: second.url, bare(viewer))
 
 
@@ -86,18 +86,18 @@ def test_token_is_not_sent_to_other_server_on_same_host(viewer, context, other_s
     url, requests = other_server
     page = context.new_page()
     page.goto(viewer.url)
-    is_let_in(page)
+    wait_until_admitted(page)
     page.goto(url)
     address = urlsplit(viewer.url)
     assert requests
-    # The browser may ask for an icon too, on behalf of that server's own page.
+    # The browser may also request an icon for that server's own page.
     for request in requests:
         for secret in ("cookie:", address.netloc, address.query.partition("=")[2].lower()):
             assert secret not in request.lower()
     assert context.cookies() == []
     assert page.evaluate("() => Object.keys(localStorage)") == []
     page.go_back()
-    is_let_in(page)
+    wait_until_admitted(page)
 
 
 def test_browser_without_token_shows_form_that_accepts_it(viewer, context):
@@ -117,7 +117,7 @@ def test_browser_without_token_shows_form_that_accepts_it(viewer, context):
     field.fill(viewer.url)
     page.get_by_role("button", name="Open", exact=True).click()
     door.wait_for(state="hidden")
-    is_let_in(page)
+    wait_until_admitted(page)
     assert page.url == bare(viewer)
     assert page.evaluate("() => document.getElementById('app').inert") is False
 
@@ -126,7 +126,7 @@ def test_share_menu_copies_link(viewer, context):
     context.grant_permissions(["clipboard-read", "clipboard-write"])
     page = context.new_page()
     page.goto(viewer.url)
-    is_let_in(page)
+    wait_until_admitted(page)
     page.get_by_role("button", name="Share", exact=True).click()
     page.get_by_role("menuitem", name="Copy link").click()
     page.get_by_text("Link copied").wait_for()

@@ -149,7 +149,7 @@ class Runner:
 
 
 def _filled(text: str, context: Mapping[str, Any]) -> str:
-    """Return a text with the values of its expressions."""
+    """Replace the expressions in a text by their values."""
     return _EXPRESSION.sub(lambda match: str(_value(match[1], context)), text)
 
 

@@ -97,27 +97,27 @@ def test_interface_types_are_completed() -> None:
 
 def test_description_files_and_arguments_are_completed() -> None:
     assert after("linkwright view ") == [FILES]
-    assert after("linkwright view arm/arm.urdf.xacro ") == ["side:=", FILES]  # or a second one
+    assert after("linkwright view arm/arm.urdf.xacro ") == ["side:=", FILES]  # or a second description
 
 
 def test_graph_names_are_completed_from_cache(monkeypatch: pytest.MonkeyPatch) -> None:
-    begun: list[object] = []
-    monkeypatch.setattr(subprocess, "Popen", lambda *words, **_: begun.append(words))
+    started: list[object] = []
+    monkeypatch.setattr(subprocess, "Popen", lambda *words, **_: started.append(words))
     assert after("linkwright topic echo /") == []
-    assert len(begun) == 1
+    assert len(started) == 1
     assert after("linkwright topic echo /") == []
-    assert len(begun) == 1  # which is still under way
+    assert len(started) == 1  # the first process still runs
     path = graph_names._path()
     path.write_text(json.dumps({"topics": ["/tf"], "nodes": ["/talker"], "services": ["/go"], "actions": ["/turn"]}))
     assert after("ros2 topic echo /t") == ["/tf"]
     assert after("ros2 node info ") == ["/talker"]
     assert after("ros2 service call ") == ["/go"]
     assert after("ros2 action info ") == ["/turn"]
-    assert len(begun) == 1  # the file is fresh
+    assert len(started) == 1  # the file is fresh
     os.utime(path, (1.0, 1.0))
     path.with_suffix(".begun").unlink()
     assert after("ros2 topic echo /t") == []
-    assert len(begun) == 2
+    assert len(started) == 2
 
 
 def test_graph_discovery_stores_names_of_running_nodes(in_graph: Callable[[Callable[[Graph], object]], None]) -> None:

@@ -61,7 +61,7 @@ WRITING = {
 def test_command_on_full_disk_leaves_files_unchanged(
     words: Sequence[str], robot: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    if words[0] == "check":  # what it mends
+    if words[0] == "check":  # give `check` something to fix
         robot.write_text(ROBOT.replace('name="a"', 'name="a" nmae="b"').replace("<robot ", "<robot version='1' "))
     for name in ("out", "out.html", "out.glb", "out.png", "out.gv", "out.pdf"):
         (robot.parent / name).write_text(OLD)
@@ -127,7 +127,7 @@ def test_recording_on_full_disk_fails_once_and_keeps_messages(tmp_path: Path, st
         fill()
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["BAG108"]
     assert " stopped: " in str(caught.value)
-    writer.write("/chatter", 1, data)  # nothing more is written, and nothing said again
+    writer.write("/chatter", 1, data)  # nothing more is written or reported
     writer.flush()
     writer.close()
     with BagReader(path) as bag:
