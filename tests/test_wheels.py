@@ -27,9 +27,9 @@ SYSTEMS = {
     "Windows": ("win32", "AMD64", ["win_amd64"]),
 }
 PLAIN = {"empy", "srt"}
-"""Packages of Python alone that come as source only: installing them needs no compiler."""
+"""Pure Python packages without wheels: their installation needs no compiler."""
 PLAIN_IF_NEED_BE = {"pyyaml": "3.15"}
-"""Packages that leave out what they cannot compile, and from which Python on they come as source only."""
+"""Packages that work without their compiled part, and the Python from which on they have no wheels."""
 
 
 @pytest.fixture(scope="module")

@@ -27,4 +27,4 @@ EXTRAS: dict[str, list[str]] = {
 """The extras, without ``all``."""
 
 TOGETHER = frozenset(re.split(r"[\[,\]]", PROJECT["optional-dependencies"]["all"][0])[1:-1])
-"""Those that ``all`` brings."""
+"""The extras that ``all`` includes."""

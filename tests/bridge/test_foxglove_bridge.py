@@ -17,7 +17,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.messages import String, deserialize, get_message, get_service, serialize
 from linkwright.nodes.options import EXECUTABLES, NodeOptions
-from tests.leaving import UPGRADE, ask_and_leave
+from tests.leaving import UPGRADE, request_and_reset
 from tests.waiting import SECONDS, eventually
 
 V1 = ("foxglove.websocket.v1",)
@@ -403,7 +403,7 @@ async def test_slow_whitelist_pattern_does_not_block_bridge():
 async def test_disconnecting_client_logs_nothing(caplog):
     async with bridge_setup() as setup:
         for headers in ("", f"{UPGRADE}Sec-WebSocket-Protocol: {V1[0]}\r\n"):
-            await ask_and_leave(setup.port, "/", headers)
+            await request_and_reset(setup.port, "/", headers)
         async with setup.client() as client:
             await client.until("serverInfo")
     assert [record.getMessage() for record in caplog.records] == []

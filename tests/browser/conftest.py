@@ -25,7 +25,7 @@ from tests.forked import ForkServer, start_process
 from tests.waiting import wait_until
 
 SECONDS = 60.0
-"""The tests' time limit: long, because a busy machine without a GPU may draw a frame in seconds."""
+"""The tests' time limit. It is long, because a busy machine without a GPU may need seconds for a frame."""
 
 Value = TypeVar("Value")
 

@@ -19,7 +19,7 @@ from tests.waiting import wait_until
 Result = TypeVar("Result")
 
 POLL_PERIOD = 0.05
-"""The pause in seconds between two checks of a browser, each of which costs four processes milliseconds."""
+"""The pause in seconds between two checks of a browser; each check costs four processes some milliseconds."""
 
 FILE = """\
 Visualization Manager:

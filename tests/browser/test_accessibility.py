@@ -96,7 +96,7 @@ RING = """() => {
   const ring = (outlineStyle !== "none" && parseFloat(outlineWidth) >= 2) || boxShadow !== "none";
   return [name, ring || document.activeElement.matches(".slider"), document.activeElement === document.body];
 }"""
-"""A slider's thumb has the ring."""
+"""Return the focused element's name, whether it has a ring (a slider's thumb has it), and whether it is the body."""
 
 
 def test_keyboard_focus_has_visible_ring(start, open_page, tmp_path: Path):

@@ -210,7 +210,7 @@ DIVIDED_WORDS = r"""() => {
   }
   return divided;
 }"""
-"""The words of a table that are on two lines, also those of two or three Chinese characters."""
+"""Return the words of a table that are broken into two lines, including words of two or three Chinese characters."""
 
 
 @pytest.mark.parametrize("title", ["Decide without a robot", "Another camera"])

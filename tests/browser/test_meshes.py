@@ -77,7 +77,7 @@ BROKEN = {
     "torn.glb": (b"glTF" + struct.pack("<II", 2, 1_000) + b"\0" * 12, "declares 1 000 bytes and has 24"),
     "zip.glb": (b"PK\x03\x04 and so on", "does not begin with 'glTF'"),
 }
-"""Files with what is to be said of them."""
+"""The contents of broken files, and the expected messages."""
 
 
 def test_broken_mesh_is_reported_at_its_link(start, open_page, robot, tmp_path):

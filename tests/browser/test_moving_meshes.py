@@ -37,7 +37,7 @@ SLOW = """() => {
   window.slow = true;
   requestAnimationFrame(hold);
 }"""
-"""Has the page keep its processor busy in each frame, as a scene does that is too much for it."""
+"""Keep the page's processor busy in each frame, as a too complex scene does."""
 
 
 @contextmanager

@@ -21,7 +21,7 @@ from tests.waiting import wait_until
 pytestmark = pytest.mark.browser
 
 SCALE = 50.0
-"""Pixels to a meter of the TopDownOrtho view: so each pixel is known in meters."""
+"""The scale of the TopDownOrtho view in pixels per meter, which gives the position of each pixel."""
 BACKGROUND = (48, 48, 48)
 RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
 

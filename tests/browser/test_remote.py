@@ -48,7 +48,7 @@ _HELD = """
     set onmessage(take) { super.onmessage = async (event) => { await told; take(event); }; }
   };
 """
-"""For a page before its scripts: what the server says is heard when `tell` is called."""
+"""Runs before the page's scripts, and holds the server's messages until `tell` is called."""
 
 _WAITING = """async () => {
   for (let frame = 0; frame < 10; frame++) await new Promise(requestAnimationFrame);

@@ -55,7 +55,7 @@ RECTANGLE = """([selector, part, text]) => {
   const { x, y, width, height } = found?.getBoundingClientRect() ?? {};
   return width > 0 ? { x, y, width, height } : null;
 }"""
-"""Find and measure in one call, because a resized window builds all elements again, and those found before are gone."""
+"""Find and measure an element in one call, because a resized window creates all elements again."""
 
 
 def box(page: Page, selector: str, *, part_selector: str | None = None, text: str = "") -> dict[str, float]:

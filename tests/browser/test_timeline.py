@@ -21,7 +21,7 @@ SECOND = 1_000_000_000
 FLOAT = get_message("std_msgs/msg/Float64")
 
 LENGTH = 30
-"""Seconds. In each are ten messages of a topic; number, frame and image all tell which second it is."""
+"""The length in seconds. Each topic has ten messages a second; number, frame and image identify the second."""
 
 
 def write_recording(folder: Path) -> Path:

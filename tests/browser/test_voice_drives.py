@@ -38,7 +38,7 @@ AudioWorklet.prototype.addModule = async function (url) {
   return add.call(this, url);
 };
 """
-"""A browser that takes longer than a word lasts to load what takes the sound, the first time."""
+"""Delays the first load of the browser's audio worklet by more than the length of a word."""
 _UNPLUGGED = "window.heard?.getTracks().forEach((track) => { track.stop(); track.dispatchEvent(new Event('ended')); })"
 
 

@@ -22,7 +22,7 @@ from tests.docs.pages import Block, blocks
 from tests.domains import own_domain
 
 PATIENCE = 90.0
-"""Seconds to wait for anything; a busy machine is slow."""
+"""The time limit in seconds, which is long enough for a busy machine."""
 
 _PROMPT = re.compile(r"\[status (\d+)\]\r?\n")
 _PAGE = re.compile(r"linkwright (launch|sim|view|drive(?!.* --(show|write)$)) |ros2 launch ")
@@ -134,10 +134,10 @@ class Terminal:
     def close(self) -> None:
         """Close the terminal's window."""
         self._shell.send_signal(signal.SIGHUP)
-        with suppress(OSError):  # the shell has ended, which another error reports
-            os.write(
-                self._terminal, b"\n"
-            )  # a shell that gets the signal just before it reads handles it after the line
+        # A shell that receives the signal just before it reads handles the signal after the next line. If the shell has
+        # ended, another error reports that.
+        with suppress(OSError):
+            os.write(self._terminal, b"\n")
         self._shell.wait(PATIENCE)
         self._reader_thread.join(PATIENCE)
         os.close(self._terminal)

@@ -24,7 +24,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no 
 
 XACRO = '<robot xmlns:xacro="http://ros.org/wiki/xacro" name="r"><link name="${1 + 1}"/></robot>'
 LONG = bytes(range(256)) * 2000
-"""More than a pipe holds."""
+"""More bytes than a pipe can hold."""
 
 
 @pytest.fixture
@@ -70,7 +70,7 @@ def test_pipe_without_writer_is_rejected(pipe: Path) -> None:
 
 
 def test_pipe_is_read_until_closed_and_can_be_reread(pipe: Path) -> None:
-    # A reader at the other end lets the writer begin; it is gone before the pipe is read.
+    # The writer can open the pipe only with a reader. This reader is closed before the pipe is read.
     first = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
     inner = os.open(pipe, os.O_WRONLY)
     writer = threading.Thread(target=lambda: (os.write(inner, LONG), os.close(inner)))

@@ -34,7 +34,7 @@ async def test_five_hundred_nodes_exchange_messages():
     await graph.settle()
     assert counts == [1] * NODES
     await clock.advance(1.0)
-    # Ten topics of fifty nodes; queues of ten keep the first of what their own fifty publish until they are read.
+    # There are ten topics with fifty nodes each, and a queue of ten messages for each subscription.
     assert min(counts) > 10
     before = len(graph.endpoints())
     graph.nodes()[0].destroy()

@@ -84,7 +84,7 @@ def simulators(monkeypatch: pytest.MonkeyPatch) -> Simulators:
 
 
 FINDER = PackageFinder(start=Path(__file__).parent, environment={})
-"""Finds no package of Gazebo: what it finds is ours."""
+"""A finder without Gazebo's packages, which finds only Linkwright's substitutes."""
 
 
 def share(package: str) -> Path:
@@ -253,7 +253,7 @@ async def test_gazebo_gui_opens_one_viewer(
     launch: Callable[..., Any], simulators: Simulators, entities: list[LaunchDescriptionEntity], pages: int
 ) -> None:
     """RViz's viewer is reused; otherwise a viewer runs as long as the program that opens the window."""
-    simulators.spawned = []  # the server goes on
+    simulators.spawned = []  # the server does not end
 
     def look(context: LaunchContext) -> None:
         async def seen() -> None:

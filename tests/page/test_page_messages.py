@@ -28,7 +28,7 @@ IDS = ["global/Fixed Frame", "tool-6", "tool-6/Topic", *(f"display-{number}" for
 IDS += [f"{display}/{row}" for display in IDS[3:] for row in ROWS]
 MESSAGES = [
     subclass for subclass in PageMessage.__subclasses__() if subclass is not Received
-]  # which pages must not lie about
+]  # false acknowledgments are not tested
 MESSAGES += [SetProperty] * 30
 
 

@@ -140,7 +140,7 @@ async def publish_all(world, seconds: float, *, rate: float = 50.0, points: int 
 )
 @skipping
 async def test_robot_keeps_moving_over_one_megabit(answers, latest, seconds):
-    """Less is known about a page that acknowledges nothing, such as another program."""
+    """The server knows less about a client that acknowledges nothing, such as another program."""
     async with open_world(RvizConfig.parse(FILE)) as world, slow_line(world.viewer.url, MEGABIT) as url:
         async with watching(url, answers=answers) as watcher:
             began = watcher.now()
@@ -212,7 +212,7 @@ async def test_cloud_over_slow_connection_does_not_delay_transforms():
             moved = x
             await eventually(lambda moved=moved: watcher.x == moved)
         assert watcher.of("cloud_points")[-1]["positions"].size == 60_000
-        assert x > 5  # the last 320 kB alone are 1.3 s
+        assert x > 5  # sending the last 320 kB alone takes 1.3 s
 
 
 @skipping
@@ -231,11 +231,11 @@ async def test_four_pages_drop_only_stale_frames():
             world.move({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)})
             await eventually(lambda: slow.x == x)
         for quick in (a, b, c):
-            assert len(quick.delays) > 270  # of 300
+            assert len(quick.delays) > 270  # of 300 frames
             assert np.percentile([delay for _, delay in quick.delays[:-1]], 95) < 0.2
         assert len(slow.delays) < len(a.delays)
         for client in (a, b, c, slow):
-            assert client.x == x  # the last place arrives everywhere
+            assert client.x == x  # all pages receive the last pose
 
 
 class Hand:

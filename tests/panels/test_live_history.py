@@ -47,7 +47,7 @@ async def test_live_view_pauses_seeks_and_returns_to_live():
         await client.send("step_time", forward=True)
         await arrived(client, "tip", 1)
         clock = world.viewer.context.node.get_clock()
-        assert between[0] < clock.now().nanoseconds / 1e9 < between[1], "the viewer's clock is that of what is shown"
+        assert between[0] < clock.now().nanoseconds / 1e9 < between[1], "the viewer's clock has the shown time"
         await client.send("go_live")
         await client.until("playhead", live=True)
         await arrived(client, "tip", 9)
@@ -117,7 +117,7 @@ async def test_unserializable_message_is_reported_and_others_are_stored():
     async with open_world(config(), history=KEPT) as world:
         began = moved(world, 1.0)
         wrong = String()
-        wrong._data = 7  # as no setter would let it be
+        wrong._data = 7  # the setter would reject this value
         world.viewer.context.node.create_subscription(String, "words", lambda _: None, 10)
         world.graph.create_node("speaker").create_publisher(String, "words", 10).publish(wrong)
         end = moved(world, 2.0)

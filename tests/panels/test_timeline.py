@@ -110,7 +110,7 @@ async def test_recorded_simulation_has_no_simulation_bar(tmp_path):
 
 @skipping
 async def test_topics_of_unknown_type_are_reported(tmp_path):
-    # What the recording carries for the type that nobody has is of no use either.
+    # The recording's definition of the unknown type is invalid too.
     async with open_recording(tmp_path, Point="Paint", float64="flaot64") as world, page(world.viewer) as client:
         message = await client.until("playhead", playing=True)
         assert message["problem"] == (

@@ -67,7 +67,7 @@ def test_left_and_up_match_rep_103() -> None:
         joint("b", "base", "up"),
     )
     front = image(text)
-    # Who stands before the robot sees its left side on the right.
+    # A viewer in front of the robot sees the robot's left side on the right.
     assert mostly(front[68, 94]) == "green"
     assert mostly(front[22, 26]) == "blue" or mostly(front[22, 35]) == "blue"
     top = image(text, "top")

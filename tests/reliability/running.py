@@ -146,7 +146,7 @@ class Machine:
         }
         self._started: list[Running] = []
         self.before: tuple[str, ...] = ()
-        """The start of command lines, such as a shell that prepares something and becomes the command."""
+        """The words before each command, such as a shell that executes the command after a preparation."""
 
     def command(self, *words: object, **variables: str) -> Running:
         """Start ``linkwright WORDS``."""

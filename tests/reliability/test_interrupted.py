@@ -118,7 +118,7 @@ FIRST_MODULES = {
     "linkwright.process",
     "linkwright.process.interruption",
 }
-"""What is loaded before Ctrl-C is taken care of: about a millisecond."""
+"""The modules that are loaded before Ctrl-C is handled, in about a millisecond."""
 
 WATCHED = """
 import runpy, sys

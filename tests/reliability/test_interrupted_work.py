@@ -15,7 +15,7 @@ from tests.begun import BEGUN, telling
 from tests.waiting import SECONDS, wait_until
 
 MOMENTS = (0.0, 0.5, 1.0)
-"""Of the work: seconds of the processor since the command began."""
+"""The times of the interrupts: seconds of processor time since the start of the command."""
 
 _PART = "".join(
     f'<part{number} a="${{n + {number}}}" b="${{n * {number}}}" c="${{[n, {number}]}}"/>' for number in range(400)
@@ -26,7 +26,7 @@ HARD = (
     + "".join(f'<xacro:many n="{number}"/>' for number in range(1000))
     + '<link name="base"/></robot>'
 )
-"""Within all bounds but that of time, which ends it after 20 s of the processor."""
+"""An expansion that only the time limit of 20 s of processor time ends."""
 ENDLESS = "def generate_launch_description():\n    while True:\n        sum(range(1000))\n"
 
 COMMANDS = [

@@ -26,7 +26,7 @@ pytest.importorskip("mujoco")
 ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
 NODES = ("drive_square", "follow_wall", "go_to_pose", "follow_line", "avoid_obstacles")
 RADIUS = 0.2
-"""mbot's, in m."""
+"""The radius of mbot in meters."""
 
 
 @pytest.fixture

@@ -23,7 +23,7 @@ MODELS = sorted((GAZEBO_PACKAGE / "models").iterdir())
 LAUNCH_FILES = sorted((GAZEBO_PACKAGE / "launch").glob("*.launch.py"))
 ROBOT_HEIGHT = 0.4
 START_RADIUS = 0.3
-"""What has to be free around the origin, in meters; mbot's own radius is 0.2."""
+"""The radius of the free area around the origin in meters; mbot's radius is 0.2."""
 
 
 @pytest.fixture(scope="module")

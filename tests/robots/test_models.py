@@ -14,7 +14,7 @@ from linkwright.urdf import Mesh, Robot, Visual
 from tests.places import PACKAGE, PUBLISHED
 
 TUTORIAL: dict[str, Any] = json.loads((Path(__file__).parent / "tutorial.json").read_text(encoding="utf-8"))
-"""What the models of the published tutorial say: joints and visuals in numbers, and the values of its .rviz file."""
+"""The published tutorial's models: numbers of joints and visuals, and the values of its .rviz file."""
 
 WHEELS_AND_CASTERS = ["base_link", "left_wheel_link", "right_wheel_link", "front_caster_link", "back_caster_link"]
 LINKS = {

@@ -35,7 +35,7 @@ GOALS = [
     (-1.7, 2.6, 0.0),
     (0.3, -0.5, 0.0),
 ]
-"""In all rooms, below the table and between the furniture."""
+"""Goals in all rooms, below the table, and between the furniture."""
 
 
 @pytest.mark.slow

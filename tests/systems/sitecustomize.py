@@ -1,8 +1,8 @@
-"""A Python that lacks what another system lacks, for processes with this folder on ``PYTHONPATH``.
+"""A Python without the features that another system lacks, for processes with this folder on ``PYTHONPATH``.
 
-``LINKWRIGHT_TESTS_SYSTEM=windows``: modules, functions, signals and sockets of POSIX are not there, event loops watch
-neither files nor signals, and ``sys.platform`` is ``win32``. ``macos``: what only Linux has is not there: ``/proc``,
-epoll and affinities. What cannot be told from here: paths with drives (`pathlib` has none here) and how processes end.
+With ``LINKWRIGHT_TESTS_SYSTEM=windows``, the modules, functions, signals and sockets of POSIX are missing, event loops
+watch neither files nor signals, and ``sys.platform`` is ``win32``. With ``macos``, the features of Linux are missing:
+``/proc``, epoll and affinities. Not simulated: paths with drives, which `pathlib` lacks here, and the end of processes.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ FUNCTIONS = """
     sync sysconf tcgetpgrp tcsetpgrp ttyname uname wait wait3 wait4
 """
 SIGNALS = ("SIGABRT", "SIGFPE", "SIGILL", "SIGINT", "SIGSEGV", "SIGTERM")
-"""Those of Windows that are sent and handled."""
+"""The signals that Windows can send and handle."""
 SIGNAL_FUNCTIONS = (
     "alarm",
     "pause",

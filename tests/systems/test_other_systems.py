@@ -35,7 +35,7 @@ for module in pkgutil.walk_packages(linkwright.__path__, "linkwright."):
         importlib.import_module(module.name)
 print("all")
 """
-"""Left out are programs, a part of launch files, which import launch_ros, and what needs PyTorch."""
+"""Imports all modules except programs, modules that need launch_ros, and modules that need PyTorch."""
 PROGRAM = """
 import sys
 from launch import LaunchDescription

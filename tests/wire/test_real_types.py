@@ -15,12 +15,12 @@ from tests.wire.values import bytes_of_size, digest
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 SEEDS = 6
-"""As constructed, the least and the most of everything, and three more."""
+"""The number of seeds: default, minimum and maximum values, and three random ones."""
 LARGE, LARGE_ONES = 8_000_000, 5
 SIDES = [("theirs", "ours"), ("ours", "theirs")]
 """The side of the publisher or client, and the side of the subscription or server."""
 OWN_BUSINESS = "rmw_dds_common/"
-"""Types of the transport, which others never see; ours are Humble's."""
+"""Types that only the transport uses; ours are Humble's."""
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 

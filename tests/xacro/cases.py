@@ -20,7 +20,7 @@ BANNER_LINES = 5
 PACKAGES = {"pkg_a": "/share/pkg_a"}
 """The packages that cases may name."""
 ENVIRONMENT = {"LINKWRIGHT_TEST": "env value", "LINKWRIGHT_UNSET": None}
-"""The environment variables that cases may name; None is for one that must not be set."""
+"""The environment variables that cases may name; a variable with None must not be set."""
 
 
 @dataclass

@@ -25,7 +25,7 @@ from .evaluating import evaluate
 
 LONG = 300_000
 ALIKE = [i * sys.hash_info.modulus for i in range(60_000)]
-"""Whole numbers with one hash."""
+"""Integers with equal hashes."""
 ALIKE_PAIRS = [(number, number) for number in ALIKE]
 NUMBERS = [3**12_000 - i for i in range(200)] * 1_000
 TEXTS = {

@@ -14,7 +14,7 @@ from linkwright.messages import get_message
 
 Twist, Stamped = get_message("geometry_msgs/msg/Twist"), get_message("geometry_msgs/msg/TwistStamped")
 Sent = tuple[float, str, float]
-"""When, in seconds, by whom, how fast."""
+"""A command: the time in seconds, the name of the publisher, and the speed."""
 
 
 def stream(sender: str, begin: float, end: float, rate: float, speed: float) -> list[Sent]:

@@ -66,7 +66,7 @@ def executor(node):
 
 
 def spun(executor):
-    """Spin executors in daemon threads, so that a failing test does not hang the others."""
+    """Spin an executor in a daemon thread, so that a failing test does not block the others; return the thread."""
     thread = threading.Thread(target=executor.spin, daemon=True)
     thread.start()
     return thread
@@ -88,7 +88,7 @@ class TestWaiting:
         assert time.monotonic() - start >= 0.05
 
     def test_zero_timeout_does_not_block(self, executor, monkeypatch):
-        monkeypatch.setattr(threading.Condition, "wait", lambda *_: pytest.fail("it waits"))
+        monkeypatch.setattr(threading.Condition, "wait", lambda *_: pytest.fail("spin_once waits"))
         executor.spin_once(timeout_sec=0)
 
     def test_zero_timeout_runs_ready_callback(self, node, executor):
@@ -137,7 +137,7 @@ class TestWaiting:
         node.create_subscription(String, "chatter", received.append, 10)
         publisher = node.create_publisher(String, "chatter", 10)
         thread = spun(executor)
-        wait_until(lambda: is_waiting(thread))  # which has no end of its own
+        wait_until(lambda: is_waiting(thread))  # without a timeout
         publisher.publish(String())
         wait_until(lambda: received)
         executor.shutdown()

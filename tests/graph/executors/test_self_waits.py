@@ -27,12 +27,12 @@ FIBONACCI = get_action("example_interfaces/action/Fibonacci")
 
 
 class Asking:
-    """Two nodes: a server of a service and an action, and one with a timer whose callback asks it once.
+    """Two nodes: a server of a service and an action, and a client whose timer's callback calls one of them.
 
     Attributes:
-        errors: what was logged as errors.
-        client: of the service.
-        action: client of the action.
+        errors: the texts of logged errors.
+        client: the client of the service.
+        action: the client of the action.
     """
 
     def __init__(
@@ -46,17 +46,17 @@ class Asking:
         self._graph = Graph(threads=True, on_log=self._heard)
         self._nodes = [
             self._graph.create_node(name, parameters=parameters, start_parameter_services=False, enable_rosout=False)
-            for name in ("server", "make_scene")
+            for name in ("server", "client")
         ]
-        server, make_scene = self._nodes
+        server, client = self._nodes
         server.create_service(TRIGGER, "ask", lambda _, response: response)
         self._server = ActionServer(server, FIBONACCI, "count", self._count)
-        self.client = make_scene.create_client(TRIGGER, "ask", callback_group=client_group)
-        self.action = ActionClient(make_scene, FIBONACCI, "count", callback_group=client_group)
+        self.client = client.create_client(TRIGGER, "ask", callback_group=client_group)
+        self.action = ActionClient(client, FIBONACCI, "count", callback_group=client_group)
         self.executor = executor()
 
     def run(self, ask: Callable[[], Any], *, seconds: float = SECONDS) -> bool:
-        """Run a callback of the default group of the node; returns whether it ended in time."""
+        """Run a callback in the client's default group, and return whether it ended in time."""
         ended = threading.Event()
 
         def callback() -> None:

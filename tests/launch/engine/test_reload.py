@@ -318,7 +318,7 @@ async def test_recreated_folder_is_watched_again(tmp_path: Path, depth: int) -> 
 
 
 async def test_file_deleted_before_watch_starts_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(FileWatch, "watch", lambda *_: True)  # it never begins
+    monkeypatch.setattr(FileWatch, "watch", lambda *_: True)  # the watch never begins
     path = tmp_path / "m.xacro"
     path.write_text(model("a"))
     async with running(path, viewer=False) as bench:
@@ -342,4 +342,4 @@ async def test_urdf_findings_are_reported_with_xacro_error(tmp_path: Path) -> No
         codes = [finding.code for finding in bench.findings()]
         assert codes[0].startswith("XAC")
         assert any(code.startswith("URDF") for code in codes[1:])
-        assert bench.description().count('name="good"') == 1, "the last good model stays"
+        assert bench.description().count('name="good"') == 1, "the last model without errors is kept"

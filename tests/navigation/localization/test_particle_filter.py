@@ -54,7 +54,8 @@ def test_resampling_follows_weights() -> None:
 
 def test_estimate_is_mean_of_likeliest_cluster() -> None:
     particles = ParticleFilter(FilterSettings())
-    large_cluster = np.random.default_rng(0).normal((2.0, 1.0, pi), (0.2, 0.2, 0.2), (600, 3))  # across the turn's end
+    # The headings are on both sides of the jump from pi to -pi.
+    large_cluster = np.random.default_rng(0).normal((2.0, 1.0, pi), (0.2, 0.2, 0.2), (600, 3))
     large_cluster[:, 2] = (large_cluster[:, 2] + pi) % (2 * pi) - pi
     small_cluster = np.random.default_rng(1).normal((8.0, 5.0, 0.0), 0.1, (400, 3))
     particles.set_particles(np.concatenate((large_cluster, small_cluster)))

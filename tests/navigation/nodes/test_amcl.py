@@ -36,7 +36,7 @@ TOUR = [
     (0.4, -1.7),
     (0.0, 0.0),
 ]
-"""Through the living room and into the kitchen and back."""
+"""A path through the living room into the kitchen, and back."""
 
 
 class House:

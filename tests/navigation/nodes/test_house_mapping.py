@@ -48,7 +48,7 @@ def test_house_walls_are_mapped_within_5_cm_and_loop_is_closed(monkeypatch):
             if transform.header.frame_id == "map"
         ][-1]
         mapper.close()
-    # The loop: odometry ends a meter from where the robot is, and the map does not.
+    # The loop is closed: odometry ends a meter from the robot's true position, and the corrected pose does not.
     translation, rotation = correction.transform.translation, correction.transform.rotation
     yaw = rpy_from_quaternion((rotation.x, rotation.y, rotation.z, rotation.w))[2]
     assert np.hypot(*relative_pose(true, drift.pose)[:2]) > 0.8

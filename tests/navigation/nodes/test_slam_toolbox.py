@@ -128,7 +128,7 @@ def test_map_pose_and_transform_are_published_and_accurate(test, kind):
     assert maps.last.header.frame_id == "map"
     assert maps.last.info.resolution == pytest.approx(0.05)
     assert sizes.last == maps.last.info
-    true = relative_pose(PATH[0], PATH[-1])  # the map's frame is at the first scan
+    true = relative_pose(PATH[0], PATH[-1])  # the origin of the map is at the first scan
     correction = map_to_odom(tf)
     assert compose(planar(correction.transform), odometry[-1]) == pytest.approx(true, abs=0.03)
     assert (

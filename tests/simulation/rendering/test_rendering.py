@@ -169,7 +169,7 @@ def test_missing_texture_is_reported_once(tmp_path):
 
 
 QUARTERS = ((255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 0))
-"""The colors of an image: above left and right, below left and right."""
+"""The colors of an image: top left, top right, bottom left, bottom right."""
 TEXTURED = """<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><link name="link"><visual name="v">
 <geometry>{shape}</geometry><material><pbr><metal><albedo_map>file://{image}</albedo_map></metal></pbr></material></visual></link></model>"""
 

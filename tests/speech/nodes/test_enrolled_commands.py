@@ -14,7 +14,7 @@ from tests.speech.voices import WORDS, say
 from tests.waiting import eventually
 
 AFTER = 0.8
-"""Seconds of silence before and after a word."""
+"""The seconds of silence before and after a word."""
 
 
 @pytest.fixture(scope="module")

@@ -18,7 +18,7 @@ AddTwoInts = get_service("example_interfaces/srv/AddTwoInts")
 SetBool = get_service("std_srvs/srv/SetBool")
 CALLS = 1000
 AT_ONCE = 3
-"""Of each client; together fewer than the queue of a service holds."""
+"""The simultaneous requests of each client; their total is below the queue size of a service."""
 
 
 def test_thousand_calls_of_three_clients_get_their_own_responses(processes):
