@@ -1,4 +1,4 @@
-"""Benchmarks run only by hand: these tests check that their imports exist."""
+"""Benchmarks are run only by hand, so these tests check that their imports exist."""
 
 from __future__ import annotations
 

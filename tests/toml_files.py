@@ -1,4 +1,4 @@
-"""Files of TOML, which Python itself reads from 3.11 on."""
+"""TOML files, which Python itself can read from 3.11 on."""
 
 from __future__ import annotations
 

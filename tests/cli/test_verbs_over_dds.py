@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.wire import dds
-from tests.begun import BEGUN, telling
+from tests.begun import BEGUN, command_that_reports
 from tests.domains import own_domain
 from tests.waiting import SECONDS, wait_until
 
@@ -112,7 +112,7 @@ class TestTalkerGraph:
 
     def test_interrupt_during_startup_exits_with_130(self):
         for delay in (0.0, 0.05, 0.15, 0.3, 0.5):
-            process = start(telling("linkwright", "topic", "hz", "/chatter"))
+            process = start(command_that_reports("linkwright", "topic", "hz", "/chatter"))
             assert process.stdout is not None
             assert process.stdout.readline() == f"{BEGUN}\n"
             time.sleep(delay)

@@ -53,7 +53,7 @@ def test_flooded_topic_does_not_starve_another(machine: Machine) -> None:
     numbers = [int(line.split()[1]) for line in tuple(listener.lines) if line.startswith("calm ")][before:]
     assert numbers == list(range(numbers[0], numbers[-1] + 1))
     flooded = listener.last_number("flooded")
-    wait_until(lambda: listener.last_number("flooded") > flooded)  # it goes on
+    wait_until(lambda: listener.last_number("flooded") > flooded)  # the flood continues
     statuses = listener.interrupt(), flood.interrupt()
     assert statuses == (0, 0), f"{listener.text[-2000:]}\n{flood.text}"
 

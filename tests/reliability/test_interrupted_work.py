@@ -11,7 +11,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from tests.begun import BEGUN, telling
+from tests.begun import BEGUN, command_that_reports
 from tests.waiting import SECONDS, wait_until
 
 MOMENTS = (0.0, 0.5, 1.0)
@@ -48,7 +48,11 @@ def test_busy_command_ends_on_interrupt(words: list[str], tmp_path: Path) -> Non
     (tmp_path / "endless.launch.py").write_text(ENDLESS)
     for moment in MOMENTS:
         process = subprocess.Popen(
-            telling("linkwright", *words), cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            command_that_reports("linkwright", *words),
+            cwd=tmp_path,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
         )
         try:
             assert process.stdout is not None

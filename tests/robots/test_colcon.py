@@ -22,7 +22,7 @@ def workspace(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathF
     workspace = tmp_path_factory.mktemp("ros2_ws")
     source = workspace / "src" / PACKAGE.name
     shutil.copytree(PACKAGE, source, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
-    # A file and a folder that setup.py has never heard of.
+    # A file and a folder that setup.py does not name.
     (source / "urdf" / "sensor" / "imu").mkdir()
     (source / "urdf" / "sensor" / "imu" / "imu_gazebo.xacro").write_text("<robot/>\n", encoding="utf-8")
     colcon_build(workspace, PACKAGE.name, *(["--symlink-install"] if request.param == "symlinked" else []))

@@ -1,4 +1,4 @@
-"""mbot's five models are the tutorial's robot: recorded facts, and the published files where they are at hand."""
+"""mbot's five models are the tutorial's robot: recorded facts, and the published files if they exist."""
 
 from __future__ import annotations
 

@@ -182,7 +182,7 @@ def test_ctrl_c_reaches_command(tmp_path: Path) -> None:
 
 
 def test_sigint_to_shell_alone_reaches_command(tmp_path: Path) -> None:
-    """As from ``kill -INT``, or from a program that started the shell; a signal to the group arrives once."""
+    """The signal comes from ``kill -INT``, or from the parent of the shell; a signal to the group arrives only once."""
     command = "trap 'echo heard' INT; echo ready; while :; do sleep 0.05; done"
     with in_shell(command, tmp_path) as process:
         assert process.stdout is not None
@@ -196,13 +196,13 @@ def test_sigint_to_shell_alone_reaches_command(tmp_path: Path) -> None:
         assert process.stdout.read() == ""
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells a process that its parent was killed")
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux signals a process when its parent was killed")
 def test_command_ends_when_shell_is_killed(tmp_path: Path) -> None:
     with in_shell("echo ready; exec sleep 600", tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
         process.kill()
-        assert process.stdout.read() == ""  # ends when nobody holds it any more
+        assert process.stdout.read() == ""  # the pipe ends when all its writers have ended
 
 
 def test_ctrl_c_at_end_of_command_keeps_its_status(monkeypatch: pytest.MonkeyPatch) -> None:

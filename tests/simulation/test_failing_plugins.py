@@ -126,7 +126,7 @@ async def test_failing_plugin_stops_without_affecting_others(failing_point):
         errors = [record.text for record in log if record.level >= LogLevel.ERROR]
         expected = "TypeError" if failing_point == PUBLISHING else f"PluginError: {failing_point}"
         assert [expected in error for error in errors] == [True], errors
-        assert errors[0].startswith("test.world:14:"), "the line of its declaration"
+        assert errors[0].startswith("test.world:14:"), "the message has the line of the plugin's element"
         assert "'faulty' stopped because its code failed" in errors[0]
         assert "test_failing_plugins.py" in errors[0] or failing_point == PUBLISHING
 

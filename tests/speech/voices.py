@@ -7,7 +7,7 @@ import numpy as np
 from linkwright.speech.sound.samples import RATE, Samples
 
 _PHONES = {
-    # first three formants in Hz, share of voice, seconds
+    # the first three formants in Hz, the voiced fraction, the duration in seconds
     "a": ((750, 1250, 2500), 1.0, 0.14),
     "e": ((500, 1850, 2550), 1.0, 0.12),
     "i": ((290, 2250, 3000), 1.0, 0.12),

@@ -31,7 +31,7 @@ def stamp(message):
 
 
 class Matches(list):
-    """The stamps of the sets that a synchronizer puts out."""
+    """The stamps of the sets of messages that a synchronizer returns."""
 
     def __init__(self, synchronizer):
         super().__init__()

@@ -132,7 +132,7 @@ class TestRunning:
         )
         code = "from my_robot.msg import Count; print(Count(number=3, names=['a']))"
         assert output_of("-c", code, cwd=tmp_path) == "my_robot.msg.Count(number=3, names=['a'])"
-        # Where Python takes the folders for packages.
+        # In src, Python itself would import the folders as packages.
         assert output_of("-c", code, cwd=tmp_path / "src") == "my_robot.msg.Count(number=3, names=['a'])"
 
 

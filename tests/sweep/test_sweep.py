@@ -1,4 +1,4 @@
-"""Sweeps: tables, summaries, going on, in this process."""
+"""Sweeps in this process: tables, summaries, and resuming."""
 
 import csv
 import io
@@ -26,7 +26,7 @@ def mixed(world, n):
 
 
 def backwards(scenario, until=None):
-    """A runner in this process that starts with the last row, and is interrupted before a row."""
+    """Return a runner in this process that starts with the last row, and is interrupted before a row."""
 
     def run(runs, report):
         for planned_run in reversed(runs):
@@ -64,7 +64,7 @@ def test_table_rows_are_sorted_regardless_of_completion_order(tmp_path):
     assert list(rows[0]) == ["row", "n", "drawn", "seed", "square", "big", "sum", "error"]
     assert [row["square"] for row in rows] == ["1", "1", "4", "4", "9", "9"]
     assert rows[5]["big"] == "true"
-    assert [float(row["sum"]) for row in rows] == table.columns["sum"], "no digit is lost"
+    assert [float(row["sum"]) for row in rows] == table.columns["sum"], "numbers are written with all digits"
     assert sorted(path.name for path in tmp_path.iterdir() if path.is_file()) == ["out.csv", "out.html", "squares.py"]
 
 
@@ -118,7 +118,7 @@ def test_resumed_sweep_writes_identical_files(tmp_path):
     assert "3 runs remain" in (interrupted / "out.html").read_text()
     journal = interrupted / "out.csv.unfinished"
     with journal.open("a") as file:
-        file.write('{"row": 3, "resul')  # the power went
+        file.write('{"row": 3, "resul')  # a row that a power failure truncated
     table, output = swept(interrupted, resume=True)
     assert output[0] == (4, 6, 0)
     assert not journal.exists()
@@ -182,7 +182,7 @@ class Page(HTMLParser):
 def test_summary_has_plots_and_no_external_resources(tmp_path):
     swept(tmp_path)
     page = Page((tmp_path / "out.html").read_text())
-    assert page.count("svg") == 3 + 2 * 3, "of each result one by itself, and one against each parameter that differs"
+    assert page.count("svg") == 3 + 2 * 3, "each result has a plot, and a plot for each varied parameter"
     assert page.count("circle") == 6 * 6
     assert page.count("tr", id="row-6") == 1
     assert page.count("a", href="#row-6") == 6

@@ -56,7 +56,7 @@ def windows() -> None:
     import tempfile  # noqa: F401 - the same
     import urllib.request  # noqa: F401 - the same
 
-    asyncio.new_event_loop().close()  # the loops of Windows cannot be loaded here
+    asyncio.new_event_loop().close()  # the event loops of Windows cannot be imported here
     sysconfig.get_config_vars()
     platform.uname()
     kill, pair = signal.SIGKILL, socket.socketpair
@@ -74,7 +74,7 @@ def windows() -> None:
     for name in MODULES:
         sys.modules.pop(name, None)
     remove(os, FUNCTIONS.split())
-    subprocess._CAN_USE_PIDFD_OPEN = False  # Python 3.15 has asked the system
+    subprocess._CAN_USE_PIDFD_OPEN = False  # Python 3.15 has set it by asking the system
     others = [name for name in dir(signal) if name.startswith("SIG") and name[3] != "_" and name not in SIGNALS]
     remove(signal, [*others, *SIGNAL_FUNCTIONS, "SIG_BLOCK", "SIG_SETMASK", "SIG_UNBLOCK"])
     remove(socket, SOCKETS)
@@ -84,7 +84,7 @@ def windows() -> None:
     def refuse(*_words, **_named):
         raise NotImplementedError
 
-    for name in WATCHING:  # the loop that Windows has by default watches nothing
+    for name in WATCHING:  # the default loop of Windows cannot watch files
         setattr(asyncio.SelectorEventLoop, name, refuse)
     sys.platform = "win32"
 
@@ -103,7 +103,7 @@ def macos() -> None:
 
     sysconfig.get_config_vars()
     platform.uname()
-    subprocess._CAN_USE_PIDFD_OPEN = False  # Python 3.15 has asked the system
+    subprocess._CAN_USE_PIDFD_OPEN = False  # Python 3.15 has set it by asking the system
     remove(os, ["eventfd", "memfd_create", "pidfd_open", "sched_getaffinity", "sched_setaffinity", "timerfd_create"])
     remove(socket, ["AF_NETLINK", "AF_PACKET", "SO_PEERCRED", "SO_BINDTODEVICE"])
     remove(select, ["epoll"])
@@ -118,8 +118,8 @@ def macos() -> None:
 
 
 def remove(module, names) -> None:
-    """Take names from a module, where it has them."""
-    if module is os and hasattr(os, "process_cpu_count"):  # `process_cpu_count` is built on the removed function
+    """Remove names from a module if it has them."""
+    if module is os and hasattr(os, "process_cpu_count"):  # `process_cpu_count` uses a removed function
         os.process_cpu_count = os.cpu_count
     for name in names:
         if hasattr(module, name):

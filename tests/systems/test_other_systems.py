@@ -18,7 +18,7 @@ from tests.domains import own_domain
 from tests.places import PACKAGE
 from tests.waiting import wait_until
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="other systems are told from Linux")
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="other systems are simulated on Linux")
 
 SYSTEMS = ("windows", "macos")
 ROBOT = PACKAGE / "urdf" / "mbot_with_laser.urdf"
@@ -125,10 +125,10 @@ def test_world_is_simulated(elsewhere):
 @pytest.mark.parametrize(
     ("address", "path"),
     [
-        ("///C:/robots/arm.stl", "C:/robots/arm.stl"),  # as Path.as_uri writes it there
+        ("///C:/robots/arm.stl", "C:/robots/arm.stl"),  # as written by Path.as_uri on Windows
         ("//localhost/C:/robots/arm.stl", "C:/robots/arm.stl"),
         ("//C:/robots/arm.stl", "C:/robots/arm.stl"),
-        ("//C:\\robots\\arm.stl", "C:\\robots\\arm.stl"),  # file://$(find PACKAGE)\\...
+        ("//C:\\robots\\arm.stl", "C:\\robots\\arm.stl"),  # as in file://$(find PACKAGE)\\...
         ("/d:/my%20robots/arm.stl", "d:/my robots/arm.stl"),
     ],
 )

@@ -28,7 +28,7 @@ VALUES = {
     JOINT_TYPE: "revolute",
     VERSION: "1.0",
 }
-ALLOWED = {"URDF171", "URDF180"}  # the joint mimics nothing; without 'version' the limits of URDF 1.2 are ignored
+ALLOWED = {"URDF171", "URDF180"}  # no joint to mimic; the limits of URDF 1.2 are ignored without 'version'
 VERSIONS = ("1.0", "1.2")
 
 

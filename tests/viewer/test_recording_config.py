@@ -66,7 +66,7 @@ def test_recorded_simulation_opens_with_its_world(tmp_path: Path) -> None:
     shown = {display.name: display.checked for display in config.displays}
     assert shown == {"Grid": True, "RobotModel": False, "TF": False, "World": True, "scan": True}
     assert config.options.text("Fixed Frame") == "world"
-    assert config.views.current.values["Target Frame"] == "<Fixed Frame>", "the camera stands still"
+    assert config.views.current.values["Target Frame"] == "<Fixed Frame>", "the camera does not follow the robot"
 
 
 def test_scan_without_transforms_uses_its_own_fixed_frame(tmp_path: Path) -> None:

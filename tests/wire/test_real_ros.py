@@ -169,9 +169,8 @@ def test_images_replaced_in_transit_do_not_stop_reader(processes, real_node):
 def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_node):
     """Without pacing, most packets of an image are lost, and they are not resent."""
     process = processes("ours")
-    process.node.create_client(
-        get_service("std_srvs/srv/SetBool"), "/flip"
-    )  # as every node of rclpy has one: with it we learn where Fast DDS listens
+    # A client, as every node of rclpy has, lets us discover the address of Fast DDS.
+    process.node.create_client(get_service("std_srvs/srv/SetBool"), "/flip")
     real = real_node()
     profile = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
     publisher = process.node.create_publisher(Image, "/frames_to_ros", profile)
@@ -185,7 +184,8 @@ def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_nod
         while number not in came and time.monotonic() < until:
             process.executor.spin_once(timeout_sec=0.01)
             came = real.ask("received_images", "frames_to_ros")
-    assert len([number for number in came if number >= FRAMES // 2]) >= 0.9 * FRAMES / 2  # discovered by then
+    # The reader is discovered before the second half is sent.
+    assert len([number for number in came if number >= FRAMES // 2]) >= 0.9 * FRAMES / 2
 
 
 def test_late_subscriber_gets_latched_message(processes, real_node):
@@ -207,7 +207,7 @@ def test_endpoints_have_node_and_type_hash(processes, real_node):
     assert published["/named"] == ["std_msgs/msg/String"]
     (message,) = real.ask("hashes", "/named")
     assert type_hash(String).removeprefix("RIHS01_") in message
-    # Whose an endpoint is comes in another message than the endpoint itself.
+    # DDS announces an endpoint and its node in separate messages.
     publishers = process.node.get_publishers_info_by_topic
     process.spin_until(lambda: [info.node_name for info in publishers("/from_ros")] == ["real_node"])
 

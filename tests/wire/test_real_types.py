@@ -94,7 +94,7 @@ def test_arrays_of_eight_megabytes_arrive_complete(peers, publisher_side, subscr
     peers_by_side = {side: peers(side) for side in ("theirs", "ours")}
     peers_by_side[subscriber_side].ask("subscribe_large", "/large")
     peers_by_side[publisher_side].ask_until(lambda count: count == 1, "subscription_count", "/large")
-    # A reader of Cyclone misses what a writer of Fast DDS says in the first moments that it knows it.
+    # A reader of Cyclone misses samples that a writer of Fast DDS sends directly after the discovery.
     while not peers_by_side[subscriber_side].ask("received_large"):
         peers_by_side[publisher_side].ask("publish_large", "/large", LARGE_ONES, 1)
     for number in range(LARGE_ONES):

@@ -164,7 +164,7 @@ def test_topic_rejected_by_cyclone_raises_error(processes):
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
 def test_repeated_graphs_do_not_leak_memory(domain):
-    assert float(output_of(CHURN)) < 3.0, "0.5 MB a graph, if its types were created again"
+    assert float(output_of(CHURN)) < 3.0, "creating the types again would take 0.5 MB per graph"
 
 
 @pytest.mark.slow

@@ -155,7 +155,7 @@ def test_incompatible_qos_is_reported_on_both_sides(processes):
     b.node.create_subscription(String, "chatter", print, QoSProfile(5))
 
     def reported(process):
-        """Its warnings of a mismatch: one about a node of an earlier test that has not left yet may come besides."""
+        """Return the warnings about a mismatch; another one may be about a remaining node of an earlier test."""
         return [text for text in process.warnings() if "incompatible QoS" in text]
 
     b.spin_until(lambda: reported(b))
@@ -251,7 +251,7 @@ def test_image_publisher_reuses_memory(processes):
         return resource.getrusage(resource.RUSAGE_THREAD).ru_minflt - memory_before
 
     new_pages()
-    assert new_pages() < 80 * 25  # an image has 245
+    assert new_pages() < 80 * 25  # an image has 245 pages
 
 
 def test_reliable_flood_loses_no_messages(processes, programs):

@@ -164,9 +164,8 @@ async def test_image_is_shown_with_matching_detections(monkeypatch):
 
         camera.publish(image(1))
         assert await now() == [1.0, None, None]
-        detector.publish(
-            detection_message(1, result("ball", 0.5))
-        )  # its image is gone: it was not known that any would come
+        # The image is no longer stored, because no detections were expected.
+        detector.publish(detection_message(1, result("ball", 0.5)))
         assert await now() == [1.0, 1.0, False]
         camera.publish(image(2))
         camera.publish(image(3))

@@ -410,7 +410,7 @@ async def test_status_names_publisher_of_shown_description():
 
 
 async def test_description_publisher_change_is_reported_after_gid_change():
-    """Then publishers have other GIDs than when their first messages came."""
+    """After the change, publishers have other GIDs than their first messages had."""
     async with open_world(config()) as world:
         first = world.graph.create_node("first")
         publisher = first.create_publisher(String, "robot_description", DESCRIPTION_QOS)

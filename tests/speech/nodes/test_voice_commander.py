@@ -144,7 +144,7 @@ async def test_speed_commands_change_speed(talk):
     for _ in range(20):
         await robot.send_text("faster")
     await robot.send_text("forward")
-    assert robot.speed[0] == pytest.approx(0.8), "four times as fast, and no faster"
+    assert robot.speed[0] == pytest.approx(0.8), "the speed is limited to four times the default"
 
 
 async def test_closing_node_stops_robot(stage, talk):

@@ -62,7 +62,7 @@ def overlap(first, second):
 
 
 def slowly(rows, classes, limits, objectness=False):
-    """Boxes, one after the other: (score, class, corners in the input)."""
+    """Return the boxes by a slow reference algorithm: (score, class, corners in the input)."""
     detections = []
     for row in rows:
         scores = [float(row[4 + objectness + index]) * (float(row[4]) if objectness else 1) for index in range(classes)]
@@ -286,7 +286,7 @@ def test_unknown_device_is_rejected(tmp_path, device):
 
 def test_excessive_sizes_are_rejected_or_ignored(tmp_path):
     path = columns(tmp_path / "any.onnx", size=None, metadata={**NAMES, "imgsz": "[1000000, 1000000]", "stride": "1e9"})
-    assert opened(path).names == ("ball", "box", "cat"), "what metadata say beyond reason counts as not said"
+    assert opened(path).names == ("ball", "box", "cat"), "impossible metadata are ignored"
     assert refused(path, size=(10**6, 64))[0] == "VISION109"
 
 

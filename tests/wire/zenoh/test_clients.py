@@ -59,7 +59,7 @@ def test_client_discovers_only_what_its_endpoints_need(processes):
 
 
 def test_first_graph_query_is_answered_completely(processes, monkeypatch):
-    monkeypatch.setattr(transport, "_ANSWERED_WITHIN", 60.0)  # on a machine that is busy, too
+    monkeypatch.setattr(transport, "_ANSWERED_WITHIN", 60.0)  # enough for a busy machine
     monkeypatch.setattr(transport, "_QUIET", 1.0)
     talker, asks = processes("talker"), processes("asks")
     talker.node.create_publisher(String, "chatter", 10)

@@ -77,7 +77,7 @@ def test_failed_request_is_reported_once(processes):
     (text,) = a.warnings()
     assert "A request to service '/flip' was not answered" in text
     assert not future.done()
-    a.spin_until(lambda: not client.service_is_ready())  # the news that it has gone comes by another way
+    a.spin_until(lambda: not client.service_is_ready())  # Zenoh reports the departure separately
 
 
 class LateQuery:

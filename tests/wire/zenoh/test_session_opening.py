@@ -98,7 +98,7 @@ def test_malformed_and_unknown_addresses_are_reported():
     assert "is not an address: write it as tcp/HOST:PORT" in obstacle("tcp/localhost", {})
     assert "its port must be at most 65535" in obstacle("tcp/127.0.0.1:70000", {})
     assert "the host name of tcp/robot.invalid:7447 cannot be resolved" in obstacle("tcp/robot.invalid:7447", {})
-    assert not obstacle("udp/127.0.0.1:9", {}), "Zenoh's alone"
+    assert not obstacle("udp/127.0.0.1:9", {}), "only Zenoh checks UDP addresses"
 
 
 def test_duplicate_session_id_is_reported(silent_port):
