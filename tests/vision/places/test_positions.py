@@ -107,7 +107,5 @@ def test_position_on_ground_with_tilted_camera():
 
 def test_object_without_visible_ground_contact_has_no_position():
     assert position_on_ground(np.array([300.0, 100.0, 340.0, 200.0]), CAMERA, UP, 0.5) is None, "above the horizon"
-    assert position_on_ground(np.array([300.0, 100.0, 340.0, 480.0]), CAMERA, UP, 0.5) is None, (
-        "cut by the image's edge"
-    )
+    assert position_on_ground(np.array([300.0, 100.0, 340.0, 480.0]), CAMERA, UP, 0.5) is None, "cut by the edge"
     assert position_on_ground(np.array([300.0, 200.0, 340.0, 260.0]), CAMERA, UP, 0.5, max_distance=3.0) is None

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linkwright.vision.detections import Detections
-from linkwright.vision.positions.tracker import Tracker, TrackerSettings
+from linkwright.vision.places.tracker import Tracker, TrackerSettings
 
 NAMES = ("ball", "crate")
 PERIOD = 1 / 30
