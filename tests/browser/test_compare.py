@@ -52,7 +52,7 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
     return old, new
 
 
-def looks(page: Page, index: int) -> dict[str, tuple[str, float]]:
+def link_appearance(page: Page, index: int) -> dict[str, tuple[str, float]]:
     """Return color and opacity of each link of the first or second robot."""
     robots = [display["drawn"] for display in state(page, "displays") if display["class"].endswith("RobotModel")]
     visuals = {name: text["visuals"] for name, text in robots[index]["links"].items()}
@@ -79,12 +79,12 @@ def test_both_robots_are_drawn_with_difference_colors(start, open_page, files):
     page = open_page(start("view", *map(str, files)))
     page.get_by_text("5 differences").wait_for()
     green = "#009900"
-    becomes(lambda: looks(page, 0), {"base": (green, 1), "arm": (YELLOW, 1), "lidar": (BLUE, 1)})
-    becomes(lambda: looks(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
+    becomes(lambda: link_appearance(page, 0), {"base": (green, 1), "arm": (YELLOW, 1), "lidar": (BLUE, 1)})
+    becomes(lambda: link_appearance(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
     assert page.locator(".comparison-legend li").all_inner_texts() == ["added", "changed", "removed", "old"]
     page.get_by_label("Color the differences").uncheck()
-    becomes(lambda: set(looks(page, 0).values()), {(green, 1)})
-    becomes(lambda: set(looks(page, 1).values()), {(GRAY, 0.4)})
+    becomes(lambda: set(link_appearance(page, 0).values()), {(green, 1)})
+    becomes(lambda: set(link_appearance(page, 1).values()), {(GRAY, 0.4)})
 
 
 def pixels(page: Page) -> list[tuple[int, int, int]]:
@@ -132,7 +132,7 @@ def test_robots_can_be_shown_alone_and_old_opacity_is_adjustable(start, open_pag
     assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in old_only) == 0
     assert old_only != both_robots
     page.get_by_label("Opacity of the old robot").fill("1")
-    becomes(lambda: {alpha for _, alpha in looks(page, 1).values()}, {1})
+    becomes(lambda: {alpha for _, alpha in link_appearance(page, 1).values()}, {1})
     opaque = pixels(page)
     assert sum(sum(pixel) for pixel in opaque) < sum(sum(pixel) for pixel in old_only), (
         "the gray of the old robot is darker than the ground behind it"
@@ -189,7 +189,7 @@ def test_git_commit_is_compared_as_old_version(start, open_page, files):
     new.write_text(NEW, encoding="utf-8")
     page = open_page(start("view", str(new), "--against", "HEAD"))
     page.get_by_text("5 differences").wait_for()
-    becomes(lambda: looks(page, 1).get("camera"), (RED, 0.63))
+    becomes(lambda: link_appearance(page, 1).get("camera"), (RED, 0.63))
     group(page, "camera").get_by_role("button", name="HEAD:new.urdf:5", exact=False).click()
     becomes(lambda: state(page, "panels.source.origin.file").endswith("files/new.urdf"), True)
     page.locator(".source-panel").get_by_text('"camera"').first.wait_for()
@@ -224,8 +224,8 @@ def test_exported_review_shows_both_robots_list_and_joint_sliders(open_file, fil
     assert str(tmp_path) not in exported_file.read_text(encoding="utf-8")
     page = open_file(exported_file)
     assert page.locator(".comparison-count").inner_text() == "5 differences"
-    becomes(lambda: looks(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
-    assert looks(page, 0)["lidar"] == (BLUE, 1)
+    becomes(lambda: link_appearance(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
+    assert link_appearance(page, 0)["lidar"] == (BLUE, 1)
     assert "old.urdf:6" in group(page, "turn", "Joint").inner_text()
     assert group(page, "turn", "Joint").get_by_role("button", name="old.urdf", exact=False).count() == 0
     group(page, "camera").locator("button.difference-name").click()
@@ -234,4 +234,4 @@ def test_exported_review_shows_both_robots_list_and_joint_sliders(open_file, fil
     becomes(lambda: round(state(page, "frames")["arm"]["orientation"][0], 3), 0.707)
     assert round(state(page, "frames")["old/arm"]["orientation"][0], 3) == 0.707
     page.get_by_title("Show the new robot", exact=False).get_by_role("checkbox").uncheck()
-    becomes(lambda: sorted(looks(page, 1)), ["arm", "base", "camera"])
+    becomes(lambda: sorted(link_appearance(page, 1)), ["arm", "base", "camera"])

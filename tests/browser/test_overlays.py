@@ -108,7 +108,7 @@ def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, 
     card, fold = page.locator(".selection-card"), page.locator(".selection-card .fold")
     card.wait_for()
 
-    def covers() -> bool:
+    def card_covers_robot() -> bool:
         box = card.bounding_box()
         return state(page, "robotsRightEdge") > box["x"] - canvas.bounding_box()["x"]
 
@@ -119,7 +119,7 @@ def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, 
         fold.click()
         becomes(lambda: state(page, "robotsRightEdge") < right_edge, True)
         fit.click()  # moving aside was not enough
-    becomes(covers, False)
+    becomes(card_covers_robot, False)
     page.keyboard.press("Escape")
     card.wait_for(state="hidden")
     page.keyboard.press("Shift+F")
@@ -158,25 +158,25 @@ def test_tall_robot_moves_below_banner_and_returns(start, open_page, tmp_path, w
     page.set_viewport_size({"width": width, "height": height})
     page.keyboard.press("Shift+F")
 
-    def head() -> int:
+    def count_head_pixels() -> int:
         """Return the number of visible pixels of the head."""
         until(page, "lw.settled")
         box = page.locator(".scene-box").bounding_box()
         with Image.open(io.BytesIO(page.screenshot(clip=box))) as image:
             return sum(count for count, (r, g, b) in image.convert("RGB").getcolors(1 << 24) if g > 60 > max(r, b))
 
-    head_before = head()
+    head_before = count_head_pixels()
     assert head_before > 300
     file.write_text(TALL.replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()
     if height > 600:
-        becomes(lambda: head() > 0.98 * head_before, True)
+        becomes(lambda: count_head_pixels() > 0.98 * head_before, True)
     page.keyboard.press("Shift+F")  # moving down was not enough
-    becomes(lambda: head() > 0.15 * head_before, True)
+    becomes(lambda: count_head_pixels() > 0.15 * head_before, True)
     file.write_text(TALL)
     page.locator(".banner").wait_for(state="hidden")
     page.keyboard.press("Shift+F")
-    becomes(head, head_before)
+    becomes(count_head_pixels, head_before)
 
 
 def test_fit_button_shows_whole_robot(start, open_page, tmp_path):

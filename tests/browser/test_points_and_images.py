@@ -75,11 +75,11 @@ def test_point_cloud_is_drawn_in_all_styles(live, open_page):
         inner = 0.2 if style == "Spheres" else 0.26
         points = [(-2.0, 1.0), (0.0, 1.0), (2.0, 1.0), (0.35, 1.0), (inner, 1.0), (0.27, 1.27)]
 
-        def looks(points: list[tuple[float, float]] = points) -> tuple[list[Color], bool, bool]:
+        def read_appearance(points: list[tuple[float, float]] = points) -> tuple[list[Color], bool, bool]:
             *colors, near_edge, corner = colors_from_above(page, *points)
             return colors, near_edge[1] > 100, corner == BACKGROUND
 
-        becomes(looks, ([RED, GREEN, BLUE, BACKGROUND], True, style == "Spheres"))
+        becomes(read_appearance, ([RED, GREEN, BLUE, BACKGROUND], True, style == "Spheres"))
     set_property(viewer, 0, ("Style",), "Flat Squares")
     set_property(viewer, 0, ("Alpha",), 0.5)
     becomes(lambda: colors_from_above(page, (-2.0, 1.0)), [pytest.approx((152, 24, 24), abs=2)])
@@ -201,14 +201,14 @@ def test_image_has_its_own_panel(live, open_page):
     until(page, "lw.displays[0]?.drawn?.width === 40")
     assert drawing_of(page)["corner"] == [255, 0, 0, 255]
 
-    def looks() -> tuple[bool, list[Color]]:
+    def read_appearance() -> tuple[bool, list[Color]]:
         box = page.locator(".image-panel canvas").bounding_box()
         positions = [(0.4, box["height"] / 2), (0.6, box["height"] / 2), (0.5, 1.0)]
         colors = colors_at(page, *((box["x"] + share * box["width"], box["y"] + y) for share, y in positions))
         return box["height"] > box["width"] / 2, colors
 
     # The image keeps its proportions: the area above and below it is black.
-    becomes(looks, (True, [RED, BLUE, (0, 0, 0)]))
+    becomes(read_appearance, (True, [RED, BLUE, (0, 0, 0)]))
 
     page.locator(".panel-tab", has_text="Image").locator(".tab-close").click()
     until(page, "lw.displays[0].enabled === false")

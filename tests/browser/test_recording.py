@@ -54,7 +54,7 @@ def topics(page: Page) -> dict[str, int]:
         return {topic.name: topic.count for topic in bag.topics}
 
 
-def span(page: Page) -> float:
+def recorded_duration(page: Page) -> float:
     """Return the time from the first to the last message of the newest file, in seconds."""
     with BagReader(state(page, "recording")["files"][0]) as bag:
         return (bag.end_ns - bag.start_ns) / 1e9
@@ -124,7 +124,7 @@ def test_last_minutes_and_marked_range_are_saved(page: Page):
     choose(page, "Save the last minutes")
     wait_until_stopped(page, 1)
     assert topics(page)["/robot_description"] == 1
-    full_span = span(page)
+    full_span = recorded_duration(page)
     page.get_by_role("dialog").get_by_role("button", name="OK").click()
     page.get_by_role("button", name="Pause (Space)").click()
     until(page, "!lw.timeline.live")
@@ -144,8 +144,8 @@ def test_last_minutes_and_marked_range_are_saved(page: Page):
     range_topics = topics(page)
     assert range_topics["/tf"]
     assert range_topics["/robot_description"] == 1, "the description is older than the marked part, but needed"
-    assert 0.0 < span(page) < full_span
-    assert span(page) == pytest.approx(end - begin, abs=0.1)
+    assert 0.0 < recorded_duration(page) < full_span
+    assert recorded_duration(page) == pytest.approx(end - begin, abs=0.1)
 
 
 def test_range_is_marked_by_keys_and_cleared(page: Page):

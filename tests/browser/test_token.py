@@ -53,7 +53,7 @@ def other_server():
     thread.join()
 
 
-def bare(viewer) -> str:
+def url_without_query(viewer) -> str:
     return viewer.url.partition("?")[0]
 
 
@@ -66,7 +66,7 @@ def test_token_leaves_address_bar_and_is_shared_by_all_tabs(viewer, context):
     page = context.new_page()
     page.goto(viewer.url)
     wait_until_admitted(page)
-    becomes(lambda: page.url, bare(viewer))
+    becomes(lambda: page.url, url_without_query(viewer))
     page.reload()
     wait_until_admitted(page)
     second = context.new_page()
@@ -74,12 +74,12 @@ def test_token_leaves_address_bar_and_is_shared_by_all_tabs(viewer, context):
     wait_until_admitted(second)
     # The request for separate displays stays in the address, and nothing else does.
     second.get_by_role("group", name="Displays").get_by_text("Own").click()
-    becomes(lambda: second.url, f"{bare(viewer)}?displays=own")
+    becomes(lambda: second.url, f"{url_without_query(viewer)}?displays=own")
     wait_until_admitted(second)
     # An outdated token in an address does not lock the browser out.
-    second.goto(f"{bare(viewer)}?token=of-an-earlier-run")
+    second.goto(f"{url_without_query(viewer)}?token=of-an-earlier-run")
     wait_until_admitted(second)
-    becomes(lambda: second.url, bare(viewer))
+    becomes(lambda: second.url, url_without_query(viewer))
 
 
 def test_token_is_not_sent_to_other_server_on_same_host(viewer, context, other_server):
@@ -102,23 +102,23 @@ def test_token_is_not_sent_to_other_server_on_same_host(viewer, context, other_s
 
 def test_browser_without_token_shows_form_that_accepts_it(viewer, context):
     page = context.new_page()
-    page.goto(bare(viewer))
+    page.goto(url_without_query(viewer))
     door = page.locator(".door")
     door.wait_for()
     assert "prints the address" in door.inner_text()
-    assert f"{bare(viewer)}?token=" in door.inner_text()
+    assert f"{url_without_query(viewer)}?token=" in door.inner_text()
     field = page.get_by_label("Address or token")
     field.fill("hello")
     field.press("Enter")
     becomes(door.locator(".problem").inner_text, "This text contains no token.")
-    field.fill(f"{bare(viewer)}?token={'x' * 32}")
+    field.fill(f"{url_without_query(viewer)}?token={'x' * 32}")
     field.press("Enter")
     door.get_by_text("This token is not valid", exact=False).wait_for()
     field.fill(viewer.url)
     page.get_by_role("button", name="Open", exact=True).click()
     door.wait_for(state="hidden")
     wait_until_admitted(page)
-    assert page.url == bare(viewer)
+    assert page.url == url_without_query(viewer)
     assert page.evaluate("() => document.getElementById('app').inert") is False
 
 

@@ -134,10 +134,10 @@ def test_enrolled_words_drive_and_stop_mbot(
     page.wait_for_selector(".voice-said:has-text('understood') >> text=stop")
     positions = [position(page)]
 
-    def stands() -> bool:
+    def is_standing() -> bool:
         page.wait_for_timeout(300)
         positions.append(position(page))
         return math.dist(positions[-1], positions[-2]) < 1e-3
 
-    wait_until(stands, what=lambda: positions)
+    wait_until(is_standing, what=lambda: positions)
     assert program.process.poll() is None

@@ -231,7 +231,7 @@ LAMPS = """
 
 
 def test_world_lighting_follows_chosen_light(live, open_page):
-    def lit(page) -> dict:
+    def read_light(page) -> dict:
         return page.evaluate("() => window.linkwright.displays[0].drawn.light")
 
     for choice, expected in (
@@ -244,7 +244,7 @@ def test_world_lighting_follows_chosen_light(live, open_page):
         viewer.publish("/world_description", String(data=WORLD.replace("</world>", LAMPS)), DESCRIPTION_QOS)
         page = open_page(viewer)
         viewer.settle(page)
-        assert lit(page) == expected
+        assert read_light(page) == expected
 
 
 SENSING = """

@@ -21,11 +21,11 @@ async def test_five_hundred_nodes_exchange_messages():
     for number in range(NODES):
         node = graph.create_node(f"node_{number}", namespace=f"robot_{number % 10}")
 
-        def hear(_message, number=number):
+        def on_message(_message, number=number):
             counts[number] += 1
 
-        node.create_subscription(String, "/all", hear, 10)
-        node.create_subscription(String, "ours", hear, 10)
+        node.create_subscription(String, "/all", on_message, 10)
+        node.create_subscription(String, "ours", on_message, 10)
         publisher = node.create_publisher(String, "ours", 10)
         node.create_timer(1.0, lambda publisher=publisher: publisher.publish(String()))
     everybody = graph.create_node("everybody").create_publisher(String, "/all", 10)
@@ -106,12 +106,12 @@ async def test_thread_loses_no_reliable_messages_to_event_loop():
     node = graph.create_node("node")
     numbers, all_received = [], asyncio.Event()
 
-    def hear(message):
+    def on_message(message):
         numbers.append(int(message.data))
         if len(numbers) == 100_000:
             all_received.set()
 
-    node.create_subscription(String, "topic", hear, 100_000)
+    node.create_subscription(String, "topic", on_message, 100_000)
     publisher = node.create_publisher(String, "topic", 10)
 
     def talk():

@@ -48,13 +48,13 @@ def assert_frames(found, robot, tree, values):
     np.testing.assert_allclose(found, expected, atol=1e-9 * size)
 
 
-def small(robot: Robot) -> bool:
+def is_small(robot: Robot) -> bool:
     mimics = [joint.mimic for joint in robot.joints.values() if joint.mimic]
     return all(abs(mimic.multiplier) < 100 and abs(mimic.offset) < 100 for mimic in mimics)
 
 
 @settings(max_examples=60)
-@given(robots().filter(small), st.integers(0, 2**31))
+@given(robots().filter(is_small), st.integers(0, 2**31))
 def test_frames_are_product_of_parent_joint_transforms(robot, seed):
     tree = KinematicTree(robot)
     assert set(tree.link_names) == set(robot.links)

@@ -290,7 +290,7 @@ def memory() -> int:
     return psutil.Process().memory_info().rss
 
 
-async def knock(viewer, said: bytes = b"") -> asyncio.StreamWriter:
+async def open_raw_connection(viewer, said: bytes = b"") -> asyncio.StreamWriter:
     address = urlsplit(viewer.url)
     _, writer = await asyncio.open_connection(address.hostname, address.port)
     writer.write(said)
@@ -308,7 +308,7 @@ async def test_thousand_idle_connections_do_not_disturb_pages(served):
     async with page(served.viewer) as client:
         await client.opened()
         before = memory()
-        knocking = [await knock(served.viewer) for _ in range(1000)]
+        knocking = [await open_raw_connection(served.viewer) for _ in range(1000)]
         await expect_response(client)
         # Silent connections are closed for a client with the token.
         assert (await raw(served.viewer, mesh_url(served.viewer)))[:2] == (200, "solid arm")

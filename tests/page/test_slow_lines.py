@@ -101,7 +101,7 @@ class Watcher:
         self._pieces += data[16:]
         return bytes(self._pieces) if len(self._pieces) == length else b""
 
-    def of(self, kind: str) -> list[dict]:
+    def contents_of_kind(self, kind: str) -> list[dict]:
         return [fields for _, fields in self.contents if fields["kind"] == kind]
 
 
@@ -148,8 +148,8 @@ async def test_robot_keeps_moving_over_one_megabit(answers, latest, seconds):
         settled = [delay for at, delay in watcher.delays if at - began > 2.0]
         assert len(settled) > 10
         assert max(settled) < latest
-        steps = [fields["step"] for fields in watcher.of("cloud_points")]
-        frames = watcher.of("image_frame")
+        steps = [fields["step"] for fields in watcher.contents_of_kind("cloud_points")]
+        frames = watcher.contents_of_kind("image_frame")
         assert steps[-1] > 10
         assert frames[-1]["encoding"] == "file"
         assert frames[-1]["width"] == 1280
@@ -160,9 +160,9 @@ async def test_robot_keeps_moving_over_one_megabit(answers, latest, seconds):
 async def test_fast_connection_receives_full_data():
     async with open_world(RvizConfig.parse(FILE)) as world, watching(world.viewer.url) as watcher:
         await publish_all(world, 1.5)
-        assert watcher.of("cloud_points")[-1]["step"] == 1
-        assert watcher.of("cloud_points")[-1]["positions"].size == 300_000
-        assert watcher.of("image_frame")[-1]["encoding"] == "rgb"
+        assert watcher.contents_of_kind("cloud_points")[-1]["step"] == 1
+        assert watcher.contents_of_kind("cloud_points")[-1]["positions"].size == 300_000
+        assert watcher.contents_of_kind("image_frame")[-1]["encoding"] == "rgb"
 
 
 @skipping
@@ -173,7 +173,11 @@ async def test_single_cloud_is_completed_on_fast_connection():
         )
         await eventually(lambda: watcher.sizes)
         clouds.publish(cloud(100_000))
-        await eventually(lambda: watcher.of("cloud_points") and watcher.of("cloud_points")[-1]["step"] == 1)
+        await eventually(
+            lambda: (
+                watcher.contents_of_kind("cloud_points") and watcher.contents_of_kind("cloud_points")[-1]["step"] == 1
+            )
+        )
 
 
 @skipping
@@ -184,11 +188,11 @@ async def test_thinned_cloud_is_completed_when_page_is_idle():
         )
         await eventually(lambda: watcher.sizes)
         clouds.publish(cloud(20_000))
-        await eventually(lambda: bool(watcher.of("cloud_points")))
-        assert watcher.of("cloud_points")[-1]["step"] > 1
+        await eventually(lambda: bool(watcher.contents_of_kind("cloud_points")))
+        assert watcher.contents_of_kind("cloud_points")[-1]["step"] > 1
         watcher.busy = 0.0
-        await eventually(lambda: watcher.of("cloud_points")[-1]["step"] == 1)
-        assert watcher.of("cloud_points")[-1]["positions"].size == 60_000
+        await eventually(lambda: watcher.contents_of_kind("cloud_points")[-1]["step"] == 1)
+        assert watcher.contents_of_kind("cloud_points")[-1]["positions"].size == 60_000
 
 
 @skipping
@@ -203,15 +207,15 @@ async def test_cloud_over_slow_connection_does_not_delay_transforms():
         )
         await eventually(lambda: watcher.sizes > 0)
         clouds.publish(cloud(20_000))
-        await eventually(lambda: watcher.of("cloud_points"))
-        assert watcher.of("cloud_points")[-1]["step"] > 1
+        await eventually(lambda: watcher.contents_of_kind("cloud_points"))
+        assert watcher.contents_of_kind("cloud_points")[-1]["step"] > 1
         x = 0.0
-        while watcher.of("cloud_points")[-1]["step"] > 1:
+        while watcher.contents_of_kind("cloud_points")[-1]["step"] > 1:
             x += 1.0
             world.move({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)})
             moved = x
             await eventually(lambda moved=moved: watcher.x == moved)
-        assert watcher.of("cloud_points")[-1]["positions"].size == 60_000
+        assert watcher.contents_of_kind("cloud_points")[-1]["positions"].size == 60_000
         assert x > 5  # sending the last 320 kB alone takes 1.3 s
 
 

@@ -16,7 +16,7 @@ from linkwright.page.access import TOKEN_PARAMETER
 from linkwright.panels import recording as module
 from linkwright.panels.recording import RecordingFeature
 from tests.full_disk import full_disk, needs_limits
-from tests.panels.test_live_history import KEPT, filled
+from tests.panels.test_live_history import KEPT, publish_positions
 from tests.panels.test_time import config
 from tests.panels.test_timeline import open_recording
 from tests.recordings import needs_rosbags
@@ -254,7 +254,7 @@ async def test_history_and_part_of_history_are_saved():
     async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
         await client.until("recording_state")
         world.move({("tip", "mark"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
-        between = await filled(world)
+        between = await publish_positions(world)
         (whole,) = (await saved(client))["files"]
         with BagReader(whole["path"]) as bag:
             assert len(list(bag.messages([TF]))) == 5

@@ -28,7 +28,7 @@ def script(folder: Path, name: str, text: str) -> Path:
     return path
 
 
-def inside(words: list[str], **variables: str) -> subprocess.CompletedProcess[str]:
+def run_in_shell(words: list[str], **variables: str) -> subprocess.CompletedProcess[str]:
     """Run ``linkwright shell -- WORDS`` as a user does."""
     environment = {"PATH": BARE, "HOME": os.environ.get("HOME", "/"), **variables}
     return subprocess.run(
@@ -43,19 +43,19 @@ def inside(words: list[str], **variables: str) -> subprocess.CompletedProcess[st
 
 def test_programs_are_found_in_shell() -> None:
     names = " ".join(PROGRAMS)
-    result = inside(["sh", "-c", f"for name in {names}; do command -v $name || echo no $name; done"])
+    result = run_in_shell(["sh", "-c", f"for name in {names}; do command -v $name || echo no $name; done"])
     assert len(result.stdout.splitlines()) == len(PROGRAMS)
     assert "no " not in result.stdout
 
 
 def test_installed_program_takes_precedence(tmp_path: Path) -> None:
     script(tmp_path / "bin", "xacro", "echo the real one")
-    result = inside(["xacro"], PATH=f"{tmp_path / 'bin'}:{BARE}")
+    result = run_in_shell(["xacro"], PATH=f"{tmp_path / 'bin'}:{BARE}")
     assert result.stdout == "the real one\n"
 
 
 def test_python_is_linkwrights_without_installed_ros() -> None:
-    result = inside(["python3", "-c", "import linkwright, sys; print(sys.prefix)"])
+    result = run_in_shell(["python3", "-c", "import linkwright, sys; print(sys.prefix)"])
     assert result.stdout.strip() == sys.prefix
 
 
@@ -79,12 +79,12 @@ def test_nested_shell_does_not_extend_path_twice(tmp_path: Path) -> None:
 
 
 def test_exit_status_is_that_of_command() -> None:
-    assert inside(["sh", "-c", "exit 7"]).returncode == 7
-    assert inside(["sh", "-c", "kill -TERM $$"]).returncode == 128 + signal.SIGTERM
+    assert run_in_shell(["sh", "-c", "exit 7"]).returncode == 7
+    assert run_in_shell(["sh", "-c", "kill -TERM $$"]).returncode == 128 + signal.SIGTERM
 
 
 def test_options_of_command_are_passed_on() -> None:
-    assert inside(["sh", "-c", "echo $0 $1", "-h", "--help"]).stdout == "-h --help\n"
+    assert run_in_shell(["sh", "-c", "echo $0 $1", "-h", "--help"]).stdout == "-h --help\n"
 
 
 def test_unknown_command_is_reported_with_nearest_name() -> None:

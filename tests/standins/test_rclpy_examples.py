@@ -163,11 +163,11 @@ class TestOwnParts:
         order, slow = [], threading.Event()
         urgent = rclpy.create_node("urgent")
 
-        def dawdle(_message):
+        def block(_message):
             slow.wait(SECONDS)
             order.append("slow")
 
-        node.create_subscription(String, "slow", dawdle, 10)
+        node.create_subscription(String, "slow", block, 10)
         urgent.create_subscription(String, "urgent", lambda _message: (order.append("urgent"), slow.set()), 10)
         executor = PriorityExecutor()
         executor.add_high_priority_node(urgent)

@@ -52,7 +52,7 @@ def drive(noise, friction, seed):
 """
 
 
-def ran(path: Path, workers: int) -> dict[int, object]:
+def run_scenario(path: Path, workers: int) -> dict[int, object]:
     outcomes = {}
     run_locally(
         path, plan_runs(load_scenario(path)), workers, lambda outcome: outcomes.setdefault(outcome.row, outcome)
@@ -64,7 +64,7 @@ def test_results_are_identical_in_any_process_and_order(tmp_path):
     path = write(tmp_path, SIMULATED)
     scenario = load_scenario(path)
     here = {run.row: run_once(scenario, run) for run in reversed(plan_runs(scenario))}
-    assert ran(path, 2) == here
+    assert run_scenario(path, 2) == here
     assert all(not outcome.error for outcome in here.values())
     assert len({outcome.results["a"] for outcome in here.values()}) == 4
 
@@ -72,7 +72,7 @@ def test_results_are_identical_in_any_process_and_order(tmp_path):
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGKILL")
 def test_dead_worker_process_is_replaced_and_run_retried_once(tmp_path):
     path = write(tmp_path, DYING)
-    outcomes = ran(path, 2)
+    outcomes = run_scenario(path, 2)
     assert [outcomes[row].results.get("square") for row in (1, 2, 3, 4)] == [1, 4, 9, None]
     assert outcomes[4].error == "the process of the run was ended by SIGKILL, twice"
 

@@ -35,7 +35,7 @@ def real_node(programs):
     return lambda **variables: programs("real_peer", "real_node", python=PYTHON, **variables)
 
 
-def has(process, name):
+def is_discovered(process, name):
     return NodeIdentity(name, "/") in process.transport.remote_nodes()
 
 
@@ -47,7 +47,7 @@ def test_nodes_discover_each_other(processes, real_node, we_are_first):
     else:
         real = real_node()
         process = processes("ours")
-    process.spin_until(lambda: has(process, "real_node"), 2.5)
+    process.spin_until(lambda: is_discovered(process, "real_node"), 2.5)
     real.ask_until(lambda nodes: nodes == [["/", "ours"], ["/", "real_node"]], "nodes")
 
 
@@ -63,7 +63,7 @@ def test_nodes_discover_each_other_for_any_discovery_range(processes, real_node,
     for name, value in ours.items():
         monkeypatch.setenv(name, value)
     process = processes("ours")
-    process.spin_until(lambda: has(process, "real_node"), 5.0)
+    process.spin_until(lambda: is_discovered(process, "real_node"), 5.0)
     real.ask_until(lambda nodes: ["/", "ours"] in nodes, "nodes")
 
 
@@ -71,7 +71,7 @@ def test_localhost_node_is_discovered_by_earlier_subnet_node(processes, real_nod
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")
     process = processes("ours")
     real = real_node(**LOCALHOST)
-    process.spin_until(lambda: has(process, "real_node"), 10.0)
+    process.spin_until(lambda: is_discovered(process, "real_node"), 10.0)
     real.ask_until(lambda nodes: ["/", "ours"] in nodes, "nodes")
 
 
@@ -79,7 +79,7 @@ def test_domains_are_isolated(processes, real_node, domain):
     real = real_node(ROS_DOMAIN_ID=str(own_domain(2)))
     process = processes("ours")
     time.sleep(1.5)
-    assert not has(process, "real_node")
+    assert not is_discovered(process, "real_node")
     assert real.ask("nodes") == [["/", "real_node"]]
 
 
@@ -88,7 +88,7 @@ def test_late_node_sees_everything_after_wait_for_discovery(processes, real_node
     real_node()
     process = processes("ours")
     assert process.transport.wait_for_discovery(60)
-    assert has(process, "real_node")
+    assert is_discovered(process, "real_node")
     assert process.node.count_publishers("/from_ros") == 1
     services = dict(process.node.get_service_names_and_types_by_node("real_node", "/"))
     assert services["/flip"] == ["std_srvs/srv/SetBool"]
@@ -227,9 +227,9 @@ def test_incompatible_qos_is_reported_on_both_sides(processes, real_node):
 def test_killed_real_node_disappears_before_lease_expires(processes, real_node):
     process = processes("ours")
     real = real_node()
-    process.spin_until(lambda: has(process, "real_node"))
+    process.spin_until(lambda: is_discovered(process, "real_node"))
     real.kill()
-    process.spin_until(lambda: not has(process, "real_node"), 5.0)
+    process.spin_until(lambda: not is_discovered(process, "real_node"), 5.0)
 
 
 def test_killed_real_node_is_received_again_after_restart(processes, real_node):

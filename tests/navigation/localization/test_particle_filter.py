@@ -73,13 +73,13 @@ def test_random_particles_are_added_when_likelihood_drops() -> None:
     particles.set_particles(np.tile((1.0, 1.0, 0.0), (1000, 1)))
     random_counts: list[int] = []
 
-    def anywhere(count: int) -> Poses:
+    def draw_random_poses(count: int) -> Poses:
         random_counts.append(count)
         return np.full((count, 3), 9.0)
 
     for likelihood in (8.0, 8.0, 1.0):
         particles.update_weights(np.full(len(particles.particles), likelihood))
-        particles.resample(anywhere)
+        particles.resample(draw_random_poses)
     assert len(random_counts) == 1
     assert random_counts[0] / 2000 == pytest.approx(1 - 4.5 / 7.993, abs=0.05)
 

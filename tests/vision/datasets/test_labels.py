@@ -41,7 +41,7 @@ def labeled(world, arrangement):
     return label_image(world, arrangement, geoms, OPTIONS.min_size, OPTIONS.min_visible), geoms
 
 
-def alone(arrangement, movable):
+def arrange_alone(arrangement, movable):
     return Arrangement(arrangement.optics, arrangement.pose, (movable,), ())
 
 
@@ -146,7 +146,7 @@ def test_unoccluded_objects_are_fully_visible(world):
             for other in arrangement.placed_objects:
                 if other is not movable:
                     world.hide(other.geoms)
-            labels, _ = labeled(world, alone(arrangement, movable))
+            labels, _ = labeled(world, arrange_alone(arrangement, movable))
             assert all(label.visibility > 0.97 or label.is_truncated for label in labels)
             break
 

@@ -61,7 +61,7 @@ def overlap(first, second):
     return common / whole
 
 
-def slowly(rows, classes, limits, objectness=False):
+def slow_boxes(rows, classes, limits, objectness=False):
     """Return the boxes by a slow reference algorithm: (score, class, corners in the input)."""
     detections = []
     for row in rows:
@@ -99,7 +99,7 @@ def test_yolov8_columns_are_decoded(tmp_path, image):
     detector = opened(path)
     assert detector.names == ("ball", "box", "cat")
     assert detector.notes == ()
-    check(detector.detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place)
+    check(detector.detect(image, LIMITS), slow_boxes(output[0].T, 3, LIMITS), image, *place)
 
 
 def test_yolov5_rows_with_objectness_are_decoded(tmp_path, image):
@@ -107,7 +107,7 @@ def test_yolov5_rows_with_objectness_are_decoded(tmp_path, image):
     path = columns(tmp_path / "v5.onnx", transposed=True, objectness=True, metadata={"names": "['ball', 'box', 'cat']"})
     output, *place = by_hand(path, image, 96, 128)
     assert output.shape == (1, 756, 8)
-    check(opened(path).detect(image, limits), slowly(output[0], 3, limits, True), image, *place)
+    check(opened(path).detect(image, limits), slow_boxes(output[0], 3, limits, True), image, *place)
 
 
 def test_yolov5_with_one_class_is_not_mistaken_for_final_boxes(tmp_path, image):
@@ -116,7 +116,7 @@ def test_yolov5_with_one_class_is_not_mistaken_for_final_boxes(tmp_path, image):
     output, *_ = by_hand(path, image, 96, 128)
     assert output.shape == (1, 756, 6)
     detections = opened(path).detect(image, limits)
-    assert len(detections) == len(slowly(output[0], 1, limits, True))
+    assert len(detections) == len(slow_boxes(output[0], 1, limits, True))
 
 
 @pytest.mark.parametrize("message", [{"end2end": "True"}, {"args": "{'batch': 1, 'nms': True}"}, {}])
@@ -141,13 +141,13 @@ def test_dynamic_input_has_smallest_size_for_image(tmp_path, image):
     output, *place = by_hand(path, image, 128, 160, padded=32)
     assert output.shape[2] == 12 * 20 + 6 * 10 + 3 * 5  # 96 x 160
     detections = opened(path, size=(120, 160)).detect(image, LIMITS)
-    check(detections, slowly(output[0].T, 3, LIMITS), image, *place)
+    check(detections, slow_boxes(output[0].T, 3, LIMITS), image, *place)
 
 
 def test_half_precision_network_is_decoded(tmp_path, image):
     path = columns(tmp_path / "half.onnx", metadata=NAMES, half=True)
     output, *place = by_hand(path, image, 96, 128)
-    check(opened(path).detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place, tolerance=1e-2)
+    check(opened(path).detect(image, LIMITS), slow_boxes(output[0].T, 3, LIMITS), image, *place, tolerance=1e-2)
 
 
 @pytest.mark.parametrize("task", ["segment", ""])
@@ -156,7 +156,7 @@ def test_masks_are_ignored_with_note(tmp_path, image, task):
     path = columns(tmp_path / "seg.onnx", metadata=facts, masks=32)
     output, *place = by_hand(path, image, 96, 128)
     detector = opened(path)
-    check(detector.detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place)
+    check(detector.detect(image, LIMITS), slow_boxes(output[0].T, 3, LIMITS), image, *place)
     assert [str(note) for note in detector.notes] == ["only the boxes of 'seg.onnx' are used; its masks are ignored"]
 
 
@@ -165,7 +165,7 @@ def test_keypoints_are_ignored_with_note(tmp_path, image):
     path = columns(tmp_path / "pose.onnx", 1, metadata=facts, more=51)
     output, *_ = by_hand(path, image, 96, 128)
     detector = opened(path)
-    assert len(detector.detect(image, LIMITS)) == len(slowly(output[0].T, 1, LIMITS))
+    assert len(detector.detect(image, LIMITS)) == len(slow_boxes(output[0].T, 1, LIMITS))
     assert "keypoints are ignored" in str(detector.notes[0])
 
 

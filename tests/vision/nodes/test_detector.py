@@ -78,10 +78,10 @@ async def detections_of(test, recording, topic, message):
     test.publish(topic, message)
     await test.settle()
 
-    def came():
+    def has_new_message():
         return len(recording) > before
 
-    await eventually(came)
+    await eventually(has_new_message)
     return recording.last
 
 
