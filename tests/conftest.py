@@ -46,7 +46,7 @@ def pytest_collection() -> Generator[None, object, object]:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Ignore wholly marked modules and those of pages in `make test-base`: their imports would fail."""
+    """Ignore modules of pages, and modules that are wholly marked, in `make test-base`: their imports would fail."""
     if "not extra" not in config.option.markexpr:
         return None
     if collection_path.name == "browser":

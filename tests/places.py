@@ -26,5 +26,5 @@ def without_meshes(package: Path, folder: Path) -> Path:
 
 
 BUILT_PAGE = REPOSITORY / "src" / "linkwright" / "page" / "built"
-needs_page = pytest.mark.skipif(not (BUILT_PAGE / "export").is_dir(), reason="the page was not built")
+needs_page = pytest.mark.skipif(not (BUILT_PAGE / "export").is_dir(), reason="the page is not built")
 """The mark of tests that use the page. `make test` builds it; a run without it skips them."""

@@ -13,7 +13,7 @@ from tests.forked import ForkServer, Program, start_process
 from tests.places import PACKAGE
 from tests.waiting import SECONDS, wait_until
 
-pytestmark = pytest.mark.skipif(not forked.IS_POSSIBLE, reason="programs are forked off on Linux only")
+pytestmark = pytest.mark.skipif(not forked.IS_POSSIBLE, reason="programs are forked on Linux only")
 
 ROBOT = PACKAGE / "urdf" / "mbot_base.xacro"
 QUIET = {**os.environ, "LINKWRIGHT_DDS": "0", "NO_COLOR": "1"}

@@ -110,7 +110,7 @@ def _needed(lock: dict[str, list[dict[str, Any]]], environment: dict[str, str]) 
             asked += (
                 package.get("optional-dependencies", {}).get(extra, ()) if extra else package.get("dependencies", ())
             )
-        if "registry" in package["source"]:  # the package is not one of ours
+        if "registry" in package["source"]:  # the package is from an index
             yield package
 
 

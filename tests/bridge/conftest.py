@@ -31,7 +31,7 @@ ClosableT = TypeVar("ClosableT", Process, "Bridge")
 
 
 class Bridge:
-    """A bridge in a thread of its own."""
+    """A bridge in a separate thread."""
 
     def __init__(self, bridge_id: str, *, allowed: tuple[str, ...] = (), denied: tuple[str, ...] = ()) -> None:
         self.log: list[LogRecord] = []

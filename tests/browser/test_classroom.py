@@ -1,4 +1,4 @@
-"""The classroom in the page: a learner's way through two steps, in both languages, with mouse and keyboard."""
+"""The classroom in the page: a learner solves two steps, in both languages, with mouse and keyboard."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.browser.conftest import becomes, until
 
 pytestmark = [
     pytest.mark.browser,
-    pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX"),
+    pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals"),
 ]
 
 ROBOT = find_course("example") / "01-one-link/solution/one-link/robot.urdf"

@@ -1,4 +1,4 @@
-"""Two descriptions in one scene: the list, what is selected, and how both robots are drawn."""
+"""Two descriptions in one scene: the list, the selection, and the drawing of both robots."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Small meshes of all formats: their sizes and colors in the page are those in RViz.
+"""Small meshes of all formats: they have the same sizes and colors in the page as in RViz.
 
 Every mesh is the same box, 0.1 x 0.2 x 0.3 m with a corner at the origin, written in another way: a wrong axis, unit or
 transform shows in its bounds.

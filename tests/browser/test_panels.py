@@ -1,4 +1,4 @@
-"""The open panels: those of the file on the first visit of a browser, and then those of the user."""
+"""The open panels: the panels of the file on the first visit of a browser, and then the user's."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from tests.waiting import SECONDS
 
 pytestmark = [
     pytest.mark.browser,
-    pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX"),
+    pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals"),
 ]
 
 ROBOT = find_course("example") / "01-one-link/solution/one-link/robot.urdf"

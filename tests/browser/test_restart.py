@@ -16,7 +16,7 @@ pytestmark = pytest.mark.browser
 
 MBOT = PACKAGE / "urdf" / "mbot_base.xacro"
 TERMINAL = "lw.panels.terminal"
-posix = pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX")
+posix = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals")
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from tests.browser.test_description import open_panel
 
 pytestmark = [
     pytest.mark.browser,
-    pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX"),
+    pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals"),
 ]
 
 ROBOT = '<robot name="r"><link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link></robot>\n'

@@ -77,7 +77,7 @@ def seek(page: Page, seconds: float) -> None:
 
 
 def wait_for_second(page: Page, second: int) -> None:
-    """Wait until the frame and the image are those of a second."""
+    """Wait until the frame and the image belong to a second."""
     until(page, f"Math.abs(lw.frames.tip?.position[0] - {second}) < 1e-6")
     corner = "window.linkwright.displays.find(({ drawn }) => drawn?.width === 4).drawn.corner"
     becomes(lambda: page.evaluate(corner), [*color(second), 255])

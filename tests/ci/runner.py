@@ -1,4 +1,4 @@
-"""A runner of composite actions, for what ours use of them: steps in bash, inputs, outputs and conditions."""
+"""A runner of composite actions with the features that our actions use: bash, inputs, outputs and conditions."""
 
 from __future__ import annotations
 

@@ -145,7 +145,7 @@ def test_completion_imports_no_slow_modules() -> None:
     assert [name for name in heavy if name in loaded] == []
 
 
-@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+@pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
 @pytest.mark.parametrize(
     ("line", "offered"),
     [
@@ -196,7 +196,7 @@ _files() { print -r -- FILES }
 """The functions of zsh's completion system, as functions that print their arguments."""
 
 
-@pytest.mark.skipif(shutil.which("zsh") is None, reason="there is no zsh")
+@pytest.mark.skipif(shutil.which("zsh") is None, reason="zsh is not installed")
 @pytest.mark.parametrize(("words", "offered"), [*SHELL_LINES, (["linkwright", "check", "ar"], ["FILES"])])
 def test_completion_in_zsh(words: list[str], offered: list[str]) -> None:
     typed = " ".join(f"'{word}'" for word in [*words[:-1], words[-1] + "after-the-cursor"])
@@ -211,7 +211,7 @@ def test_completion_in_zsh(words: list[str], offered: list[str]) -> None:
     assert "compdef _linkwright_complete linkwright" in result.stderr
 
 
-@pytest.mark.skipif(shutil.which("fish") is None, reason="there is no fish")
+@pytest.mark.skipif(shutil.which("fish") is None, reason="fish is not installed")
 @pytest.mark.parametrize(
     ("words", "offered"), [*SHELL_LINES, (["linkwright", "check", "arm/a"], ["arm/arm.urdf.xacro"])]
 )
@@ -234,7 +234,7 @@ def test_shell_accepts_generated_script(shell: str, capsys: pytest.CaptureFixtur
         subprocess.run([shell, "-n"], input=text + whole, text=True, check=True)
 
 
-@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+@pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
 def test_missing_ros_programs_print_alternatives() -> None:
     program = "command_not_found_handle() { echo other $1; return 9; }\n"
     program += shell_script("bash", sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "gazebo"])

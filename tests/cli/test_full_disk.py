@@ -212,7 +212,7 @@ def statuses(commands: Mapping[str, Sequence[str]], folder: Path, redirection: s
     return dict(zip(commands, map(int, exit_statuses.rstrip("]").split(",")), strict=True)), printed
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has /dev/full")
 @pytest.mark.parametrize(("redirection", "reason"), [(">/dev/full", "No space left"), (">&-", "Bad file descriptor")])
 def test_unwritable_standard_output_is_one_error(robot: Path, redirection: str, reason: str) -> None:
     statuses_by_command, printed = statuses(QUICK, robot.parent, redirection)
@@ -253,7 +253,7 @@ def test_output_truncated_by_full_disk_is_an_error(
         assert "error[CLI202]: cannot write to standard output: File too large" in result.stderr, name
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="there is no fork")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no fork")
 def test_closed_standard_input_is_treated_as_empty(robot: Path) -> None:
     commands = {**QUICK, "check -": ["xacro", "-"], "pub": ["interface", "show", "-"]}
     statuses_by_command, printed = statuses(commands, robot.parent, "<&-")
@@ -261,7 +261,7 @@ def test_closed_standard_input_is_treated_as_empty(robot: Path) -> None:
     assert "bug in Linkwright" not in printed
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has /dev/full")
 @pytest.mark.parametrize("redirection", ["2>/dev/full", "2>&-"])
 def test_unwritable_standard_error_keeps_exit_status(robot: Path, redirection: str) -> None:
     for words, status in ((["check", "r.urdf"], 0), (["check", "missing.urdf"], 1)):
@@ -278,7 +278,7 @@ def test_unwritable_standard_error_keeps_exit_status(robot: Path, redirection: s
         assert result.returncode == status, words
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps folders that are in use")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot remove folders that are in use")
 def test_removed_working_directory_is_handled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     robot = tmp_path / "r.urdf"
     robot.write_text(ROBOT)

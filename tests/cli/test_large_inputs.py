@@ -135,7 +135,7 @@ def test_tag_attributes_are_parsed_once() -> None:
     assert positions.attribute_value_range(text, 0, "none") is None
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no named pipes")
 def test_named_pipe_beside_file_is_not_opened(tmp_path: Path) -> None:
     path = tmp_path / "r.xacro"
     path.write_text('<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/></robot>')

@@ -254,7 +254,7 @@ class Reader:
         bad = [line for line in terminal.output.splitlines() if _BAD.search(line)]
         if outcome.error:
             assert all(outcome.error in line for line in bad)
-            assert bad, f"{terminal.line!r} did not say {outcome.error!r}:\n{terminal.output}"
+            assert bad, f"{terminal.line!r} did not print {outcome.error!r}:\n{terminal.output}"
         else:
             assert outcome.may_fail or not bad, f"{terminal.line!r}:\n{terminal.output}"
 
@@ -277,7 +277,7 @@ def write(block: Block, folder: Path) -> None:
 
 
 def _symmetric_elements(text: str) -> str:
-    """Return what the page asks the reader to write in the same way: the right wheel, the back caster."""
+    """Return the elements that the reader must write by analogy: the right wheel and the back caster."""
     elements = "".join(re.findall(r"  <joint.*?</joint>\n|  <link.*?</link>\n", text, re.DOTALL))
     if "left_" in elements:
         return elements.replace("left", "right").replace("0.19", "-0.19")

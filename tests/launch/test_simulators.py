@@ -54,9 +54,9 @@ class Simulators:
     """The servers that a launch started.
 
     Attributes:
-        started: package, parameters and command line of each.
-        environments: the variables of each.
-        spawned: what they were asked to spawn; None to end at once.
+        started: the package, parameters and command line of each server.
+        environments: the environment variables of each server.
+        spawned: the requested entities; None lets servers end at once.
     """
 
     def __init__(self) -> None:

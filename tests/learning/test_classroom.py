@@ -1,4 +1,4 @@
-"""A learner's way through a course: files, checks, hints, solutions, and the progress that is kept."""
+"""A learner's progress through a course: files, checks, hints, solutions, and the stored progress."""
 
 import importlib.util
 import json

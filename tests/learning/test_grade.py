@@ -24,7 +24,7 @@ from linkwright.sweep.ray_cluster import LostTask
 from tests.learning.sandbox.conftest import class_folder, processes_with  # noqa: F401
 from tests.waiting import SECONDS, wait_until
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the sandbox is for Linux")
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the sandbox needs Linux")
 
 ENDLESS = "while True: pass"
 FORK_BOMB = "import os, time\nwhile True:\n    try:\n        os.fork()\n    except OSError:\n        time.sleep(0.01)"

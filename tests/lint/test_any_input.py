@@ -1,4 +1,4 @@
-"""No rule, comment or setting makes the check fail, whatever a description contains."""
+"""No rule, comment or setting makes the check of any description raise an exception."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from linkwright.wire.dds import unavailable_reason
 from tests.domains import own_domain
 from tests.waiting import SECONDS
 
-needs_network = pytest.mark.skipif(bool(unavailable_reason()), reason="needs DDS")
+needs_network = pytest.mark.skipif(bool(unavailable_reason()), reason="cyclonedds is not installed")
 
 
 class Program:

@@ -12,7 +12,7 @@ import pytest
 from linkwright.page.access import load_token, store_pages_wait, token_folder
 
 PORT = 7448
-posix = pytest.mark.skipif(os.name != "posix", reason="Windows guards the user's folders itself")
+posix = pytest.mark.skipif(os.name != "posix", reason="Windows protects the user's folders itself")
 
 
 def test_next_program_on_port_has_same_token():

@@ -22,7 +22,7 @@ SECOND = 1_000_000_000
 
 def recorded(folder: Path) -> Path:
     """Record ten seconds: a point each second, and a frame with x = the seconds since the start."""
-    pytest.importorskip("rosbags", reason="there is no wheel for Python 3.15")
+    pytest.importorskip("rosbags", reason="rosbags has no wheel for Python 3.15")
     path = folder / "drive"
     with BagWriter(path) as writer:
         writer.add_topic("/p", POINT, [DEFAULT_QOS])

@@ -125,7 +125,7 @@ def test_models_match_tutorial_facts(name: str) -> None:
     assert _facts(load_model(name)) == _approximately(TUTORIAL["models"][name])
 
 
-@pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the tutorial's files are not beside this checkout")
+@pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the published files of the tutorial are missing")
 @pytest.mark.parametrize("name", LINKS)
 def test_tutorial_facts_match_published_files(name: str) -> None:
     assert _facts(load(PUBLISHED / "urdf" / name)) == TUTORIAL["models"][name]

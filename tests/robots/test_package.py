@@ -102,7 +102,7 @@ def test_rviz_configuration_contains_tutorial_values(rviz: dict[str, Any]) -> No
     _assert_within(TUTORIAL["rviz"], rviz, "")
 
 
-@pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the tutorial's files are not beside this checkout")
+@pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the published files of the tutorial are missing")
 def test_tutorial_values_match_published_file() -> None:
     assert yaml.safe_load((PUBLISHED / "rviz" / "urdf.rviz").read_text(encoding="utf-8")) == TUTORIAL["rviz"]
 

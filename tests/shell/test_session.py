@@ -14,7 +14,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.shell import PROGRAMS, run_shell, shell_environment, write_programs
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the commands used are those of POSIX")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the test uses POSIX commands")
 
 BARE = "/usr/bin:/bin"
 

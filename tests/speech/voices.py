@@ -95,5 +95,5 @@ def babble(seconds: float, rng: np.random.Generator) -> np.ndarray:
 
 
 def add_noise(samples: Samples, noise: np.ndarray, decibels: float, level: float) -> Samples:
-    """Add noise to a recording, so many decibels below the level of its word."""
+    """Add noise to a recording; its level is a number of decibels below the level of the word."""
     return np.rint(samples + level / 10 ** (decibels / 20) * noise[: len(samples)]).astype(np.int16)

@@ -136,7 +136,7 @@ class TestRunning:
         assert output_of("-c", code, cwd=tmp_path / "src") == "my_robot.msg.Count(number=3, names=['a'])"
 
 
-@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT to send")
+@pytest.mark.skipif(os.name == "nt", reason="Windows cannot send SIGINT")
 class TestInterrupt:
     def interrupted(self, tmp_path, code):
         (tmp_path / "node.py").write_text("import rclpy, signal\n" + textwrap.dedent(code))

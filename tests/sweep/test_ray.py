@@ -12,7 +12,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.sweep.ray_workers import run_on_ray
 from tests.sweep.scenarios import HEAD, ignore, write
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the tests have Ray on Linux only")
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="Ray is tested on Linux only")
 
 LOSING = f"""import os, signal
 from pathlib import Path

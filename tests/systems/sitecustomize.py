@@ -35,7 +35,7 @@ WATCHING = ("add_reader", "add_signal_handler", "add_writer", "create_unix_conne
 
 
 def windows() -> None:
-    """Remove what Windows does not have, after Python's own library has imported what it needs here."""
+    """Remove the features that Windows lacks, after the standard library has imported modules that need them here."""
     import asyncio
     import ctypes.util  # noqa: F401 - looks at the system when it is imported
     import importlib.abc
@@ -90,7 +90,7 @@ def windows() -> None:
 
 
 def macos() -> None:
-    """Remove what only Linux has."""
+    """Remove the features that only Linux has."""
     import asyncio  # noqa: F401 - looks at the system when it is imported
     import ctypes.util  # noqa: F401 - the same
     import platform

@@ -1,4 +1,4 @@
-"""Simulated worlds with stepped time, together with that of a graph."""
+"""Simulated worlds whose time is stepped together with the time of a graph."""
 
 import doctest
 import os

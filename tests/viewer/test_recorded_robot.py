@@ -116,7 +116,7 @@ async def test_recorded_transforms_take_precedence(tmp_path: Path, transforms: b
 
 
 async def test_namespaced_transforms_are_used(tmp_path: Path) -> None:
-    """At any time: those of a second before it, and static ones."""
+    """At any time, the transforms of the last second before it and static transforms are used."""
     names = ("one", "two", "laser")
     with BagWriter(tmp_path / "bag") as writer:
         for name in ("/robot1/tf", "/robot1/tf_static"):

@@ -15,9 +15,9 @@ from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import String, get_message
 from tests.waiting import SECONDS, wait_until
 
-pytest.importorskip("cyclonedds", reason="there is no DDS here")
+pytest.importorskip("cyclonedds", reason="cyclonedds is not installed")
 
-on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the test reads /proc")
 
 
 def run(text: str, seconds: float = SECONDS) -> subprocess.CompletedProcess[str]:
@@ -183,7 +183,7 @@ def test_packets_that_are_not_dds_print_nothing_to_stderr(domain):
     assert (result.returncode, result.stderr) == (0, "")
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
 def test_forked_child_does_not_participate(processes, programs):
     process = processes("ours")

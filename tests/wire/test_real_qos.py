@@ -125,7 +125,7 @@ def test_best_available_qos_always_matches(peers, publisher_side, subscriber_sid
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
 def test_missed_deadline_is_reported_on_both_sides(peers, publisher_side, subscriber_side):
-    """A deadline begins with the first message, and is not missed while messages come in time."""
+    """A deadline begins with the first message, and is not missed while messages arrive in time."""
     publishes, subscribes = peers(publisher_side), peers(subscriber_side)
     for topic in ("/topic", "/silent"):
         publishes.ask("publisher", topic, {"deadline": 2.0})

@@ -27,7 +27,7 @@ def configuration(interface: str) -> str:
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(find_spec("cyclonedds") is None, reason="without DDS"),
+    pytest.mark.skipif(find_spec("cyclonedds") is None, reason="cyclonedds is not installed"),
 ]
 
 

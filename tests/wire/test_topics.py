@@ -232,7 +232,7 @@ def test_messages_of_any_size_arrive(processes, size):
     assert sizes == [size] * 5
 
 
-@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="other C libraries decide by themselves")
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="the memory limit is a setting of glibc")
 def test_image_publisher_reuses_memory(processes):
     resource = pytest.importorskip("resource")
     a, b = processes("a"), processes("b")
@@ -306,7 +306,7 @@ def test_best_available_qos_considers_remote_endpoints(processes):
 
 def test_shipped_message_types_can_be_described():
     """Cyclone creates a description of each type when it is first used."""
-    pytest.importorskip("cyclonedds", reason="there is no DDS here")
+    pytest.importorskip("cyclonedds", reason="cyclonedds is not installed")
     from linkwright.messages import shipped_packages
     from linkwright.wire.dds.type_descriptions import WireTypes
 

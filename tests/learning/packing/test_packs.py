@@ -1,4 +1,4 @@
-"""Packs: what they contain, and how they are continued, checked and installed."""
+"""Packs: their contents, continuation, checks and installation."""
 
 from __future__ import annotations
 

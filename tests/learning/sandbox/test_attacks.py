@@ -17,7 +17,7 @@ from tests.learning.sandbox import attacks
 from tests.learning.sandbox.conftest import processes_with
 from tests.learning.sandbox.situations import SITUATIONS, expected_protections, is_possible, run_in_situation
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the situations are those of Linux")
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the simulated situations need Linux")
 
 MEBIBYTE = 1 << 20
 LIMITS = Limits(
@@ -194,6 +194,6 @@ def _possible(protections: frozenset[Protection]) -> set[str]:
 
 def test_kill_of_all_processes_affects_only_run(situation: str, student: Path) -> None:
     if Protection.PROCESSES not in expected_protections(situation):
-        pytest.skip("it would kill this test")
+        pytest.skip("the attack would kill this test")
     outcome = attack(situation, student, attacks.KILL_ALL)
     assert outcome.exceeded is None

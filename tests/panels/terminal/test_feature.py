@@ -23,7 +23,7 @@ from linkwright.panels.terminal.terminal import MAX_UNACKNOWLEDGED
 from tests.viewer.scene import World, open_world, page
 from tests.waiting import SECONDS, wait_until
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals")
 
 
 def real_path(path: Path) -> str:

@@ -17,7 +17,7 @@ from linkwright.panels.terminal.process_session import session_processes
 from linkwright.panels.terminal.pty import Pty, TerminalProgram, TerminalSize
 from tests.waiting import SECONDS, wait_until
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals")
 
 
 def real_path(path: Path) -> str:

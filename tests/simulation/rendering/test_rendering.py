@@ -377,7 +377,7 @@ def test_resting_and_moving_models_are_rendered_at_current_pose(make_new):
     renderer, optics = make_new(simulation), optics_of(CAMERA)
 
     def depths():
-        """Return the depth image of the renderer so far, and that of a new renderer."""
+        """Return the depth images of the existing renderer and of a new renderer."""
         return tuple(
             candidate.render(optics, IDENTITY, Channels.DEPTH).depth for candidate in (renderer, make_new(simulation))
         )

@@ -199,7 +199,7 @@ def test_classes_without_names_are_numbered(tmp_path):
 def test_missing_gpu_is_noted(tmp_path):
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     if "CUDAExecutionProvider" in onnxruntime.get_available_providers():
-        pytest.skip("there is a GPU")
+        pytest.skip("this machine has a GPU")
     assert [str(note) for note in opened(path, device="cuda:0").notes] == [
         "this installation of onnxruntime does not support 'cuda:0'; the network runs on the CPU"
     ]

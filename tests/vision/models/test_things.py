@@ -20,7 +20,7 @@ from linkwright.vision.detectors.registry import make_detector
 from linkwright.vision.evaluation import intersection_over_union
 from linkwright.vision.models.things import FILE
 
-pytest.importorskip("mujoco", reason="MuJoCo has no wheel here")
+pytest.importorskip("mujoco", reason="MuJoCo is not installed")
 
 WIDTH, HEIGHT = 640, 480
 FOCAL = WIDTH / (2 * tan(0.6))

@@ -122,7 +122,7 @@ class SeekingRobot(SteppedSimulation):
         return [said_message.data for said_message in self.said_messages]
 
     def advance_until_said(self, word: str, seconds: float = 60.0) -> bool:
-        """Advance the time until the robot says a text with a word."""
+        """Advance the time until the robot says a text that contains a word."""
         for _ in range(round(seconds / 0.5)):
             self.advance(0.5)
             if any(word in text for text in self.spoken()):

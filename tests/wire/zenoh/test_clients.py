@@ -90,7 +90,7 @@ def test_recreated_subscription_counts_publishers_correctly(processes):
 
 
 def test_outdated_liveliness_news_is_ignored_and_returned_token_kept(processes, monkeypatch):
-    """Zenoh delivers known tokens in a task of its own, possibly after the news of their removal."""
+    """Zenoh delivers known tokens in a separate task, possibly after the news of their removal."""
     talker, ear = processes("talker"), processes("ear")
     publisher = talker.node.create_publisher(String, "chatter", 10)
     subscription = ear.node.create_subscription(String, "chatter", print, 10)

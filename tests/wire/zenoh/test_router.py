@@ -1,4 +1,4 @@
-"""Routers: ours serves nodes that look for one where rmw_zenoh_cpp does."""
+"""Our router serves nodes that search for a router where rmw_zenoh_cpp does."""
 
 from __future__ import annotations
 

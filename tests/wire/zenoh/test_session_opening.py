@@ -62,7 +62,7 @@ def test_wait_for_router_ends_after_timeout(processes, monkeypatch, router_port)
     assert "DDS112" in process.warnings()[-1]
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="processes are not interrupted so on Windows")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send SIGINT to one process")
 @pytest.mark.parametrize("words", [("topic", "list"), ("node", "list"), ("doctor",), ("bridge", "zenoh", "zenoh:7")])
 def test_ctrl_c_ends_wait_for_router(monkeypatch, silent_port, words):
     monkeypatch.setenv(OVERRIDES, client_of(silent_port))
