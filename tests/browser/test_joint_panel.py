@@ -102,7 +102,7 @@ def test_sweep_moves_joints_until_stopped(page):
 
 def test_dragged_link_moves_its_joint(page):
     # The camera looks along the joints' axis from the right: in the image, x is to the right, and z is up.
-    page.keyboard.press("z")  # about the root
+    page.keyboard.press("z")  # the view is about the root
     for name, value in (("Yaw", "-1.5707963"), ("Pitch", "0"), ("Distance", "2")):
         row = page.locator(".row").filter(has=page.get_by_text(name, exact=True))
         field = row.locator("input").first

@@ -29,7 +29,7 @@ FOUND = {
     "humanoid_description/urdf/humanoid.urdf.xacro": {"LW301"},
     "cell_description/urdf/cell.urdf.xacro": {"LW503"},
     "plain_description/urdf/shapes.urdf": {"LW503"},
-    # "default_inertial" for every link: one cause.
+    # Every link uses "default_inertial", so the findings have one cause.
     "urdf_tutorial@ros2/urdf/08-macroed.urdf.xacro": {"LW315"},
 }
 """Expected warnings about robots besides missing meshes: each is a mistake of the description."""

@@ -45,7 +45,7 @@ def _primitive(kind: FieldType, primitive: Primitive, draw: random.Random) -> An
     if primitive.python is bool:
         return draw.random() < 0.5
     if primitive.python is bytes:
-        return bytes([draw.randrange(128)])  # rosbags cannot write more
+        return bytes([draw.randrange(128)])  # rosbags cannot write larger values
     if primitive.python is int:
         return draw.choice((primitive.low, primitive.high, draw.randint(int(primitive.low), int(primitive.high))))
     return float(np.float32(draw.uniform(-1e3, 1e3)))

@@ -181,9 +181,8 @@ class TestProcessEffects:
             print([name for name in sys.modules if "linkwright" in name or name in ("numpy", "importlib.util")])
             """
         plain = {"PATH": os.environ["PATH"]}
-        others = (
-            output_of("-c", "import sys; print('sitecustomize' in sys.modules)", env=plain) == "True"
-        )  # as Ubuntu has
+        # Ubuntu has a sitecustomize of its own.
+        others = output_of("-c", "import sys; print('sitecustomize' in sys.modules)", env=plain) == "True"
         assert output_of("-c", textwrap.dedent(code)) == ("['importlib.util']" if others else "[]")
 
     def test_similar_missing_module_is_not_found(self):

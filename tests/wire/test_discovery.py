@@ -85,7 +85,7 @@ def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeyp
     monkeypatch.setattr(engine, "_FIRST_ANNOUNCE_SPAN", float("inf"))
     process = processes("ours", join_now=False)
     publishers = [process.node.create_publisher(String, f"topic_{number}", 10) for number in range(50)]
-    transport = join(process.graph)  # everything to be made is asked for now
+    transport = join(process.graph)  # this requests all publishers before the transport joins
     may_join.set()
     assert transport.wait_until_ready(SECONDS)
     wait_until(lambda: announced)

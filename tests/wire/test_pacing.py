@@ -79,7 +79,7 @@ def test_paced_sample_has_guid_of_writer():
     ]
     assert {text.time for text in fragments} == {5_000_000_000}
     assert b"".join(text.payload for text in fragments) == LARGE
-    assert not list(parse(packets[0], WRITER[:12]))  # other participants ignore it
+    assert not list(parse(packets[0], WRITER[:12]))  # other participants ignore the packet
 
 
 class Sender:

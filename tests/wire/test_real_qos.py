@@ -181,7 +181,7 @@ def test_message_beyond_its_lifespan_is_not_delivered(peers, publisher_side, sub
         publishes.ask("publish", topic, "old")
     publishes.ask("publisher", "/clock", {})
     publishes.ask("keep_publishing", "/clock", 0.1)
-    subscribes = peers(subscriber_side)  # takes longer to start than the short one lives
+    subscribes = peers(subscriber_side)  # its start takes longer than the short lifespan
     subscribes.ask("subscription", "/clock", {})
     subscribes.ask_until(lambda texts: len(texts) > 10, "received", "/clock")
     for topic in ("/short", "/long"):

@@ -241,9 +241,8 @@ def test_killed_real_node_is_received_again_after_restart(processes, real_node):
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     first.kill()
     again = real_node()
-    process.spin_until(
-        lambda: publisher.get_subscription_count() == 2
-    )  # the first one's lease of 20 s is still running
+    # The lease of the first node, 20 s, has not expired.
+    process.spin_until(lambda: publisher.get_subscription_count() == 2)
     began = time.monotonic()
     for number in range(8):
         publisher.publish(String(data=str(number)))

@@ -130,7 +130,7 @@ def test_callbacks_get_message_info(processes, wire):
     (info,) = infos
     assert info.is_remote
     assert info.publisher_gid == publisher.gid
-    assert info.publication_sequence_number == (1 if wire == "zenoh" else None)  # Cyclone does not hand it on
+    assert info.publication_sequence_number == (1 if wire == "zenoh" else None)  # Cyclone does not provide this number
     assert before <= info.source_timestamp <= info.received_timestamp <= time.time_ns()
     (endpoint,) = b.node.get_publishers_info_by_topic("/chatter")
     assert bytes(endpoint.endpoint_gid[:16]) == publisher.gid
@@ -232,7 +232,7 @@ def test_messages_of_any_size_arrive(processes, size):
     assert sizes == [size] * 5
 
 
-@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="the memory limit is a setting of glibc")
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="only glibc has the setting that keeps freed memory")
 def test_image_publisher_reuses_memory(processes):
     resource = pytest.importorskip("resource")
     a, b = processes("a"), processes("b")

@@ -221,7 +221,7 @@ class TestGuardian:
         guardian.watch(1)
         guardian.close()
         assert process.returncode == 0
-        guardian.close()  # a second time does nothing
+        guardian.close()  # a second call has no effect
         assert guardian.start_and_mark({})[MARK]
         assert guardian._process is None
 

@@ -120,7 +120,7 @@ def _restrict(name: str) -> None:
         os.setresgid(user, user, user)
         os.setresuid(user, user, user)
     if not is_root:
-        resource.setrlimit(resource.RLIMIT_NPROC, (300, 300))  # the tests' own safety net
+        resource.setrlimit(resource.RLIMIT_NPROC, (300, 300))  # protects the test machine
     elif name != "root":
         _keep_capabilities(_DOCKER_CAPABILITIES)
     denied = {}

@@ -127,7 +127,7 @@ async def test_bond_breaks_after_four_seconds_of_silence(graph: Graph, clock: Ju
     pair = _BondedPair(graph)
     server = pair.server()
     await clock.advance(0.2)
-    server._timer.cancel()  # as if the process were gone
+    server._timer.cancel()  # simulates a dead process
     await clock.advance(3.8)
     assert pair.events == ["formed"]
     await clock.advance(0.4)

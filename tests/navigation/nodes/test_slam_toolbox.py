@@ -131,9 +131,8 @@ def test_map_pose_and_transform_are_published_and_accurate(test, kind):
     true = relative_pose(PATH[0], PATH[-1])  # the origin of the map is at the first scan
     correction = map_to_odom(tf)
     assert compose(planar(correction.transform), odometry[-1]) == pytest.approx(true, abs=0.03)
-    assert (
-        correction.header.stamp.nanoseconds == test.clock.now_ns() - 500_000_000 + 500_000_000
-    )  # ahead by the time-out
+    # The stamp is ahead by the timeout.
+    assert correction.header.stamp.nanoseconds == test.clock.now_ns() - 500_000_000 + 500_000_000
     publish_at = poses.last.pose.pose.position
     assert [publish_at.x, publish_at.y] == pytest.approx(true[:2], abs=0.3)
     covariance = np.reshape(poses.last.pose.covariance, (6, 6))

@@ -63,7 +63,7 @@ def dijkstra(price: np.ndarray, source: tuple[int, int]) -> np.ndarray:
         b = (slice(row_step, rows), slice(margin + column_step, columns - step + column_step))
         with np.errstate(invalid="ignore"):
             weight = hypot(row_step, column_step) * (price[a] + price[b]) / 2.0
-        if row_step and column_step:  # no corner is cut
+        if row_step and column_step:  # a diagonal step must not cut a corner
             target_slice = (slice(0, rows - row_step), slice(margin + column_step, columns - step + column_step))
             below = (slice(row_step, rows), slice(margin, columns - step))
             weight = np.where(np.isfinite(price[target_slice] + price[below]), weight, np.inf)

@@ -477,7 +477,7 @@ async def test_teleop_stops_robot_when_page_is_silent_or_closed():
             await eventually(lambda: len(speeds) == 3)
             left = asyncio.get_running_loop().time()
         await eventually(lambda: speeds == [0.5, 0.0, 0.25, 0.0])
-        assert asyncio.get_running_loop().time() - left < 0.3, "long before a page that stays counts as silent"
+        assert asyncio.get_running_loop().time() - left < 0.3, "long before the timeout of a silent page"
 
 
 @skipping

@@ -219,7 +219,7 @@ async def test_new_description_replaces_robot_and_frames():
         world.describe(ARM.replace('"mark"', '"point"'))
         scene = await client.until("robot_scene", revision=2)
         assert [link["name"] for link in scene["links"]] == ["base", "tip", "point"]
-        await client.drain()  # the table of frames may come before or after
+        await client.drain()  # the frame table may arrive before or after the scene
         tables = [
             message for message in client.messages if isinstance(message, dict) and message["type"] == "frame_table"
         ]

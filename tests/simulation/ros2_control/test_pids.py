@@ -45,7 +45,7 @@ async def test_pid_moves_joint_to_command_and_stops_with_controller(tmp_path, ki
             description_with_gains(kind) if is_in_description else description(wheel("left_joint", kind))
         )
         await world.start("arm")
-        server.simulation.push("mbot::base_link", (0.0, 0.0, 40.0), by="test")  # the wheels are in the air
+        server.simulation.push("mbot::base_link", (0.0, 0.0, 40.0), by="test")  # lift the wheels into the air
         await world.command(1.5, topic="/arm/commands")
         await world.advance(0.02)
         position, velocity = server.simulation.joint_state("mbot::left_joint")

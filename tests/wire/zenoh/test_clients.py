@@ -67,7 +67,7 @@ def test_first_graph_query_is_answered_completely(processes, monkeypatch):
     late = processes("late")
     late.node.create_publisher(String, "chatter", 10)
     late.node.create_publisher(String, "said_late", 10)
-    talker.spin_until(lambda: hears.get_publisher_count() == 1)  # so the router knows of all
+    talker.spin_until(lambda: hears.get_publisher_count() == 1)  # the router then knows all endpoints
     assert asks.node.count_publishers("chatter") == 2
     assert sorted(asks.node.get_node_names()) == ["asks", "late", "talker"]
     late.close()
