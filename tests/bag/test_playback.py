@@ -288,7 +288,7 @@ async def test_step_back_without_subscriptions_keeps_position(recording: PlayedR
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_state_at_keeps_transforms_from_before_a_pause(tmp_path: Path, storage: str) -> None:
-    """With one transform a minute, a time between two shows the robot's last pose."""
+    """There is one transform a minute. Between two transforms, the robot has its last pose."""
     with BagWriter(tmp_path / "bag", storage) as writer:
         writer.add_topic("/tf", TF, [DEFAULT_QOS])
         for stamp in (0, 59, 60, 180):

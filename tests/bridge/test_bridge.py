@@ -395,7 +395,7 @@ def test_messages_of_unknown_type_are_bridged_as_raw_bytes(networks):
 
 @pytest.mark.parametrize(("expects", "seconds"), [(False, 1.0), (True, 10.0)])
 def test_mirrored_publisher_waits_longer_if_listeners_are_expected(monkeypatch, expects, seconds):
-    """A very busy machine matches late, and must not close publishers whose subscribers are about to match."""
+    """On a very busy machine, subscribers match late. Their publishers must not be closed before that."""
     now = [1000.0]
     monkeypatch.setattr("linkwright.bridge.mirrors.time", SimpleNamespace(monotonic=lambda: now[0]))
     graph = Graph()

@@ -94,7 +94,7 @@ WIDE = '<robot name="wide"><link name="base"><visual><geometry><box size="2 2 1"
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, height):
-    """A card that would cover the robot is folded; unfolded by hand, it moves the robot aside until it is closed."""
+    """A card that would cover the robot is folded. If the user unfolds it, the robot moves aside until it is closed."""
     (tmp_path / "wide.urdf").write_text(WIDE)
     page = open_page(start("view", str(tmp_path / "wide.urdf")))
     page.set_viewport_size({"width": width, "height": height})

@@ -271,7 +271,7 @@ def test_multiple_displays_are_selected_duplicated_removed_and_restored(open_win
 
 
 def test_tabs_beside_views_are_not_clipped_in_chinese(open_window_of_size):
-    """At 1280 pixels the third tab was clipped. A character without a font is replaced by one of the same width."""
+    """At 1280 pixels, the third tab was clipped. Characters that no font has are drawn with the same width."""
     page = open_window_of_size(1280, 800, "zh-CN")
     page.evaluate(
         """() => {

@@ -542,7 +542,7 @@ def test_webots_plugin_file_is_not_a_robot(here, capsys):
 
 
 def test_same_problem_in_several_files_is_reported_once(here, capsys, monkeypatch):
-    """A package that two files need, and a model's mistake that appears in the model and in its world."""
+    """The problems are a package that two files need, and a mistake of a model that its world repeats."""
     (here / "p" / "models" / "box").mkdir(parents=True)
     box = '<model name="box"><link name="l"><pose>0 0 0 0 0</pose></link></model>'
     (here / "p" / "models" / "box" / "model.sdf").write_text(f'<sdf version="1.6">{box}</sdf>')

@@ -236,7 +236,7 @@ LONG = {
 def test_output_truncated_by_full_disk_is_an_error(
     robot: Path, unbuffered: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The disk takes the first bytes of each output."""
+    """The disk has space for only the first bytes of each output."""
     monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
     for name, words in LONG.items():
         with (robot.parent / "out").open("w") as out, full_disk(ROOM):

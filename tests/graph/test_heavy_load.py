@@ -101,7 +101,7 @@ def test_graph_can_change_while_other_threads_use_it():
 
 
 async def test_thread_loses_no_reliable_messages_to_event_loop():
-    """A hundred thousand messages into a queue that holds all of them."""
+    """The queue can hold all of the hundred thousand messages."""
     graph = Graph(on_log=print)
     node = graph.create_node("node")
     numbers, all_received = [], asyncio.Event()

@@ -40,7 +40,7 @@ def write(folder, kind):
 
 @pytest.mark.parametrize("kind", ["stl", "obj", "glb"])
 def test_reading_mesh_releases_memory_of_file(kind, tmp_path):
-    """Measured without the garbage collector, which rarely runs for a few large objects."""
+    """The garbage collector is off, because it rarely runs for a few large objects."""
     path = write(tmp_path, kind)
     read_mesh(path)
     gc.collect()

@@ -122,7 +122,7 @@ async def test_launch_files_missing_in_unbuilt_sources_are_substituted(
     write: Write,
     tmp_path: Path,
 ) -> None:
-    """As beside a clone of ros_gz, whose build generates gz_sim.launch.py; the clone's own files take precedence."""
+    """The build of ros_gz generates gz_sim.launch.py, so a clone lacks it. The clone's own files take precedence."""
     folder = write("ws/src/ros_gz/ros_gz_sim/package.xml", "<package><name>ros_gz_sim</name></package>").parent
     write("ws/src/ros_gz/ros_gz_sim/CMakeLists.txt", COMPILED)
     write("ws/src/ros_gz/ros_gz_sim/launch/gz_sim.launch.py.in", "@GZ_SIM_VER@")
@@ -337,7 +337,7 @@ async def test_tutorial_launch_files_spawn_robot(
 async def test_shutdown_on_server_exit_is_decided_within_include_scope(
     launch: Callable[..., Any], simulators: Simulators
 ) -> None:
-    """At the end of the server the scope of the include is over."""
+    """When the server ends, the scope of the include has already ended."""
     for package, name, argument in (
         ("ros_gz_sim", "gz_sim.launch.py", {"gz_args": str(WORLD)}),
         ("gazebo_ros", "gzserver.launch.py", {"world": str(WORLD)}),

@@ -161,7 +161,7 @@ async def test_paths_do_not_lead_out_of_page_folder(served, target):
 
 
 async def test_only_static_page_is_served_without_token(served):
-    """The files of every wheel, and no data of the viewer."""
+    """These are files that every wheel contains, without data of the viewer."""
     for query in ("", "?token=", "?token=wrong"):
         status, body, _ = await raw(served.viewer, f"/ws{query}", token=False)
         assert status == 401
@@ -181,14 +181,14 @@ async def test_web_socket_requires_token(served):
 
 
 async def test_responses_set_no_cookies(served):
-    """Browsers would send it to all ports of this host."""
+    """Browsers would send a cookie to all ports of this host."""
     for target in ("/", "/ws", "/nothing", mesh_url(served.viewer)):
         for proto in ("http", "https"):
             assert "set-cookie" not in (await raw(served.viewer, target, X_Forwarded_Proto=proto))[2]
 
 
 async def test_mesh_url_contains_secret(served, robot, monkeypatch):
-    """Image elements fetch textures without a token: their addresses are sent to pages only."""
+    """Image elements fetch textures without a token, so only pages get the URLs."""
     address = mesh_url(served.viewer)
     assert (await raw(served.viewer, address, token=False))[:2] == (200, "solid arm")
     label, _, secret = address.split("/")[2].partition("~")

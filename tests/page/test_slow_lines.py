@@ -221,7 +221,7 @@ async def test_cloud_over_slow_connection_does_not_delay_transforms():
 
 @skipping
 async def test_four_pages_drop_only_stale_frames():
-    """At 100 Hz; one of the pages is slow, and no page waits for another."""
+    """Transforms are published at 100 Hz. One page is slow, and the others do not wait for it."""
     async with open_world(RvizConfig.parse(FILE.replace("Rate: 50", "Rate: 100"))) as world:
         async with (
             slow_line(world.viewer.url, 25_000.0) as url,

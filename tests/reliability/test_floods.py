@@ -112,7 +112,7 @@ def test_blocking_subscriber_does_not_delay_others(machine: Machine) -> None:
 
 @pytest.mark.parametrize("size", [10, 20_000])
 def test_reliable_messages_are_not_lost_with_slow_subscriber(machine: Machine, size: int) -> None:
-    """An unlimited queue: the flood ends long before the subscriber has read it."""
+    """The queue is unlimited, and the flood ends long before the subscriber has read all messages."""
     listener = machine.program(
         """
         class Program(Node):
@@ -218,7 +218,7 @@ def test_service_answers_while_process_is_flooded(machine: Machine) -> None:
 
 
 def test_stopped_process_does_not_block_publisher(machine: Machine) -> None:
-    """Stopped as by a debugger: the publisher continues, and the resumed process receives new messages."""
+    """While a process is stopped as by a debugger, the publisher continues. After resuming, it receives new messages."""
     talker = machine.program(
         """
         class Program(Node):

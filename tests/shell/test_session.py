@@ -219,7 +219,7 @@ def test_ctrl_c_at_end_of_command_keeps_its_status(monkeypatch: pytest.MonkeyPat
 
 
 def test_ignored_signals_stay_ignored_in_command(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As with nohup."""
+    """Ignored signals are inherited, as with nohup."""
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
         assert run_shell(["sh", "-c", "kill -HUP $$; exit 4"]) == 4

@@ -66,7 +66,7 @@ def test_numpy_arrays_are_accepted_unless_ros_distro_is_set_to_humble(variables)
 
 
 def test_own_commands_accept_numpy_arrays(tmp_path):
-    """Their processes find the stand-ins in the shell, as users' programs do."""
+    """In the shell, the processes of commands import the stand-ins, as users' programs do."""
     program = tmp_path / "ours.py"
     imports = "import json, linkwright.cli, numpy, rclpy\nfrom sensor_msgs.msg import Image"
     program.write_text(

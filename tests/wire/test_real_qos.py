@@ -148,7 +148,7 @@ def missed(peer, topic):
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
 def test_liveliness_is_lost_and_regained(peers, publisher_side, subscriber_side):
-    """Liveliness that is asserted by hand and then runs out."""
+    """The liveliness is asserted manually, and then expires."""
     publishes, subscribes = peers(publisher_side), peers(subscriber_side)
     by_hand = {"liveliness": "manual_by_topic", "lease": 1.0}
     publishes.ask("publisher", "/topic", by_hand)

@@ -84,7 +84,7 @@ def test_domains_are_isolated(processes, real_node, domain):
 
 
 def test_late_node_sees_everything_after_wait_for_discovery(processes, real_node):
-    """Even the last service, which Fast DDS announces some time after the first topic."""
+    """The node also sees the last service, which Fast DDS announces some time after the first topic."""
     real_node()
     process = processes("ours")
     assert process.transport.wait_for_discovery(60)

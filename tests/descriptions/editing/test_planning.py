@@ -359,7 +359,7 @@ def moved(origin: Pose, request: EditRequest) -> Pose:
 
 
 def rounded(value: Any) -> Any:
-    """Round poses and axes to the nanometre, so that robots can be compared."""
+    """Round poses and axes to the nanometer, so that robots can be compared."""
     if isinstance(value, float):
         return round(value, 7) + 0.0
     if isinstance(value, dict):

@@ -173,7 +173,7 @@ async def test_callback_groups_apply_across_nodes(graph, make):
 
 
 async def test_coroutine_can_call_service_of_same_node(graph):
-    """With rclpy's groups this would wait forever."""
+    """With rclpy's callback groups, this call would wait forever."""
     node = graph.create_node("node")
     node.create_service(Trigger, "inner", lambda _request, response: response, callback_group=FREE_GROUP)
     client = node.create_client(Trigger, "inner")

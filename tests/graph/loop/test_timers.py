@@ -102,7 +102,7 @@ async def test_timer_can_cancel_itself_and_fail(graph, clock, log):
 
 
 async def test_missed_timer_calls_are_skipped():
-    """After several busy periods, a loop gets one call, and the phase stays."""
+    """After several busy periods, the timer is called once, and its phase does not change."""
     clock = JumpClock()
     graph = Graph(clock=clock, on_log=print)
     calls = []

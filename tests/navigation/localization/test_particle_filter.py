@@ -91,7 +91,7 @@ def test_zero_likelihoods_give_uniform_weights() -> None:
 
 
 def test_pose_error_of_half_a_meter_is_corrected_while_driving() -> None:
-    """A room with exact scans and odometry; the first pose is wrong by 0.5 m and 0.3 rad."""
+    """Scans and odometry are exact, and the first pose is wrong by 0.5 m and 0.3 rad."""
     likelihoods = room()
     particles = ParticleFilter(FilterSettings())
     true = np.array((1.5, 1.2, 0.2))

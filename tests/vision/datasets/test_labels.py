@@ -194,7 +194,7 @@ def test_distractors_do_not_resemble_balls_and_drums(world):
 
 
 def test_few_objects_are_placed_behind_walls(world):
-    """The wall of the yard is 6 m long, 3 m ahead of its middle."""
+    """The wall of the yard is 6 m long, and 3 m from the center of the yard."""
     behind = objects = 0
     for arrangement in shots(world, 40):
         for movable in arrangement.placed_objects:

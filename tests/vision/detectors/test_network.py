@@ -206,7 +206,7 @@ def test_missing_gpu_is_noted(tmp_path):
 
 
 def test_missing_cuda_libraries_fall_back_to_cpu_with_note(tmp_path, monkeypatch):
-    """As onnxruntime-gpu behaves without CUDA: it lists the provider, and creates a session without it."""
+    """Without CUDA, onnxruntime-gpu lists the provider, but creates a session without it."""
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     monkeypatch.setattr(sessions, "has_cuda", lambda: True)
     monkeypatch.setattr(sessions, "load_session", lambda file, gpu: load_session(file))

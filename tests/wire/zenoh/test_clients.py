@@ -155,7 +155,7 @@ def test_killed_publisher_is_lost_and_closed_one_is_not(processes, programs, its
 
 
 def test_ended_sessions_are_no_longer_watched(processes):
-    """A robot that runs for months sees many sessions come and go."""
+    """Many sessions join and leave during the months that a robot runs."""
     ours = processes("ours")
     subscription = ours.node.create_subscription(Int32, "flood", print, 10)
     subscription.watch_lost(print)

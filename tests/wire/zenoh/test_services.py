@@ -103,7 +103,7 @@ class DeclaredSession:
 
 
 def test_request_in_transit_ends_when_service_closes(processes):
-    """Undeclaring does not wait for such a request: its client waited for ten minutes."""
+    """Undeclaring a service does not wait for such a request, and its client waited for ten minutes."""
     node = processes("ours", join_now=False).node
     service = node.create_service(SetBool, "flip", flip)
     names = (EndpointKind.SERVICE, "/flip", "std_srvs::srv::dds_::SetBool_", "RIHS01_00")
