@@ -16,7 +16,7 @@ ONE = urdf(link("base", BOX, RED))
 
 
 def two_boxes(front: str, back: str) -> str:
-    """Two boxes, one before the other along x."""
+    """Return two boxes, one in front of the other along x."""
     return urdf(link("base", BOX, front, "1 0 0"), link("other", BOX, back, "-1 0 0"), joint("j", "base", "other"))
 
 

@@ -1,4 +1,4 @@
-"""One busy or slow part does not take the others with it."""
+"""A busy or slow part does not disturb the others."""
 
 from __future__ import annotations
 
@@ -218,7 +218,7 @@ def test_service_answers_while_process_is_flooded(machine: Machine) -> None:
 
 
 def test_stopped_process_does_not_block_publisher(machine: Machine) -> None:
-    """While a process is stopped as by a debugger, the publisher continues. After resuming, it receives new messages."""
+    """While a process is stopped as by a debugger, the publisher continues. The resumed process gets new messages."""
     talker = machine.program(
         """
         class Program(Node):

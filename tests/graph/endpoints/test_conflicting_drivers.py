@@ -1,4 +1,4 @@
-"""Several simultaneous commanders: sequences of commands that are a dispute, and its report."""
+"""Several simultaneous commanders: sequences of commands that contradict each other, and the report about them."""
 
 from __future__ import annotations
 

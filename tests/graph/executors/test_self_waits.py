@@ -26,7 +26,7 @@ TRIGGER = get_service("std_srvs/srv/Trigger")
 FIBONACCI = get_action("example_interfaces/action/Fibonacci")
 
 
-class Asking:
+class CallingScene:
     """Two nodes: a server of a service and an action, and a client whose timer's callback calls one of them.
 
     Attributes:
@@ -86,12 +86,12 @@ class Asking:
 
 @pytest.fixture
 def make_scene(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Return a function that creates an `Asking`."""
+    """Return a function that creates an `CallingScene`."""
     monkeypatch.setattr(self_waits, "_reported", set())
-    scenes: list[Asking] = []
+    scenes: list[CallingScene] = []
 
-    def make(**options: Any) -> Asking:
-        scenes.append(Asking(**options))
+    def make(**options: Any) -> CallingScene:
+        scenes.append(CallingScene(**options))
         return scenes[-1]
 
     yield make
@@ -108,7 +108,7 @@ def test_call_in_own_callback_group_is_reported_once_with_both_locations(make_sc
 
     assert asks.run(ask)
     (error,) = asks.errors
-    callback = Asking.run.__code__.co_firstlineno
+    callback = CallingScene.run.__code__.co_firstlineno
     assert f"callback 'callback' ({__file__}:{callback + 4})" in error
     assert f" waits at {__file__}:{ask.__code__.co_firstlineno + 2} for the client of service '/ask'" in error
     assert "mutually exclusive" in error

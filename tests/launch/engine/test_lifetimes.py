@@ -1,4 +1,4 @@
-"""No process or thread remains after a launch, however it ends."""
+"""No process or thread remains after a launch, regardless of its end."""
 
 from __future__ import annotations
 
