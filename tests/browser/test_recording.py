@@ -27,7 +27,7 @@ def program(start, tmp_path: Path) -> Program:
 
 @pytest.fixture
 def page(program: Program, open_page) -> Page:
-    """Open a page that shows a robot whose transforms are published all the time."""
+    """Open a page that shows a robot whose transforms are published continuously."""
     robot_page: Page = open_page(program, wait=False)
     until(robot_page, "lw.timeline?.live && lw.timeline.sizeBytes > 1000 && lw.timeline.length > 2 && lw.frames.tip")
     return robot_page

@@ -86,7 +86,7 @@ class CallingScene:
 
 @pytest.fixture
 def make_scene(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Return a function that creates an `CallingScene`."""
+    """Return a function that creates a `CallingScene`."""
     monkeypatch.setattr(self_waits, "_reported", set())
     scenes: list[CallingScene] = []
 

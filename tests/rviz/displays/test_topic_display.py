@@ -1,4 +1,4 @@
-"""Displays of messages, by the example of PointStamped."""
+"""Displays of messages, tested with PointStamped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Networks in ONNX files: each layout, number by number against onnxruntime called by hand and a slow decoder."""
+"""Networks in ONNX files: each layout, compared with direct calls of onnxruntime and a slow decoder."""
 
 from __future__ import annotations
 
